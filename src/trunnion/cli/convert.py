@@ -17,6 +17,7 @@ from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.guard import files_read
 from trunnion.jobs.inputs.reading import load_machine, read_cl
 from trunnion.jobs.job import STDIN, Given
+from trunnion.messages import Wording
 from trunnion.wording import counted
 
 
@@ -55,8 +56,7 @@ def _dialect(given: Given) -> str:
         print(warning_line("trunnion convert", what, "ARG190"), file=sys.stderr)
         given.values["to_dialect"], given.values["dialect"] = given.dialect, None
     if given.to_dialect is not None and not given.to_cl:
-        what, cure = "is given, and no CL file is written", "leave it out, or give --to-cl"
-        raise InputError(argument_problem("to_dialect", what, cure, code="CNV110"))
+        raise InputError(argument_problem("to_dialect", Wording("CNV110", "dialect_without_cl_file")))
     return given.to_dialect or "clsf"
 
 
@@ -67,9 +67,7 @@ def _settings(given: Given) -> dict[str, str]:
         if given.values[name] is None:
             continue
         if given.machine is not None:
-            raise InputError(
-                argument_problem(name, "is of CL files, and a program is read", "leave it out", code="ARG130")
-            )
+            raise InputError(argument_problem(name, Wording("ARG130", "only_for_cl_files")))
         settings[key] = given.values[name]
     return settings
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.messages import Wording
 
@@ -68,7 +68,7 @@ def _load(path: Path) -> HookFile:
     for name, function in named.items():
         if name not in _FUNCTIONS:
             line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
-            near = did_you_mean(name, _FUNCTIONS)
+            near = meant_word(name, _FUNCTIONS)
             wording = (
                 Wording("HOK110", "no_hook_but_near", name=name, near=near)
                 if near

@@ -19,6 +19,7 @@ from trunnion.jobs.inputs.reading import FilePath, load_machine
 from trunnion.jobs.job import STDIN, Given
 from trunnion.jobs.project.file import library_files, load_project, project_files, project_inputs
 from trunnion.jobs.result_output import check_output_name
+from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, FileOut
 from trunnion.options.option import Option, outputs
 from trunnion.simulation.meshes import check_mesh_name
@@ -41,8 +42,7 @@ def guard(given: Given) -> list[FilePath]:
     written = [(option, file) for option, file in named if file is not None and not _takes_folder(option, file)]
     streams = [option for option, file in written if file == _STDOUT]
     if len(streams) > 1:
-        what = f"and {streams[1].name} go to stdout both"
-        raise InputError(argument_problem(streams[0].name, what, "let one of them go to a file", code="ARG140"))
+        raise InputError(argument_problem(streams[0].name, Wording("ARG140", "two_to_stdout", other=streams[1].name)))
     files = [(option, file) for option, file in written if file != _STDOUT]
     if not files:
         return []

@@ -7,8 +7,8 @@ from jinja2.runtime import Context, LoopContext
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from trunnion.controls.texts import filters
-from trunnion.controls.texts.values import Fault, Later, Length, Record, calculated, number_of, shown
-from trunnion.definitions.messages import did_you_mean
+from trunnion.controls.texts.values import Fault, Later, Length, Record, calculated, number_of, question, shown
+from trunnion.definitions.messages import meant_word
 
 #: What a loop tells of itself.
 LOOP_VALUES: Final = frozenset({"index", "index0", "first", "last", "length"})
@@ -49,7 +49,9 @@ class Sandbox(ImmutableSandboxedEnvironment):
         if not isinstance(obj, Record):
             raise Fault(f"asks for .{attribute} of {shown(obj)}, which is no tool and no operation")
         if attribute not in obj.values:
-            raise Fault(f"asks for .{attribute}, which {obj} does not have", did_you_mean(attribute, obj.values))
+            raise Fault(
+                f"asks for .{attribute}, which {obj} does not have", question(meant_word(attribute, obj.values))
+            )
         value = obj.values[attribute]
         return value.value() if isinstance(value, Later) else value
 

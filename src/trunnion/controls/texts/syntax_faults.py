@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from trunnion.controls.texts.values import Fault
-from trunnion.definitions.messages import did_you_mean
+from trunnion.controls.texts.values import Fault, question
+from trunnion.definitions.messages import meant_word
 
 _LANGUAGE: Final = "docs/templates.md has the language"
 
@@ -202,7 +202,7 @@ def _statement_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
                 return f"has {tag}, which is no statement", "write {% endif %} or {% endfor %}"
             return f"has {tag}, which is no statement", f"write {{% end{following[0].lower()} %}} in one word"
         meant = _OTHER_NAMES.get(name.lower()) or (name.lower() if name.lower() in _STATEMENTS else "")
-        cure = f"write {meant}" if meant else did_you_mean(name, _STATEMENTS)
+        cure = f"write {meant}" if meant else question(meant_word(name, _STATEMENTS))
         return f"has {tag}, which is no statement", cure or f"write one of {', '.join(_STATEMENTS)}"
     if name == "else" and bare:
         cure = "write {% elif … %}" if bare.startswith("if") else "write {% else %}"

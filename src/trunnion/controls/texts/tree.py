@@ -13,9 +13,9 @@ from jinja2 import nodes
 
 from trunnion.controls.texts import filters
 from trunnion.controls.texts.sandbox import LOOP_VALUES, SANDBOX
-from trunnion.controls.texts.values import Fault
+from trunnion.controls.texts.values import Fault, question
 from trunnion.controls.vocabulary import RECORD_VALUES
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 
 #: Letters of a template; statements and expressions within each other, as Jinja's compiler recurses.
 LONGEST_SOURCE: Final = 65_536
@@ -159,7 +159,7 @@ def _check(node: nodes.Node) -> None:
     if isinstance(node, nodes.Name) and node.name == "self":
         raise Fault("has self, which templates do not have", "write a value by its own name, such as title", line)
     if isinstance(node, nodes.Getattr) and node.attr not in RECORD_VALUES | LOOP_VALUES:
-        cure = did_you_mean(node.attr, RECORD_VALUES | LOOP_VALUES) or _LANGUAGE
+        cure = question(meant_word(node.attr, RECORD_VALUES | LOOP_VALUES)) or _LANGUAGE
         raise Fault(f"asks for .{node.attr}, which nothing has", cure, line)
     if isinstance(node, nodes.Const):
         _check_constant(node)
@@ -185,7 +185,10 @@ def _check_constant(node: nodes.Const) -> None:
 def _check_arguments(node: nodes.Filter | nodes.Test) -> None:
     named = node.kwargs or node.dyn_args or node.dyn_kwargs
     if isinstance(node, nodes.Filter) and node.name not in filters.ALL and (node.args or named):
-        cure = did_you_mean(node.name, filters.MOST_ARGUMENTS) or "leave them out: a number format has its decimals"
+        cure = (
+            question(meant_word(node.name, filters.MOST_ARGUMENTS))
+            or "leave them out: a number format has its decimals"
+        )
         raise Fault(f"gives {node.name} values in brackets, and it takes none", cure, node.lineno)
     if named or (isinstance(node, nodes.Filter) and len(node.args) > filters.MOST_ARGUMENTS.get(node.name, 0)):
         raise Fault(f"gives {node.name} what it does not take", _LANGUAGE, node.lineno)

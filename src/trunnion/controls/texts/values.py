@@ -35,6 +35,10 @@ class Fault(Exception):  # noqa: N818 - it is the template's
         self.what, self.cure, self.line = what, cure, line
 
 
+def question(near: str) -> str:
+    return f'did you mean "{near}"?' if near else ""
+
+
 class Length(float):
     """A length or feed in mm, which a program prints in its unit."""
 

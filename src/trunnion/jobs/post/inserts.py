@@ -19,6 +19,7 @@ from trunnion import readers
 from trunnion.arrays import Floats, Ints
 from trunnion.controls.inches import without_comments
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Motion
 from trunnion.model.run import Run
@@ -128,9 +129,9 @@ def _modes_at(name: str, program: Program) -> list[Problem]:
         word = _mode_in(words, reader) if reader.raw_words.not_known(words, program.machine) else ""
         if word:
             assert template is not None
-            what = f"template {name} writes {word}, and the operation does not say its own mode again behind it"
-            cure = "leave it out, or write it into the template of the approach, in place of the mode there"
-            problems.append(Problem(*template.place_of(k), what, cure, code="CTL457"))
+            problems.append(
+                Problem(*template.place_of(k), Wording("CTL457", "mode_not_stated_again", template=name, word=word))
+            )
     return problems
 
 

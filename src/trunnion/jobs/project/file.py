@@ -31,6 +31,7 @@ from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Proj
 from trunnion.jobs.project.settings import read_settings
 from trunnion.jobs.result_output import NO_PAPERS, PAPERS, PaperFiles, paper_files
 from trunnion.machines import shipped_machines
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.stock.turning import Pose
@@ -167,9 +168,7 @@ def load_project(path: Path) -> Project:
 
 def _read(path: Path, elsewhere: Collection[str], *, is_posted: bool) -> Project:
     if path.suffix != ".toml":
-        raise InputError(
-            Problem(str(path), 0, "is a project by its content", "let its name end in .toml", code="SIM112")
-        )
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "project_of_other_ending")))
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
     return read_project_table(
@@ -180,10 +179,7 @@ def _read(path: Path, elsewhere: Collection[str], *, is_posted: bool) -> Project
 def read_project_table(root: Table, path: Path, elsewhere: Collection[str] = (), *, is_posted: bool = True) -> Project:
     """Read the table of a project that stands, or would stand, in the file ``path``; errors as ``load_project``."""
     if "simulation" not in root and not any(key in root for key in _KEYS_OF_PROJECTS):
-        what = f"is no project: it has none of the keys {', '.join(_KEYS_OF_PROJECTS)}, and no table [simulation]"
-        raise InputError(
-            Problem(str(path), 0, what, "give the path of a project, or name the files themselves", code="SIM112")
-        )
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "no_project", keys=_KEYS_OF_PROJECTS)))
     found = _Reader(path, elsewhere, is_posted).project(root)
     root.report_unread_keys()
     root.raise_problems()

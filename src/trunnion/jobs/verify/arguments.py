@@ -10,6 +10,7 @@ from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, ToolpathLike
 from trunnion.jobs.inputs.settings import check_tolerance
+from trunnion.messages import Wording
 
 #: How far the tip may be off its CL point, mm.
 DEFAULT_TOLERANCE: Final = 0.001
@@ -94,13 +95,9 @@ def _feed_limit(given: VerifyArguments) -> float | None:
     if limit is None:
         return None
     if not given.is_fastest:
-        raise InputError(
-            argument_problem("feed_limit", "is for feed=fastest only", "write feed=fastest too", code="ARG130")
-        )
+        raise InputError(argument_problem("feed_limit", Wording("ARG130", "only_with_fastest_feed")))
     if isinstance(limit, bool) or not isinstance(limit, int | float) or not 0.0 < limit < math.inf:
-        raise InputError(
-            argument_problem("feed_limit", f"is {limit!r}", "write a number above 0, mm/min", code="ARG220")
-        )
+        raise InputError(argument_problem("feed_limit", Wording("ARG220", "no_feed_limit", value=repr(limit))))
     return float(limit)
 
 

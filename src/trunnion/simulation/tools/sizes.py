@@ -42,7 +42,7 @@ class ToolKind(StrEnum):
     BARREL = "barrel"
 
 
-#: What others call them, as ``did_you_mean`` takes it.
+#: What others call them, as ``meant_word`` takes it.
 OTHER_KINDS: Final = {
     "mill": ToolKind.FLAT, "endmill": ToolKind.FLAT, "flatmill": ToolKind.FLAT, "flatendmill": ToolKind.FLAT,
     "squareendmill": ToolKind.FLAT, "cylinder": ToolKind.FLAT, "cylindrical": ToolKind.FLAT, "facemill": ToolKind.FLAT,

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.shapes import shape_faults, tool_shape
@@ -121,7 +121,7 @@ def _kind(word: str) -> ToolKind:
     try:
         return ToolKind(word)
     except ValueError:
-        near = did_you_mean(word, ToolKind, OTHER_KINDS)
+        near = meant_word(word, ToolKind, OTHER_KINDS)
         cure = f"{near} " if near else ""
         raise _TextError(f'"{word}" is no kind of tool', f"{cure}write one of {', '.join(ToolKind)}") from None
 
@@ -151,7 +151,7 @@ def _field(kind: ToolKind, name: str) -> str:
     needed, others = OF_KIND[kind]
     known = [_NAME_OF[field] for field in dict.fromkeys((*needed, *others, *OF_BODY, "holder"))]
     if name not in known:
-        near = did_you_mean(name, known)
+        near = meant_word(name, known)
         cure = f"{near} " if near else ""
         raise _TextError(f'a {kind} has no size "{name}"', f"{cure}known here: {', '.join(known)}")
     return _NAMES[name]

@@ -23,6 +23,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
+from trunnion.messages import Wording
 from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
 from trunnion.reporting.text import clean
@@ -306,7 +307,9 @@ def _sum_of(file: Path) -> str:
     try:
         return checksum(file)
     except OSError as error:
-        raise InputError(Problem(str(file), 0, f"cannot be read: {error.strerror}", "", code="FIL120")) from None
+        raise InputError(
+            Problem(str(file), 0, Wording("FIL120", "program_unreadable", reason=error.strerror))
+        ) from None
 
 
 def _fault(path: Path, why: str) -> InputError:
