@@ -3,8 +3,8 @@
 python3 make.py sample     set up, and post a real five-axis toolpath
 python3 make.py simulate   set up, cut a part with its three programs, and draw what comes out
 python3 make.py impeller   set up, and make an impeller from measured points: paths, programs, proof, and the part
-python3 make.py test       set up, and run what judges a change: tests, style, types, the site, the archives
-python3 make.py nightly    what the tests leave out: the rest of the matrix, all draws, fuzzing; a number is the seed
+python3 make.py test       set up, and run what judges a change: tests, style, types, the site
+python3 make.py nightly    the rest: the whole matrix, long cases, all draws, fuzzing, archives; a number is the seed
 python3 make.py quick      style, types, import contracts, and the fast tests that the change reaches
 python3 make.py docs       build the documentation site in build/site
 python3 make.py package    build the wheel and the sdist in dist, and try both in environments of their own
@@ -26,6 +26,7 @@ import tempfile
 import venv
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -33,7 +34,7 @@ HOME = HERE / ".venv"
 SUPPORTED = (11, 12, 13)  # minor versions of Python 3 that the wheel is tried on
 TESTS = ("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal")  # neighbours share what one process has kept
 IMPELLER = Path("examples", "impeller", "impeller.toml")
-FUZZING = "60"  # seconds of each of two campaigns
+FUZZING = "60"  # seconds
 CELL = "0.25"  # mm, of the simulation of the impeller
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
 CUT = ("1_contour_rough", "2_hub_rough", "3_blade_finish")  # programs of one part, in their order
@@ -139,32 +140,30 @@ def quick() -> None:
 
 
 def nightly(seed: str = "") -> None:
-    """Run what ``test`` leaves out, from a fresh seed: the rest of the matrix, all draws of properties, and fuzzing."""
+    """Run what ``test`` leaves out, from a fresh seed: long cases, all draws of properties, fuzzing, the archives."""
     set_up(".[test]")
     seed = seed or str(random.SystemRandom().randrange(10**9))
-    print(f"seed {seed}; python3 make.py nightly {seed} draws the same again")
+    print(f"seed {seed}; python3 make.py nightly {seed} draws the same again", flush=True)
     campaign = ("python", "-m", "tests.fuzz.campaign", "every", "--seconds", FUZZING, "--patience", "300")
-    with ThreadPoolExecutor(2) as two:
-        campaigns = [two.submit(run, *campaign, "--seed", str(int(seed) + k * 10**9)) for k in range(2)]
-    run(*TESTS, "--nightly", f"--hypothesis-seed={seed}")
-    for each in campaigns:
-        each.result()
+    with ThreadPoolExecutor(1) as beside:  # both keep one processor busy at most
+        others = beside.submit(in_turn, build, partial(run, *campaign, "--seed", seed))
+        run(*TESTS, "--nightly", f"--hypothesis-seed={seed}")
+        others.result()
 
 
 def test() -> None:
     """Everything that judges a change; CI runs ``nightly`` besides."""
     set_up(".[test,docs]")
     with ThreadPoolExecutor(1) as beside:  # each of its programs keeps one processor busy at most
-        others = beside.submit(check_and_build)
+        others = beside.submit(in_turn, check, site)
         run(*TESTS)
         others.result()
 
 
-def check_and_build() -> None:
-    """Check and build what is no test: style and types, the site, the archives."""
-    check()
-    site()
-    build()
+def in_turn(*steps: Callable[[], object]) -> None:
+    """Do steps one after the other."""
+    for step in steps:
+        step()
 
 
 def docs() -> None:

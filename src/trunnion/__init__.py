@@ -32,7 +32,7 @@ Functions
     load_impeller  definition and measured points -> Impeller: blades, hub and shroud as surfaces
     model_impeller Impeller -> ImpellerModel: a closed mesh
     write_impeller_step  Impeller -> STEP file of a solid, and ImpellerSolid: how good it is
-    write_report   Verification -> page or data
+    write_report   Verification or SimulationResult -> page or data
     write_plot     ClDescription -> page with the path in space
     verify_manifest  manifest of a post -> ManifestCheck: are its files still the same
     write_view     NC program -> page that shows it on its machine, block by block
@@ -42,6 +42,8 @@ They print nothing and raise ``TrunnionError``. Names are imported when they are
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
+
+from trunnion.version import __version__
 
 if TYPE_CHECKING:
     from trunnion.capability.reach import Reach as Reach
@@ -116,8 +118,6 @@ if TYPE_CHECKING:
     from trunnion.verification.results import Check as Check
     from trunnion.verification.results import Place as Place
     from trunnion.verification.results import Verification as Verification
-
-__version__ = "0.1.0"
 
 #: Public name -> its module.
 _MODULES: Final = {

@@ -96,6 +96,7 @@ def test_shares_are_neither_lost_nor_doubled_although_a_worker_and_the_scheduler
     assert whole_files(tmp_path / "out") == tree(tmp_path / "loop")
 
 
+@pytest.mark.nightly
 def test_a_divided_simulation_is_that_of_one_process_although_a_worker_dies(cluster: Cluster, tmp_path: Path) -> None:
     nc, given = write_divided(tmp_path)
     report = "wall.ngc.simulation.json"

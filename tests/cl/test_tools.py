@@ -96,7 +96,7 @@ def test_the_centre_of_a_corner_is_kept_and_written(tmp_path: Path, dialect: str
     for written in ("clsf", "catia", "ncl"):
         folder = tmp_path / written
         folder.mkdir()
-        trunnion.convert(tmp_path / "part.txt", to_cl=True, dialect=written, output=folder / "again.cls")
+        trunnion.convert(tmp_path / "part.txt", to_cl=True, to_dialect=written, output=folder / "again.cls")
         assert read_cl(folder / "again.cls").operations[0].tool.corner_centre == (-80.0, 20.0)
 
 

@@ -139,6 +139,7 @@ def test_what_is_wrong_names_the_step(impeller: Impeller, tmp_path_factory: pyte
         list(step_paths(impeller, lambda axes: np.zeros(len(axes), np.bool_), ["HUB_FINISH"]))
 
 
+@pytest.mark.nightly
 def test_flanks_are_milled_from_both_sides_with_the_blade_on_the_right(
     tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -216,6 +217,7 @@ def test_mistakes_of_a_step_are_told_with_their_line(
     assert all(problem.line > 0 for problem in told.value.problems)
 
 
+@pytest.mark.nightly
 def test_splitters_are_cut_where_they_stand(tmp_path: Path) -> None:
     step = STEP.format(kind="root blend", tool=3, stepover=2.5, more='way = "spiral"\ntolerance_mm = 0.05')
     text = (EXAMPLE / "mixed_flow.toml").read_text(encoding="utf-8").split("\n[[tool]]")[0]

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from tests.support.matrix.covering import case
 from tests.support.matrix.expected import FAMILIES, REFUSED
 from tests.support.matrix.pairs import CONTROLS, FEW, check_refused, pair_of
 from tests.support.matrix.pairs import posted as posted_by_command
@@ -111,10 +112,11 @@ def test_all_units_of_path_and_program_are_proven_and_move_alike(control: str, f
 ONLY_MM = {"heidenhain_itnc530": {"simultaneous milling without TCP": "how F counts degrees beside inches"}}
 
 
-@pytest.mark.parametrize("path", FAMILIES)
-@pytest.mark.parametrize("control", IN_INCHES)
-def test_every_family_of_paths_is_proven_in_inches(control: str, path: str, folder: Path) -> None:
-    pair, (family, asked) = pair_of(control, MACHINE, folder), FAMILIES[path]
+@pytest.mark.parametrize(
+    ("machine", "control", "path"), [case(MACHINE, control, path) for path in FAMILIES for control in IN_INCHES]
+)
+def test_every_family_of_paths_is_proven_in_inches(machine: str, control: str, path: str, folder: Path) -> None:
+    pair, (family, asked) = pair_of(control, machine, folder), FAMILIES[path]
     refused = REFUSED.get(pair.family, {}).get(path) or ONLY_MM.get(pair.family, {}).get(path)
 
     @settings(parent=FEW, deadline=None, max_examples=2)

@@ -44,6 +44,7 @@ def test_a_folder_that_is_not_there_is_an_error_of_the_input(tmp_path: Path) -> 
         write_report(blade(), tmp_path / "nowhere" / "report.json")
 
 
+@pytest.mark.nightly
 def test_a_million_motions_take_bounded_memory_and_a_file_that_can_be_sent(tmp_path: Path) -> None:
     verification = waves(1_000_000)
     tracemalloc.start()

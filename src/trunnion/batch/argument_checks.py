@@ -12,15 +12,12 @@ from trunnion.jobs.inputs.arguments import check_whole
 from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
+from trunnion.options.words import MOST_TILES
 from trunnion.simulation.stock.solids import check_cell, is_mesh, stock_shape
 from trunnion.simulation.tools.text import parse_tool
 
 #: Diameters for tools that state none, which CL files may state, mm: a tool is wrong if it is with each.
 _DIAMETERS: Final = (None, 10.0, 1000.0)
-
-
-#: Tasks among which one simulation may be divided.
-MOST_TILES: Final = 1000
 
 
 def check_tiles(action: Action, tiles: object) -> int:

@@ -264,7 +264,7 @@ def _extensions(action: Action, said: Mapping[str, Any], machines: Mapping[str, 
         raise InputError(argument_problem("to_machine", Wording("CNV110", "cl_say_where")))
     if said.get("to_cl"):
         check_to_cl(said, machine)
-        return Extensions(read, WRITTEN_DIALECTS[said.get("dialect", "clsf")])
+        return Extensions(read, WRITTEN_DIALECTS[said.get("to_dialect", "clsf")])
     if machine is None:
         raise InputError(argument_problem("machine", Wording("CNV110", "missing")))
     job = prepare(machines["to_machine"], said.get("settings"))

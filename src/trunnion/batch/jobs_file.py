@@ -3,29 +3,28 @@
 A file of jobs may come from anyone: it names files beside or below its own only, and runs nothing.
 """
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
-from trunnion.batch.argument_checks import MOST_TILES, beside_fault
+from trunnion.batch.argument_checks import beside_fault
 from trunnion.batch.jobs import Batch, BatchJob, folder_files, judged
 from trunnion.batch.patterns import matches, pattern_fault
 from trunnion.batch.result_keys import home_of
 from trunnion.batch.unmatched_patterns import unmatched
 from trunnion.batch.worker_task import Action
-from trunnion.cl import DIALECTS
-from trunnion.cl.writers import WRITERS
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, unusable_file
 from trunnion.files import name_fault
 from trunnion.jobs.inputs.settings import as_texts
-from trunnion.jobs.project.paths import ProjectPaths
-from trunnion.machines import shipped_machines
+from trunnion.jobs.project.stated_values import StatedValues
+from trunnion.jobs.registry import JOBS
 from trunnion.messages import Wording
-from trunnion.simulation.stock.solids import is_mesh
+from trunnion.options.kinds import FileOut, Setting
+from trunnion.options.option import Option
 
 #: Jobs that a file may have, patterns of one, and settings.
 _MOST_JOBS: Final = 1000
@@ -35,35 +34,69 @@ _MOST_SETTINGS: Final = 500
 #: Where results go if nothing else is said.
 RESULTS: Final = "results"
 
-_ALL: Final = frozenset(Action)
-_POST, _CONVERT, _VERIFY, _SIMULATE = (frozenset({each}) for each in Action)
+#: Options that several files at once do not have: hooks, since a file of jobs runs nothing; where one program ends; and
+#: simulations in the same run, which are an action of their own.
+_OF_SINGLE_FILES: Final = ("hooks", "until", "simulate", "project")
 
-_Reader: TypeAlias = Callable[["_Tables", Table, str], Any]
+#: Options whose files go with each input, so that they are not known yet.
+_BESIDE: Final = ("cl", "subprograms")
 
 
 @dataclass(frozen=True, slots=True)
-class _Option:
-    """A key of a job: the argument that it states, the actions that take it, and how it is read."""
+class _Stated:
+    """A key of a job: the option that it states, and of which actions; each may have it in words of its own."""
 
-    argument: str
-    actions: Collection[Action]
-    read: _Reader
+    options: Mapping[Action, Option]
+
+    @property
+    def option(self) -> Option:
+        """The option as the first action has it: its kind is that of all."""
+        return next(iter(self.options.values()))
+
+    @property
+    def argument(self) -> str:
+        """Its name."""
+        return self.option.name
+
+
+def _takes_key(option: Option) -> bool:
+    """Whether a job may state an option of its action."""
+    is_left_out = option.own or option.heading or option.name in _OF_SINGLE_FILES
+    return bool(option.key) and not is_left_out and not isinstance(option.kind, FileOut)
+
+
+def _stated_keys() -> dict[str, _Stated]:
+    """Return the keys of a job, as the actions declare them; a report and tiles are of the batch itself."""
+    found: dict[str, dict[Action, Option]] = {}
+    for action in Action:
+        for option in filter(_takes_key, JOBS[action].flags):
+            found.setdefault(option.key, {})[action] = option
+    batch = JOBS["batch"]
+    for name, actions in (("report", (Action.POST, Action.VERIFY, Action.SIMULATE)), ("tiles", (Action.SIMULATE,))):
+        found[name] = {action: each.but(key=name) for each in batch.flags if each.name == name for action in actions}
+    return {key: _Stated(options) for key, options in found.items()}
+
+
+#: Keys of a job besides those that say which files it has and where its results go.
+_KEYS: Final[Mapping[str, _Stated]] = _stated_keys()
 
 
 class _Tables:
     """Reads the values of keys; mistakes become problems of the tables."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.paths = ProjectPaths(folder)
+        self._stated = StatedValues(folder)
 
-    def machine(self, table: Table, key: str) -> str:
-        name = table.text(key, "")
-        if name.endswith(".toml"):
-            return self.paths.file(table, key, name)
-        return table.text(key, "", one_of=shipped_machines()) if name else ""
+    def value(self, table: Table, option: Option) -> Any:
+        """Return what a table states of an option."""
+        if option.name in _BESIDE:
+            return self._beside(table, option.key)
+        if isinstance(option.kind, Setting):
+            return self._settings(table, option.key)
+        found = self._stated.value(table, option)
+        return list(found) if isinstance(found, tuple) else found  # as JSON has it
 
-    def settings(self, table: Table, key: str) -> dict[str, Any]:
+    def _settings(self, table: Table, key: str) -> dict[str, Any]:
         own, found = table.table(key), dict[str, Any]()
         stated = own.to_dict()
         if len(stated) > _MOST_SETTINGS:
@@ -79,88 +112,13 @@ class _Tables:
         own.mark_read(*own.names())
         return found
 
-    def stock(self, table: Table, key: str) -> str:
-        name = table.text(key, "")
-        return self.paths.file(table, key, name) if name and is_mesh(name) else name
-
-    def file(self, table: Table, key: str) -> str:
-        name = table.text(key, "")
-        return self.paths.file(table, key, name) if name else ""
-
-    def files(self, table: Table, key: str) -> list[str]:
-        return list(self.paths.files(table, key))
-
-    def beside(self, table: Table, key: str) -> list[str]:
+    def _beside(self, table: Table, key: str) -> list[str]:
         """Names of files that go with each input, which are not known yet."""
         found = list(table.texts(key, ()))
         for name in found:
             if fault := beside_fault(name):
                 table.add_problem(key, Wording("DEF330", "no_name_beside", name=name[:100], fault=fault))
         return found
-
-
-def _text(*one_of: str) -> _Reader:
-    return lambda _, table, key: table.text(key, "", one_of=one_of)
-
-
-def _number(_: _Tables, table: Table, key: str) -> float | None:
-    return table.number(key, None, above=0.0)
-
-
-def _tool_length(_: _Tables, table: Table, key: str) -> float | None:
-    return table.number(key, None, above=0.0, at_most=_LONGEST_TOOL)
-
-
-def _angle(most: float) -> _Reader:
-    return lambda _, table, key: table.number(key, None, at_least=-most, at_most=most)
-
-
-def _vector(_: _Tables, table: Table, key: str) -> list[float] | None:
-    found = table.vector(key, 3, None)
-    return None if found is None else list(found)
-
-
-#: The setting ``tool_length`` takes no more, mm.
-_LONGEST_TOOL: Final = 10_000.0
-
-#: Keys that a post has as settings.
-_PLACE_SETTINGS: Final = {"zero_mm": "zero", "tool_length_mm": "tool_length"}
-
-#: Keys of a job besides those that say which files it has and where its results go.
-_OPTIONS: Final[Mapping[str, _Option]] = {
-    "machine": _Option("machine", _ALL, _Tables.machine),
-    "report": _Option("report", _POST | _VERIFY | _SIMULATE, _text("html", "json")),
-    "settings": _Option("settings", _POST | _CONVERT, _Tables.settings),
-    "strict": _Option("strict", _POST, lambda _, table, key: table.flag(key, False)),
-    "subprograms": _Option("subprograms", _ALL, _Tables.beside),
-    "to_machine": _Option("to_machine", _CONVERT, _Tables.machine),
-    "to_cl": _Option("to_cl", _CONVERT, lambda _, table, key: table.flag(key, False)),
-    "to_dialect": _Option("dialect", _CONVERT, _text(*WRITERS)),
-    "cl": _Option("cl", _VERIFY | _SIMULATE, _Tables.beside),
-    "dialect": _Option("dialect", _VERIFY, _text(*DIALECTS)),
-    "units": _Option("units", _VERIFY, _text("mm", "inch")),
-    "frame": _Option("frame", _VERIFY, _text("first", "absolute")),
-    "feed": _Option("feed", _VERIFY, _text("programmed", "fastest")),
-    "work_offset": _Option("work_offset", _VERIFY, lambda _, table, key: table.text(key, "", example="G54")),
-    "tolerance_mm": _Option("tolerance", _VERIFY, _number),
-    "span_deg": _Option("span", _VERIFY, _number),
-    "span_tip_mm": _Option("span_tip", _VERIFY, _number),
-    "zero_mm": _Option("zero", _ALL, _vector),
-    "tool_length_mm": _Option("tool_length", _ALL, _tool_length),
-    "turn_deg": _Option("turn", _POST | _VERIFY | _SIMULATE, _angle(360.0)),
-    "tilt_deg": _Option("tilt", _POST | _VERIFY | _SIMULATE, _angle(90.0)),
-    "stock": _Option("stock", _SIMULATE, _Tables.stock),
-    "part": _Option("part", _SIMULATE, _Tables.file),
-    "fixtures": _Option("fixtures", _SIMULATE, _Tables.files),
-    "tools": _Option("tools", _SIMULATE, lambda _, table, key: list(table.texts(key, ()))),
-    "tool_libraries": _Option("libraries", _SIMULATE, _Tables.files),
-    "unit": _Option("unit", _SIMULATE, _text("mm", "inch")),
-    "cell_mm": _Option("cell", _SIMULATE, _number),
-    "accuracy_mm": _Option("accuracy", _SIMULATE, _number),
-    "near_mm": _Option("near", _SIMULATE, _number),
-    "stop_at": _Option("stop_at", _SIMULATE, _text("none", "first")),
-    "tiles": _Option("tiles", _SIMULATE, lambda _, table, key: table.integer(key, 1, at_least=1, at_most=MOST_TILES)),
-}
 
 
 def load_batch(path: Path) -> Batch:
@@ -199,9 +157,9 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         if name in [job.name for job in jobs]:
             table.add_problem("name", Wording("DEF330", "twice", name=name[:100]))
         _refuse_keys(table, action, stated)
-        of_defaults = {key: value for key, value in default_values.items() if action in _OPTIONS[key].actions}
-        if action is Action.POST:
-            of_defaults, stated = _with_place_settings(defaults, of_defaults), _with_place_settings(table, stated)
+        of_defaults = {key: value for key, value in default_values.items() if action in _KEYS[key].options}
+        of_defaults = _with_settings(defaults, of_defaults, action)
+        stated = _with_settings(table, {key: stated[key] for key in stated if action in _KEYS[key].options}, action)
         values = of_defaults | stated
         if "settings" in values:
             values["settings"] = of_defaults.get("settings", {}) | stated.get("settings", {})
@@ -215,14 +173,15 @@ def read_batch_table(root: Table, path: Path) -> Batch:
     return Batch(path.parent, jobs, results, home_of(path), is_whole=True)
 
 
-def _with_place_settings(table: Table, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a table states of a post, with the workpiece zero and the tool length among its settings."""
-    found = dict(values)
-    place = {name: value for key, name in _PLACE_SETTINGS.items() if (value := found.pop(key, None)) is not None}
+def _with_settings(table: Table, values: Mapping[str, Any], action: Action) -> dict[str, Any]:
+    """Return what a table states, with options among the settings that are settings of the action."""
+    options = {key: _KEYS[key].options[action] for key in values}
+    place = {each.setting: values[key] for key, each in options.items() if each.setting and values[key] is not None}
+    found = {key: value for key, value in values.items() if not options[key].setting}
     own = found.get("settings", {})
-    for key, name in _PLACE_SETTINGS.items():
-        if name in place and name in own:
-            table.add_problem(key, Wording("BAT110", "stated_besides_settings", name=name))
+    for key, each in options.items():
+        if each.setting in place and each.setting in own:
+            table.add_problem(key, Wording("BAT110", "stated_besides_settings", name=each.setting))
     return {**found, "settings": {**place, **own}} if place else found
 
 
@@ -235,7 +194,7 @@ def _judged(
     if table.problems:
         return []
     beside = {key: values.pop(key) for key in ("cl", "subprograms") if values.get(key)}
-    report, tiles = values.pop("report", ""), values.pop("tiles", 1)
+    report, tiles = values.pop("report", None) or "", values.pop("tiles", 1)
     if tiles > 1 and values.get("stop_at") == "first":
         table.add_problem("tiles", Wording("SIM116", "no_meaning_stop"))
     for key in ("turn_deg", "tilt_deg") if action is Action.VERIFY and "cl" not in beside else ():
@@ -243,8 +202,8 @@ def _judged(
             table.add_problem(key, Wording("BAT110", "turns_cl_files"))
     if table.problems:
         return []
-    arguments = {_OPTIONS[key].argument: value for key, value in values.items() if value}
-    keys = {_OPTIONS[key].argument: key for key in values}
+    arguments = {_KEYS[key].argument: value for key, value in values.items() if value}
+    keys = {_KEYS[key].argument: key for key in values}
     try:
         said, shared, extensions = judged(action, arguments, folder)
     except InputError as error:
@@ -289,21 +248,19 @@ def _folder_name(table: Table, key: str) -> str:
 def _values(tables: _Tables, table: Table) -> dict[str, Any]:
     """Return what a table states of the options, by their keys; all of them are asked for, so that none is unknown."""
     stated = set(table.keys())
-    return {
-        key: value for key, option in _OPTIONS.items() for value in [option.read(tables, table, key)] if key in stated
-    }
+    return {key: value for key, each in _KEYS.items() for value in [tables.value(table, each.option)] if key in stated}
 
 
 def _refuse_keys(table: Table, action: Action, stated: Collection[str]) -> None:
     for key in stated:
-        if action not in _OPTIONS[key].actions:
+        if action not in _KEYS[key].options:
             table.add_problem(
                 key,
                 Wording(
                     "BAT110",
                     "no_meaning_action",
                     action=action,
-                    action_2=tuple(f'"{each}"' for each in Action if each in _OPTIONS[key].actions),
+                    action_2=tuple(f'"{each}"' for each in Action if each in _KEYS[key].options),
                 ),
             )
 

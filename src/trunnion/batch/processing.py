@@ -42,7 +42,7 @@ from trunnion.jobs.simulate.simulating import simulate
 from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, foreign
 from trunnion.simulation.cutting.shares import DamagedShareError, Share
 from trunnion.verification import Check, Verification
 
@@ -209,7 +209,8 @@ def _convert(
 ) -> _Done:
     arguments |= {name: _machine(arguments[name]) for name in ("machine", "to_machine") if arguments.get(name)}
     with output_group(remembers=False) as group:
-        found = convert_beside(file, **arguments, output=result / task.result, observer=observer, group=group)
+        given: Any = {**arguments, "output": result / task.result}
+        found = convert_beside(file, given, observer, group)
     if found.posted is not None and found.posted.verification is not None:
         _add_proof(figures, found.posted.verification, found.posted.toolpaths)
     figures["points"] = point_count([found.toolpath])
@@ -235,7 +236,7 @@ def _failures(file: str, found: Verification) -> list[Problem]:
 
 def _failure(file: str, check: Check) -> Problem:
     line = next((place.nc_line for place in check.places if not place.nc_file), 0)
-    return Problem(shown(file), line, check.summary, code=check.key)
+    return Problem(shown(file), line, foreign(check.summary, "", check.key))
 
 
 def _simulate(
@@ -251,7 +252,7 @@ def _simulate(
         found = simulate(file, **given, observer=observer)
     figures |= simulation_figures(found)
     if task.report:
-        replace(found, seconds=0.0).write_report(result / task.report)
+        write_report(replace(found, seconds=0.0), result / task.report)
     if found.passed:
         return Status.PASSED, found.remarks
     return Status.FAILED, [*_findings(task.file, found), *found.remarks]

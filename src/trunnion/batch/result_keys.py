@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import trunnion
+from trunnion.version import __version__
 
 
 def digest(content: bytes) -> str:
@@ -20,11 +20,11 @@ def digest(content: bytes) -> str:
 def program_version() -> str:
     """Return the version of Trunnion, with a checksum of its own files: two builds of one version are told apart."""
     found = hashlib.sha256()
-    root = Path(trunnion.__file__).parent
+    root = Path(__file__).parents[1]
     files = sorted((each.relative_to(root).as_posix(), each) for each in root.rglob("*") if _counts(each))
     for name, path in files:
         found.update(f"{name}\0{digest(path.read_bytes())}\n".encode())
-    return f"{trunnion.__version__}+{found.hexdigest()[:16]}"
+    return f"{__version__}+{found.hexdigest()[:16]}"
 
 
 def _counts(path: Path) -> bool:

@@ -11,13 +11,11 @@ from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_fold
 from trunnion.cli.terminal_text import warning_line
 from trunnion.controls import load_control
 from trunnion.dialect_names import WRITTEN_DIALECTS
-from trunnion.errors import InputError, argument_problem
 from trunnion.files import check_outputs
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.guard import files_read
-from trunnion.jobs.inputs.reading import load_machine, read_cl
-from trunnion.jobs.job import STDIN, Given
-from trunnion.messages import Wording
+from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.job import Given
 from trunnion.wording import counted
 
 
@@ -25,18 +23,15 @@ def run(given: Given) -> int:
     """Convert one program; 1 if what came of it is forced."""
     machine = load_machine(given.machine) if given.machine else None
     to_machine = load_machine(given.to_machine) if given.to_machine else None
-    dialect = _dialect(given)
-    extension = WRITTEN_DIALECTS[dialect] if to_machine is None else load_control(to_machine.control).extension
+    _told_of_dialect(given)
+    extension = WRITTEN_DIALECTS[given.to_dialect or "clsf"]
+    if to_machine is not None:
+        extension = load_control(to_machine.control).extension
     target = _target_file(given, extension)
-    own = {
-        "machine": machine, "to_machine": to_machine, "output": output_place(target), "dialect": dialect,
-        "settings": _settings(given),
-    }  # fmt: skip
-    arguments = given.arguments("units", "strict")
+    own = {"machine": machine, "to_machine": to_machine, "output": output_place(target)}
+    arguments = given.arguments()
     if machine is not None:
         arguments["nc"] = given.nc
-    if given.strict and machine is None and given.nc != STDIN:
-        read_cl(arguments["nc"], units=given.units, dialect=given.dialect, strict=True)
     converted = convert(**{**arguments, **own}, observer=ConversionTerminal())
     if given.to_cl and converted.settings:
         tell(_post_hint(target, given.machine, converted.settings))
@@ -49,27 +44,12 @@ def run(given: Given) -> int:
     return 0 if converted.passed else 1
 
 
-def _dialect(given: Given) -> str:
-    """Return what the CL file is written in. Until the next version ``--dialect`` alone says it, as it did before."""
+def _told_of_dialect(given: Given) -> None:
+    """Take ``--dialect`` alone for ``--to-dialect``, as it was before; a warning says so until the next version."""
     if given.to_dialect is None and given.dialect is not None and given.to_cl:
         what = "--dialect is what a CL file is read in; to say what it is written in, --to-dialect does"
         print(warning_line("trunnion convert", what, "ARG190"), file=sys.stderr)
         given.values["to_dialect"], given.values["dialect"] = given.dialect, None
-    if given.to_dialect is not None and not given.to_cl:
-        raise InputError(argument_problem("to_dialect", Wording("CNV110", "dialect_without_cl_file")))
-    return given.to_dialect or "clsf"
-
-
-def _settings(given: Given) -> dict[str, str]:
-    """Return the settings, with how a CL file is read."""
-    settings = dict(given.settings)
-    for name, key in (("units", "cl_units"), ("dialect", "dialect")):
-        if given.values[name] is None:
-            continue
-        if given.machine is not None:
-            raise InputError(argument_problem(name, Wording("ARG130", "only_for_cl_files")))
-        settings[key] = given.values[name]
-    return settings
 
 
 def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final, NoReturn
 
-from trunnion import __version__
 from trunnion.cli.help_texts import command_help, overview
 from trunnion.cli.post_mistakes import post_mistake
 from trunnion.cli.terminal_text import error_line, warning_line
@@ -14,6 +13,7 @@ from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS
 from trunnion.options.kinds import Setting, Switch, WrongValueError
 from trunnion.options.option import Many, Option
+from trunnion.version import __version__
 from trunnion.wording import nearest_word
 
 #: The code of a command line that cannot be understood, and that of an option with an earlier name.

@@ -6,7 +6,7 @@ from typing import Final
 from trunnion.jobs.job import Given
 
 #: Options that stand beside a project, although it has a key for them.
-_BESIDE: Final = ("cl", "strict")
+_BESIDE: Final = ("cl", "strict", "settings")
 
 
 def names_project(files: Sequence[str]) -> bool:

@@ -9,7 +9,8 @@ from trunnion.files import check_outputs
 from trunnion.jobs.job import Given
 from trunnion.jobs.post_project.operation_programs import programs_of_operations
 from trunnion.jobs.post_project.posting import ProjectResult, post_project
-from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Division, Project
 
 

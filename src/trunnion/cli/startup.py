@@ -1,25 +1,8 @@
-"""``trunnion post`` reads its first CL file in a thread while the planner, the writers and the readers are imported.
+"""``trunnion post``: CL files, a project, or either of them again and again."""
 
-Reading first and importing afterwards lengthens the post of a million points by a tenth (2.60 to 2.86 s on the machine
-where this was measured).
-
-Numba is imported first, while few calls are open. Python gives back the memory of its calls in pieces of 16 KB: where a
-loop's calls cross the border of a piece, it is mapped and given back each time. Imported by the readers of CL files,
-dozens of calls deeper, Numba has such a loop: 16,000 times, which lengthens the post of 200 lines by a sixth (1.34 to
-1.61 s of processor time).
-"""
-
-from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING
-
-import trunnion.jit
-from trunnion.cli.cl_files import begin_reading
+from trunnion.cli.post_files import post_files
 from trunnion.cli.post_mistakes import names_project
 from trunnion.jobs.job import Given
-
-if TYPE_CHECKING:  # imported while the first CL file is read
-    from trunnion.files import OutputGroup
-    from trunnion.jobs.observer import Observer
 
 
 def run(given: Given) -> int:
@@ -33,23 +16,3 @@ def run(given: Given) -> int:
 
         return post_project(given)
     return post_files(given)
-
-
-def post_files(given: Given, group: "OutputGroup | None" = None, observer: "Observer | None" = None) -> int:
-    """Post every CL file; programs appear with those of the group, if there is one."""
-    if trunnion.jit.is_first_run():  # compiling takes longer than all else: the second process should begin at once
-        from trunnion.jobs import kernels
-
-        trunnion.jit.compile_ahead(kernels.POSTING)
-    executor = ThreadPoolExecutor(1)
-    try:
-        settings = dict(given.settings)
-        coming = begin_reading(
-            given.cl, settings.get("cl_units"), given.strict, executor, settings.get("dialect"),
-            settings.get("spline_tolerance", ""),
-        )  # fmt: skip
-        from trunnion.cli.post import post
-
-        return post(given, coming, group, observer)
-    finally:
-        executor.shutdown(wait=False, cancel_futures=True)  # it may wait for stdin, which nobody needs any more

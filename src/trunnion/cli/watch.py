@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Protocol
 
 from trunnion.cli.post import files_by_target, simulation_of
+from trunnion.cli.post_files import post_files
 from trunnion.cli.post_mistakes import names_project
 from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of
 from trunnion.cli.results import print_result, tell
-from trunnion.cli.startup import post_files
 from trunnion.cli.terminal import warn_of_old
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
@@ -24,7 +24,8 @@ from trunnion.jobs.observer import Observer
 from trunnion.jobs.post_project.posting import post_into
 from trunnion.jobs.post_project.setups import ProjectOptions
 from trunnion.jobs.post_project.watching import FolderNotices, Waiting, mentioned_files, watch
-from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Project
 from trunnion.jobs.simulate.posted import simulation_files
 from trunnion.messages import Wording

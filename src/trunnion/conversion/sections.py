@@ -112,6 +112,7 @@ def assign_events(
     sections: Sequence[ProgramSection],
     coolants: Mapping[int, str],
     template_lines: Collection[int],
+    smoothing: Collection[str],
 ) -> list[list[ProgramEvent]]:
     """Return the events of each section.
 
@@ -121,13 +122,16 @@ def assign_events(
 
     coolants         M number -> CL word
     template_lines   lines of the program that were written from templates
+    smoothing        kinds of events that set the control's smoothing
     """
     assigned: list[list[ProgramEvent]] = []
     begin = 0
     for k, section in enumerate(sections):
         end = section.end_event if k + 1 < len(sections) else len(events)
         inside = range(section.first_event, section.end_event)
-        own = [events[n] for n in range(begin, end) if n in inside or _concerns_others(events[n], template_lines)]
+        others = (n for n in range(begin, end) if n not in inside)
+        after = {n for n in others if _concerns_others(events[n], template_lines, smoothing)}
+        own = [events[n] for n in range(begin, end) if n in inside or n in after]
         row = int(section.rows[0])
         running = _coolant_running(events[: section.first_event], coolants)
         if running and not any(event.row <= row and _is_coolant(event, coolants) for event in own):
@@ -150,8 +154,9 @@ def _is_coolant(event: ProgramEvent, coolants: Mapping[int, str]) -> bool:
     return event.kind == "coolant" or (event.kind == "m" and event.value in coolants)
 
 
-def _concerns_others(event: ProgramEvent, template_lines: Collection[int]) -> bool:
+def _concerns_others(event: ProgramEvent, template_lines: Collection[int], smoothing: Collection[str]) -> bool:
     """Whether an event after the path of one operation has a meaning for the next one."""
     if event.file == 0 and event.line in template_lines:
         return False
-    return not (event.kind == "coolant" and event.value == "off") and event.kind not in ("end", "cycle832")
+    switches_off = event.value == "off" if event.kind == "coolant" else event.kind in smoothing and not event.value
+    return not switches_off and event.kind != "end"

@@ -135,7 +135,7 @@ class _ToolpathBuilder:
         self, sections: Sequence[ProgramSection], events: Sequence[ProgramEvent], phases: PhaseComments
     ) -> tuple[Operation, ...]:
         template_lines = self._headers.template_lines
-        assigned = assign_events(events, sections, self._coolants, template_lines)
+        assigned = assign_events(events, sections, self._coolants, template_lines, self._reader.lost_smoothing)
         builder = EventBuilder(
             self._run, phases.phase_of, self._coolants, template_lines, self._reader.lost_smoothing, self._warn
         )

@@ -7,6 +7,8 @@ Out:    the line to correct, what is wrong in it, and the cure. Where no known m
 import re
 from typing import Final, NamedTuple
 
+from trunnion.messages import Wording
+
 _COMMENT: Final = re.compile(r"//|;|--|/\*|REM\b|'")
 _CURLY: Final = re.compile("[“”„‟‘’‚«»]")
 _KEY: Final = re.compile(r"[A-Za-z0-9_.-]+|\"[^\"]*\"|'[^']*'")

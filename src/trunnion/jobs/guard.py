@@ -17,7 +17,8 @@ from trunnion.files import check_outputs
 from trunnion.jobs.inputs.input_files import definition_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, load_machine
 from trunnion.jobs.job import STDIN, Given
-from trunnion.jobs.project.file import library_files, load_project, project_files, project_inputs
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.named_files import library_files, project_files, project_inputs
 from trunnion.jobs.result_output import check_output_name
 from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, FileOut

@@ -112,6 +112,10 @@ class Wording:
         """Return the same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
         return self._changed(self.parameters, (*self.around, (sentence, _plain(parameters))))
 
+    def parameter(self, name: str) -> object:
+        """Return a parameter; None if there is none of the name."""
+        return dict(self.parameters).get(name)
+
     def bare(self) -> Self:
         """Return the same without sentences around it."""
         return self._changed(self.parameters, ())

@@ -22,6 +22,7 @@ from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.concurrency import prefetch
 from trunnion.errors import Severity
 from trunnion.machines import KinematicParameters, Machine, forward, kinematic_parameters, tool_axes
+from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.splines import Splines
@@ -55,10 +56,20 @@ class Diagnostic:
     """Something in a program that the reader does not know, does not simulate or finds odd; ``line`` counts from 1."""
 
     line: int
-    text: str
+    wording: Wording
     severity: Severity = Severity.ERROR
     file: str = ""
-    code: str = ""
+
+    @property
+    def text(self) -> str:
+        """What it says, with its cure."""
+        what, cure = self.wording.what, self.wording.cure
+        return f"{what}; {cure}" if cure else what
+
+    @property
+    def code(self) -> str:
+        """Of what kind it is, such as ``NC211``."""
+        return self.wording.code
 
     def __str__(self) -> str:
         """Return ``file:line: severity: text [code]``."""

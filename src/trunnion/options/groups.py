@@ -3,7 +3,20 @@
 from typing import Final
 
 from trunnion.dialect_names import READ_DIALECTS
-from trunnion.options.kinds import Choice, FileIn, FileOut, Number, Setting, Switch, Text, angle, length, whole
+from trunnion.options.kinds import (
+    Choice,
+    FileIn,
+    FileOut,
+    Measure,
+    Number,
+    Point,
+    Setting,
+    Switch,
+    Text,
+    angle,
+    length,
+    whole,
+)
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.options.option import Group, Level, Many, Option
 from trunnion.options.words import FEEDS
@@ -16,7 +29,7 @@ MACHINE: Final = Option(
 
 OTHER_MACHINE: Final = MACHINE.but(name="to_machine", flag="--to-machine", key="")
 
-SETTINGS: Final = Option("settings", "--set", Setting(), many=Many.REPEAT)
+SETTINGS: Final = Option("settings", "--set", Setting(), many=Many.REPEAT, key="settings")
 
 SUBPROGRAMS: Final = Option(
     "subprograms",
@@ -25,6 +38,7 @@ SUBPROGRAMS: Final = Option(
     "files of the subprograms that it calls; no others are opened",
     many=Many.LIST,
     key="subprograms",
+    level=Level.OWN,
     aliases=("--with",),
 )
 
@@ -79,24 +93,40 @@ POSTING: Final = Group(
     ),
 )
 
-ZERO: Final = Option("zero", "--zero", Text("X,Y,Z"), "the workpiece zero on the machine, mm", key="zero_mm")
+#: The setting ``tool_length`` takes no more, mm.
+LONGEST_TOOL: Final = 10_000.0
+
+ZERO: Final = Option(
+    "zero", "--zero", Point("X,Y,Z"), "the workpiece zero on the machine, mm", key="zero_mm", level=Level.OWN
+)
 
 TOOL_LENGTH: Final = Option(
-    "tool_length", "--tool-length", Text("MM"), "length of the tool, gauge point to tip", key="tool_length_mm"
+    "tool_length",
+    "--tool-length",
+    Measure("MM", above=0.0, most=LONGEST_TOOL),
+    "length of the tool, gauge point to tip",
+    key="tool_length_mm",
+    level=Level.OWN,
 )
 
 SETUP: Final = Group("where the part sits", (ZERO, TOOL_LENGTH))
 
+#: The same where they are settings too.
+SETUP_AS_SETTINGS: Final = SETUP.but(zero={"setting": "zero"}, tool_length={"setting": "tool_length"})
+
+WORK_OFFSET: Final = Option("work_offset", "--work-offset", Text("G", example="G54"), key="work_offset")
+
 CLAMPING: Final = Group(
     "how the part is clamped",
     (
-        Option("turn", "--turn", angle("a turn", -360.0, 360.0, "45"), key="turn_deg"),
+        Option("turn", "--turn", angle("a turn", -360.0, 360.0, "45"), key="turn_deg", level=Level.OWN),
         Option(
             "tilt",
             "--tilt",
             angle("a tilt", -90.0, 90.0, "30"),
             "before that it is tilted about X of the program, right-handed",
             key="tilt_deg",
+            level=Level.OWN,
         ),
     ),
 )
@@ -126,7 +156,12 @@ BODIES: Final = Group(
     (
         STOCK,
         Option(
-            "part", "--part", FileIn("MESH"), "the finished part, to compare with what is left of the stock", key="part"
+            "part",
+            "--part",
+            FileIn("MESH"),
+            "the finished part, to compare with what is left of the stock",
+            key="part",
+            level=Level.OWN,
         ),
         TOOLS,
         Option(
@@ -146,6 +181,7 @@ BODIES: Final = Group(
             "a fixture, as the program counts",
             many=Many.REPEAT,
             key="fixtures",
+            level=Level.OWN,
         ),
     ),
 )

@@ -20,9 +20,13 @@ class WrongValueError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """Any text; the function that takes it knows what it may be."""
+    """Any text; the function that takes it knows what it may be.
+
+    example  of one, for messages about a file that states it
+    """
 
     metavar: str = "TEXT"
+    example: str = ""
 
     def parse(self, text: str) -> Any:
         """Return the value of a text."""
@@ -31,6 +35,25 @@ class Text:
     def check(self, value: object) -> Any:
         """Return the value itself."""
         return value
+
+
+@dataclass(frozen=True, slots=True)
+class Point(Text):
+    """Three numbers with commas, in files a list of them; the function that takes it judges the text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measure(Text):
+    """One number; the function that takes it judges the text, and knows what stands for none.
+
+    above, least, most  bounds in files, which state it as a number
+    is_whole            it has no decimals
+    """
+
+    above: float | None = None
+    least: int | None = None
+    most: float | None = None
+    is_whole: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,10 +36,12 @@ class Level(Enum):
 
     WHOLE  the project as a whole
     SETUP  each set-up, or all of them
+    OWN    each set-up: what is given in its place is refused where there are several
     """
 
     WHOLE = "whole"
     SETUP = "setup"
+    OWN = "own"
 
 
 #: Any text.

@@ -9,6 +9,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES, load_reader
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
@@ -86,16 +87,8 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     """
     name = family_of(machine) if family is None else family
     if not _has_reader(name):
-        what = f"its control is a {name}, whose programs cannot be read yet"
-        raise InputError(
-            Problem(
-                machine.key,
-                0,
-                what,
-                f"name a machine with one of {', '.join(filter(_has_reader, FAMILIES))}",
-                code="NC120",
-            )
-        )
+        others = tuple(filter(_has_reader, FAMILIES))
+        raise InputError(Problem(machine.key, 0, Wording("NC120", "no_reader", family=name, others=others)))
     reader: FamilyReader = load_reader(name)
     if reader.offsets_of is not None:
         reader = replace(reader, work_offsets=reader.offsets_of(machine))

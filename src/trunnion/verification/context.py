@@ -1,7 +1,8 @@
 """What checks are given: the run, the settings, and the expected path with its matching; and how they name places."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 import numpy as np
 
@@ -158,19 +159,32 @@ class ComparedContext(Context):
         return self.place(by, 0.0, f"this is where the rotary axes were positioned for {self.block_name(row)}")
 
 
-def check_from_places(key: str, title: str, places: Sequence[Place], good: str, count: int | None = None) -> Check:
-    """Return a check that passes if there are no places.
+def check_from_places(key: str, title: str, places: Sequence[Place], good: str) -> Check:
+    """Return a check that passes, with the summary ``good``, if there are no places; else the first is the summary."""
+    return Faults(list(places), len(places)).check(key, title, good)
 
-    Parameters
-    ----------
-    good
-        The summary of a passed check; that of a failed one is its first place.
-    count
-        How many faults there are, if more than places.
-    """
-    count = len(places) if count is None else count
-    if not places:
-        return Check(key, title, True, good)
-    first = places[0]
-    more = f", and {count - 1} more" if count > 1 else ""
-    return Check(key, title, False, f"{first.block_name}: {first.told}{more}", places=tuple(places[:MAX_PLACES]))
+
+@dataclass(slots=True, eq=False)
+class Faults:
+    """What a check finds: how many faults, and the places of the first of them, so that a million cost no more."""
+
+    places: list[Place] = field(default_factory=list)
+    count: int = 0
+
+    def add(self, *places: Place) -> None:
+        """Take faults, each with its place."""
+        self.add_rows(len(places), places)
+
+    def add_rows(self, count: int, places: Iterable[Place]) -> None:
+        """Take ``count`` faults; their places are made one by one, as long as they are named."""
+        self.count += count
+        self.places += islice(places, max(MAX_PLACES - len(self.places), 0))
+
+    def check(self, key: str, title: str, good: str) -> Check:
+        """Return the check: passed with the summary ``good`` if there are no faults; else the first is the summary."""
+        if not self.places:
+            return Check(key, title, True, good)
+        first = self.places[0]
+        more = f", and {self.count - 1} more" if self.count > 1 else ""
+        summary = f"{first.block_name}: {first.told}{more}"
+        return Check(key, title, False, summary, places=tuple(self.places[:MAX_PLACES]))

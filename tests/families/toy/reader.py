@@ -5,6 +5,7 @@ from typing import Final
 
 from trunnion.arrays import Codes
 from trunnion.machines import Axis, Machine
+from trunnion.messages import foreign
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.source_text import SourceText
@@ -24,7 +25,7 @@ _MOTIONS: Final = {"RAPID": 0, "LINE": 10, "CW": 20, "CCW": 30}
 
 class _NoParameters:
     def value(self, key: int | str) -> Value:
-        raise BlockError("the toy has no parameters")
+        raise BlockError(foreign("the toy has no parameters", code="NC210"))
 
     def is_set(self, key: int | str) -> bool:
         return False
@@ -70,7 +71,7 @@ class ToyInterpreter(Rs274Interpreter[ActiveProgram]):
     def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
         match = _COMMAND.match(text)
         if match is None:
-            raise BlockError("no command")
+            raise BlockError(foreign("no command", code="NC210"))
         command, rest = match.group(), text[match.end() :]
         control = self.control
         if command == "TOOL":
@@ -94,7 +95,7 @@ class ToyInterpreter(Rs274Interpreter[ActiveProgram]):
     def _execute_words(self, command: str, block: Block) -> None:
         for code in block.m:
             if not self._common_m_code(code):
-                raise BlockError(f"unknown M{code}")
+                raise BlockError(foreign(f"unknown M{code}", code="NC210"))
         self._feed_and_speed(block)
         if command == "PARK":
             self.control.motion = 0

@@ -8,6 +8,7 @@ from tests.support.flanks import PUBLISHED, mill
 BOUNDS = {"default": (1.0, 0.122)}
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", BOUNDS)
 def test_what_is_left_is_within_the_bound(name: str) -> None:
     side, bound = BOUNDS[name]

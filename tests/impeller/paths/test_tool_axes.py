@@ -117,11 +117,13 @@ def test_a_holder_that_meets_the_plates_is_named() -> None:
     assert "longer tool" in str(caught.value)
 
 
+@pytest.mark.nightly
 def test_a_cutter_without_room_is_named() -> None:
     with pytest.raises(InputError, match=r"cutter and plate \d do not clear each other"):
         choose_axes(floor(0.2), necked(4.0, 25.0), slot(2.05, 20.0))
 
 
+@pytest.mark.nightly
 def test_fewer_clearances_are_kept_where_not_all_can_be_had() -> None:
     found = choose_axes(floor(0.2), necked(4.0, 20.0), slot(3.2, 30.0))  # the shank of 6 mm has 0.1 mm there
     assert 0.0 <= found.share < 1.0
@@ -249,6 +251,7 @@ def test_a_clearance_beyond_what_is_measured_is_told_as_such(distance: float, wo
     assert str(PartClearance(Role.HOLDER, "blade 1", distance, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))) == words
 
 
+@pytest.mark.nightly
 def test_a_field_without_end_is_refused_and_one_that_only_bends_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     solver = "trunnion.impeller.paths.axis_field.solve_linear_program"
     calls = []

@@ -45,6 +45,7 @@ def off(impeller: Impeller, mesh: TriangleMesh) -> float:
     return float(off_surfaces(impeller, mesh.vertices, fillets).max())
 
 
+@pytest.mark.nightly
 def test_an_impeller_with_splitters_is_written_and_read_back(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -97,6 +98,7 @@ def test_the_published_impeller_is_one_solid_of_exact_surfaces(tmp_path: Path) -
     assert b"CYLINDRICAL_SURFACE(" in step
 
 
+@pytest.mark.nightly
 def test_the_same_order_gives_the_same_bytes(tmp_path: Path) -> None:
     changes = (("number = 6", "number = 2"), ("fillet_mm = 2.0", "fillet_mm = 1.0"))
     impeller = trunnion.load_impeller(changed(tmp_path, "impeller", *changes))

@@ -23,7 +23,7 @@ def test_a_cl_file_becomes_one_of_another_dialect(
     assert main(["convert", str(CL), "--to-cl", "--to-dialect", dialect, "--output", str(tmp_path)]) == 0
     said = capfd.readouterr().err
     assert f"{into}: 23 points, 1 operation" in said
-    found = trunnion.convert(CL, to_cl=True, dialect=dialect)
+    found = trunnion.convert(CL, to_cl=True, to_dialect=dialect)
     assert found.passed
     assert found.text == into.read_text(encoding="utf-8")
     assert ("phases of motion" in said) is (dialect != "clsf")
@@ -35,7 +35,7 @@ def test_a_cl_file_becomes_one_of_another_dialect(
 def test_units_are_those_of_the_file_or_of_the_setting(tmp_path: Path) -> None:
     inch = tmp_path / "inch.ncl"
     inch.write_text("UNITS / INCHES\n$$-> CUTTER / 0.5\nLOADTL / 1\nFEDRAT / 10.0, IPM\nGOTO / 1.2345, 2, 3\nFINI\n")
-    text = trunnion.convert(inch, to_cl=True, dialect="catia").text
+    text = trunnion.convert(inch, to_cl=True, to_dialect="catia").text
     assert text is not None
     assert "UNITS/INCHES" in text
     assert "GOTO  / 1.234500, 2.000000, 3.000000" in text
@@ -79,14 +79,14 @@ def test_a_program_without_its_machine_is_told_so(tmp_path: Path) -> None:
 def test_what_would_read_back_otherwise_is_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(NclWriter, "spindle", lambda self, event: self.statement("SPINDL", "OFF"))
     with pytest.raises(trunnion.RefusedError, match="SpindleOff instead of SpindleOn"):
-        trunnion.convert(CL, to_cl=True, dialect="ncl", output=tmp_path / "a.ncl")
+        trunnion.convert(CL, to_cl=True, to_dialect="ncl", output=tmp_path / "a.ncl")
     assert not list(tmp_path.iterdir())
 
 
 def test_packed_files_and_streams(tmp_path: Path, capfdbinary: pytest.CaptureFixture[bytes]) -> None:
     packed = tmp_path / "part.cls.gz"
     packed.write_bytes(gzip.compress(CL.read_bytes()))
-    expected = trunnion.convert(CL, to_cl=True, dialect="ncl").text
+    expected = trunnion.convert(CL, to_cl=True, to_dialect="ncl").text
     assert main(["convert", str(packed), "--to-cl", "--to-dialect", "ncl", "--output", str(tmp_path)]) == 0
     assert (tmp_path / "part.ncl").read_text(encoding="utf-8") == expected
-    assert trunnion.convert(io.BytesIO(CL.read_bytes()), to_cl=True, dialect="ncl").text == expected
+    assert trunnion.convert(io.BytesIO(CL.read_bytes()), to_cl=True, to_dialect="ncl").text == expected

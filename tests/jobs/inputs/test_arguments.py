@@ -86,7 +86,7 @@ WRONG: list[tuple[Callable[..., Any], dict[str, Any], dict[str, list[Any]]]] = [
         {"first": [None, 5], "second": [None], "machine": [None], "to_machine": [5], "tolerance": [None, "a"],
          "subprograms": ["abc"], "to_subprograms": ["abc"]},
     ),
-    (trunnion.write_report, {"verification": None, "file": "r.html"}, {"verification": [None, 5]}),
+    (trunnion.write_report, {"result": None, "file": "r.html"}, {"result": [None, 5]}),
 ]  # fmt: skip
 
 #: What the machine's setup is checked with stands in settings.

@@ -101,7 +101,7 @@ def test_a_place_is_told_against_the_drawing(
 @pytest.mark.parametrize("dialect", WRITERS)
 def test_a_cl_file_of_any_dialect_carries_the_clamping(folder: Path, tmp_path: Path, dialect: str) -> None:
     other = tmp_path / "other.cl"
-    trunnion.convert(folder / "c.cls", to_cl=True, dialect=dialect, output=other)
+    trunnion.convert(folder / "c.cls", to_cl=True, to_dialect=dialect, output=other)
     assert trunnion.read_cl(other).clamping == Clamping(30.0, 20.0)
 
 

@@ -101,7 +101,7 @@ def test_the_stock_of_one_set_up_is_that_of_the_next(folder: Path, capsys: pytes
     assert page.count("data:image/png;base64,iVBORw0KGgo") == 4  # two of each set-up
     assert "<h3>bottom</h3>" in page
     assert "bottom: deep.ngc:7 N60" in page
-    found.write_report(folder / "out.json")
+    trunnion.write_report(found, folder / "out.json")
     assert json.loads((folder / "out.json").read_text())["passed"]
     for name in ("plate.toml", "nc/slot.ngc"):
         before = (folder / name).read_bytes()

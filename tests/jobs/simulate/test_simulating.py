@@ -33,7 +33,7 @@ def test_the_volume_of_each_block_and_minute_is_told(tmp_path: Path) -> None:
     np.testing.assert_allclose(blocks.rate, blocks.removed / [50.0 / 500.0, 40.0 / 250.0], rtol=2e-3)
     assert blocks.removed.sum() == pytest.approx(operation.removed, rel=1e-12)
     data = tmp_path / "found.json"
-    found.write_report(data)
+    trunnion.write_report(found, data)
     told = json.loads(data.read_text())["operations"][0]["blocks"]
     assert (told["line"], len(told["removed_mm3"]), len(told["mm3_per_min"])) == ([7, 8], 2, 2)
 

@@ -215,6 +215,7 @@ def test_published_programs_hit_nothing_and_a_long_part_does(
     assert any("clamp" in each.between for each in check_collisions(run, [clamp], tools))
 
 
+@pytest.mark.nightly
 def test_what_is_at_a_nose_of_unknown_place_hits_fixtures_and_no_machine() -> None:
     unknown = load_machine("yl569", {"workpiece": {"zero_mm": [0, 0, 0]}})
     stated = load_machine("yl569", {"workpiece": {"zero_mm": [0, 0, 0]}, "spindle": {"gauge_point_mm": [0, 0, 0]}})

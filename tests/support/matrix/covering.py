@@ -27,9 +27,10 @@ def covering(machine: str, control: str) -> str:
 
 def cases(paths: Sequence[str]) -> list[object]:
     """Machine, control and path of the whole matrix, as parameters; what is not in the array is left to nightly."""
-    return [
-        pytest.param(machine, control, path, marks=[] if path == covering(machine, control) else pytest.mark.nightly)
-        for path in paths
-        for control in CONTROLS
-        for machine in MACHINES
-    ]
+    return [case(machine, control, path) for path in paths for control in CONTROLS for machine in MACHINES]
+
+
+def case(machine: str, control: str, path: str) -> object:
+    """One cell of the matrix, left to nightly if the array does without it."""
+    rest = [] if path == covering(machine, control) else [pytest.mark.nightly]
+    return pytest.param(machine, control, path, marks=rest)

@@ -156,6 +156,7 @@ def whole(recording: Recording) -> tuple[Ints, Floats]:
     return np.flatnonzero(np.isfinite(shown).all(axis=1)), shown
 
 
+@pytest.mark.nightly
 def test_nothing_is_lost_but_in_the_gap_that_is_marked(recordings: tuple[Recording, Recording]) -> None:
     beside, cut = recordings
     gaps = np.flatnonzero(cut.marked(Mark.GAP))

@@ -140,6 +140,7 @@ def test_an_axis_that_was_off_fails_with_its_block(
     assert main(["verify", str(BLADE_FINISH), "--machine", "yl569", "--recorded", str(recording_file)]) == 0
 
 
+@pytest.mark.nightly
 def test_one_recording_over_all_programs_of_a_part_is_in_the_report(tmp_path: Path) -> None:
     main_program, file, report = impeller(tmp_path), tmp_path / "impeller.csv", tmp_path / "impeller.json"
     files = [

@@ -8,6 +8,7 @@ from trunnion.cl import DIALECTS
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.writers import WRITERS
 from trunnion.errors import InputError, Problem, RefusedError, argument_problem, merge_repeated, setting_problem
+from trunnion.jobs.arguments import ConvertArguments
 from trunnion.jobs.inputs.reading import read_cl
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import Observer
@@ -24,6 +25,9 @@ _SETTINGS: Final[Mapping[str, tuple[str, ...]]] = {
 }
 
 _INCH: Final = 25.4
+
+#: What is said of a file whose statements nobody knows.
+_NO_CL_FILE: Final = "not_cl_file"
 
 
 def write_and_prove(
@@ -47,21 +51,22 @@ def write_and_prove(
 
 
 def convert_cl(
-    path: Path | BinaryIO, target: Target, dialect: str, settings: Settings | None, observer: Observer
+    path: Path | BinaryIO, target: Target, given: ConvertArguments, observer: Observer
 ) -> tuple[Toolpath, tuple[Problem, ...]]:
     """Read a CL file or stream of any dialect, and write it in another one; return the toolpath and all warnings."""
-    texts = _checked(settings)
+    texts = _checked(given["settings"])
+    units, read_in = (given["units"] or texts.get("cl_units"), given["dialect"] or texts.get("dialect"))
     try:
-        toolpath = read_cl(path, units=texts.get("cl_units"), dialect=texts.get("dialect"), observer=observer)
+        toolpath = read_cl(path, units=units, dialect=read_in, strict=given["strict"], observer=observer)
     except InputError as error:
-        if "not a CL file" not in error.problems[0].what:
+        if error.problems[0].wording.variant != _NO_CL_FILE:
             raise
         hint = argument_problem("machine", Wording("CNV110", "read_as_cl_file"))
         raise InputError((*error.problems, hint)) from None
     observer.problems(toolpath.remarks)
     inch = texts["units"] == "inch" if "units" in texts else toolpath.unit == _INCH
     clamped = () if toolpath.clamping is None else tuple(clamped_notices(toolpath.clamping))
-    remarks = write_and_prove(toolpath, target, dialect, inch=inch, comments=clamped)
+    remarks = write_and_prove(toolpath, target, str(given["to_dialect"]), inch=inch, comments=clamped)
     observer.problems(remarks)
     return toolpath, (*toolpath.remarks, *remarks)
 
@@ -71,7 +76,6 @@ def _checked(settings: Settings | None) -> dict[str, str]:
     texts = as_texts(settings)
     problems = [
         setting_problem(key, Wording("CNV111", "no_meaning_between_cl_files", allowed=tuple(_SETTINGS)))
-        for allowed in [" or ".join(_SETTINGS)]
         for key in texts.keys() - _SETTINGS.keys()
     ]
     for key, choices in _SETTINGS.items():

@@ -1,10 +1,11 @@
 """Conversion: an NC program back to a toolpath, and out again as a CL file or for another machine; CL to CL."""
 
 import io
-from collections.abc import Iterable, Mapping, Sequence
+import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, BinaryIO, ClassVar
+from typing import Annotated, BinaryIO, ClassVar, Unpack
 
 import numpy as np
 
@@ -13,23 +14,24 @@ from trunnion.cl.writers import WRITERS
 from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import INCH
 from trunnion.conversion import Conversion
-from trunnion.conversion.program_events import COMPENSATION_FINDINGS
+from trunnion.conversion.program_events import COMPENSATION_FINDINGS, COMPENSATION_WORDS
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, setting_problem
 from trunnion.files import OutputGroup
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
+from trunnion.jobs.arguments import ConvertArguments, taken
 from trunnion.jobs.convert.cl_files import convert_cl, write_and_prove
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path, check_paths, is_stream
 from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, read_program
-from trunnion.jobs.inputs.settings import Settings, control_setting_faults, set_up_machine
+from trunnion.jobs.inputs.reading import FilePath, as_machine, read_program
+from trunnion.jobs.inputs.settings import control_setting_faults, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.result_output import OutputLike, open_target, written_text
+from trunnion.jobs.result_output import open_target, written_text
 from trunnion.machines import Machine
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
@@ -86,19 +88,7 @@ class ConvertResult:
 
 
 def convert(
-    nc: FilePath | BinaryIO,
-    *,
-    machine: MachineLike | None = None,
-    to_machine: MachineLike | None = None,
-    to_cl: bool = False,
-    dialect: str = "clsf",
-    output: OutputLike = None,
-    subprograms: Sequence[FilePath] = (),
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
-    settings: Settings | None = None,
-    force: bool = False,
-    observer: Observer = SILENT,
+    nc: FilePath | BinaryIO, *, observer: Observer = SILENT, **given: Unpack[ConvertArguments]
 ) -> ConvertResult:
     """Convert an NC program to a CL file, or post it for another machine and prove it; or a CL file to another dialect.
 
@@ -110,9 +100,11 @@ def convert(
         The machine that it is for: a name, a path or a ``Machine``. None: ``nc`` is a CL file.
     to_machine, to_cl
         One of both: the machine for which it is posted, or True for a CL file.
-    dialect
+    to_dialect
         What the CL file is written in: ``"clsf"``, ``"catia"`` or ``"ncl"``. It is read back and compared before it
         appears.
+    units, dialect, strict
+        How a CL file is read, as ``trunnion.read_cl`` has it.
     output
         File of the result, or a binary stream; None: the result has the text. Never a file that is read.
     subprograms
@@ -123,7 +115,7 @@ def convert(
         Length of the tool there, gauge point to tip, mm.
     settings
         In place of what the program states; for the other machine as ``trunnion.post`` takes them. Between CL files:
-        ``cl_units`` and ``dialect`` of the one that is read, ``units`` of the one that is written.
+        ``units`` of the one that is written.
     force
         Convert what was understood, and write a program that must not run; its head says so.
     observer
@@ -150,79 +142,103 @@ def convert(
     >>> converted.posted.passed
     True
     """
-    return convert_beside(
-        nc, machine=machine, to_machine=to_machine, to_cl=to_cl, dialect=dialect, output=output,
-        subprograms=subprograms, zero=zero, tool_length=tool_length, settings=settings, force=force, observer=observer,
-    )  # fmt: skip
+    return convert_beside(nc, given, observer)
 
 
 def convert_beside(
-    nc: FilePath | BinaryIO,
-    *,
-    machine: MachineLike | None = None,
-    to_machine: MachineLike | None = None,
-    to_cl: bool = False,
-    dialect: str = "clsf",
-    output: OutputLike = None,
-    subprograms: Sequence[FilePath] = (),
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
-    settings: Settings | None = None,
-    force: bool = False,
-    observer: Observer = SILENT,
-    group: OutputGroup | None = None,
+    nc: FilePath | BinaryIO, given: ConvertArguments, observer: Observer, group: OutputGroup | None = None
 ) -> ConvertResult:
     """Convert as ``convert`` does; the result appears with those of the ``group``, if there is one."""
     check_observer(observer)
-    others = check_paths("subprograms", subprograms)
-    if (to_machine is None) is not to_cl:
-        raise InputError(argument_problem("to_machine", Wording("CNV110", "two_targets" if to_cl else "no_target")))
-    check_choice("dialect", dialect, tuple(WRITERS))
-    if machine is None:
-        _refuse_for_cl(to_machine=to_machine, subprograms=others, zero=zero, tool_length=tool_length, force=force)
-        source_file = nc if is_stream(nc) else check_path("nc", nc)
-        with open_target(output, inputs=[source_file] if isinstance(source_file, Path) else [], group=group) as target:
-            toolpath, remarks = convert_cl(source_file, target, dialect, settings, observer)
-        return ConvertResult(toolpath, {}, remarks, None, target.path, target.memory)
-    program = check_path("nc", nc)
-    if dialect != "clsf" and not to_cl:
-        raise InputError(argument_problem("dialect", Wording("CNV110", "dialect_of_program")))
+    arguments = _checked(taken(ConvertArguments, "convert", given))
+    if arguments["machine"] is None:
+        return _converted_cl(nc, arguments, observer, group)
+    return _converted_program(check_path("nc", nc), arguments, observer, group)
+
+
+def _checked(given: ConvertArguments) -> ConvertArguments:
+    """Return the arguments, of which those go together that are about the result."""
+    check_paths("subprograms", given["subprograms"])
+    if (given["to_machine"] is None) is not given["to_cl"]:
+        raise InputError(
+            argument_problem("to_machine", Wording("CNV110", "two_targets" if given["to_cl"] else "no_target"))
+        )
+    if given["to_dialect"] is None and given["dialect"] is not None and given["to_cl"]:
+        what = "dialect is what a CL file is read in; to say what it is written in, to_dialect does"
+        warnings.warn(what, FutureWarning, stacklevel=4)
+        given = {**given, "to_dialect": given["dialect"], "dialect": None}
+    if given["to_dialect"] is not None and not given["to_cl"]:
+        raise InputError(argument_problem("to_dialect", Wording("CNV110", "dialect_without_cl_file")))
+    dialect = given["to_dialect"] or "clsf"
+    check_choice("to_dialect", dialect, tuple(WRITERS))
+    return {**given, "to_dialect": dialect}
+
+
+def _converted_cl(
+    nc: FilePath | BinaryIO, given: ConvertArguments, observer: Observer, group: OutputGroup | None
+) -> ConvertResult:
+    """Return a CL file that was written in another dialect."""
+    _refuse_for_cl(**{name: given[name] for name in ("to_machine", "subprograms", "zero", "tool_length", "force")})
+    source = nc if is_stream(nc) else check_path("nc", nc)
+    read = [source] if isinstance(source, Path) else []
+    with open_target(given["output"], inputs=read, group=group) as target:
+        toolpath, remarks = convert_cl(source, target, given, observer)
+    return ConvertResult(toolpath, {}, remarks, None, target.path, target.memory)
+
+
+def _converted_program(
+    program: Path, given: ConvertArguments, observer: Observer, group: OutputGroup | None
+) -> ConvertResult:
+    """Return an NC program as a CL file, or as that of another machine."""
+    for name in ("units", "dialect"):
+        if given.get(name) is not None:
+            raise InputError(argument_problem(name, Wording("ARG130", "only_for_cl_files")))
+    to_cl, others = given["to_cl"], given["subprograms"]
+    machine, to_machine = given["machine"], given["to_machine"]
+    assert machine is not None
     source = as_machine(machine)
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     control = load_control(source.control)
     place = stated_place(program)
-    job = prepare(target_machine, settings, force=force)
+    job = prepare(target_machine, given["settings"], force=given["force"])
     if place.clamping is not None:
         job = replace(job, notices=placed_notices(place.clamping), clamping=place.clamping)
     check_conversion_settings(job, to_cl)
     definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
-    source = set_up_machine(source, zero, tool_length)
-    with open_target(output, inputs=[program, *others, *definitions], group=group) as target:
+    source = set_up_machine(source, given["zero"], given["tool_length"])
+    with open_target(given["output"], inputs=[program, *others, *definitions], group=group) as target:
         compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
         divided = job.subprograms(target.files, target.path) is not None
-        converter = _ProgramConverter(str(nc), observer, force)
+        converter = _ProgramConverter(str(program), observer, given["force"])
         converter.report(damaged_notices(program, place))
         run = read_program(program, machine=source, subprograms=others)
         converted = converter.read(run, control, None if to_cl else job.machine)
-        if subprograms and not (divided or to_cl):
-            converter.warn_of_one_program(1 + len(subprograms))
+        if others and not (divided or to_cl):
+            converter.warn_of_one_program(1 + len(others))
         carried = converter.carry(converted.settings, control, job, source)
+        posted = None
         if to_cl:
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
                 carried["units"] = INCH
             comments = [*job.notices, *(f"--set {key}={value}" for key, value in carried.items())]
             whole = conversion.with_whole_notices(converted.toolpath, control.family)
-            converter.report(write_and_prove(whole, target, dialect, comments=comments))
-            posted = None
+            converter.report(write_and_prove(whole, target, str(given["to_dialect"]), comments=comments))
         else:
-            given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
+            is_given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
             toolpath, notices = conversion.take_notices(converted.toolpath, control.family)
             job = replace(_with_settings(job, carried), notices=(*notices, *job.notices))
-            if not given:
+            if not is_given:
                 converter.warn_of_new_offset(run, job)
             posted = post_toolpaths([toolpath], job, target, observer)
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
+
+
+def _is_carried_over(found: Problem) -> bool:
+    """Whether the conversion itself carries over, or says, what a reader has noted."""
+    wording = found.wording
+    is_compensation = wording.variant in COMPENSATION_FINDINGS and wording.parameter("word") in COMPENSATION_WORDS
+    return is_compensation or found.code == _OF_BUILDER
 
 
 def _refuse_for_cl(**given: object) -> None:
@@ -299,17 +315,13 @@ class _ProgramConverter:
         """Return the toolpath of a run for another machine, None for a CL file; one that was not understood is
         refused.
         """
-        found = [
-            Problem(one.file, one.line, foreign(one.text, "", one.code), severity=one.severity)
-            for one in run.diagnostics
-        ]
+        found = [Problem(one.file, one.line, one.wording, severity=one.severity) for one in run.diagnostics]
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
             raise RefusedError(
                 (*errors[:_MOST_NAMED], Problem(self._file, 0, Wording("CNV120", "not_understood", count=len(errors))))
             )
-        told = [each for each in found if not each.what.startswith(COMPENSATION_FINDINGS) and each.code != _OF_BUILDER]
-        self.report(told)
+        self.report([each for each in found if not _is_carried_over(each)])
         converted = conversion.convert(run, control)
         toolpath, of_builder = conversion.carry_machine_words(converted.toolpath, run.machine, target)
         converted = replace(converted, toolpath=toolpath)

@@ -4,9 +4,9 @@ from typing import Final
 
 from trunnion.jobs.job import Job, job
 from trunnion.options.groups import BARE_JSON, JSON, MACHINE, OTHER_MACHINE, SETTINGS, STOCK, TOOLS
-from trunnion.options.kinds import Choice, FileIn, FileOut, Switch, Text, seconds, whole
+from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Switch, Text, seconds, whole
 from trunnion.options.option import Many, Option
-from trunnion.options.words import ACTIONS, SCHEMAS
+from trunnion.options.words import ACTIONS, MOST_TILES, SCHEMAS
 
 _FOLDER: Final = "for a folder"
 
@@ -56,7 +56,7 @@ _BATCH: Final = job(
     STOCK.but(help="simulate: as trunnion simulate has it", heading=_FOLDER),
     TOOLS.but(help="simulate: a tool; may be repeated", heading=_FOLDER),
     Option(
-        "tiles", "--tiles", Text("N"),
+        "tiles", "--tiles", Measure("N", least=1, most=MOST_TILES, is_whole=True),
         "simulate: tasks among which each simulation is divided; by default one", heading=_FOLDER,
     ),
     Option("report", "--report", Choice(("html", "json")), "a report of each file", heading=_FOLDER),

@@ -18,9 +18,10 @@ from trunnion.options.groups import (
     SETUP,
     SUBPROGRAMS,
     TOOL_LENGTH,
+    WORK_OFFSET,
     ZERO,
 )
-from trunnion.options.kinds import Choice, FileIn, FileOut, Number, Switch, Text, length, whole
+from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Number, Switch, Text, length, whole
 from trunnion.options.option import Level, Many, Option
 
 _CL: Final = Option("cl", "--cl", FileIn("CL", stdin=True), many=Many.REPEAT, key="cl")
@@ -39,33 +40,34 @@ _VERIFY: Final = job(
     Option(
         "tolerance", "--tolerance", _TOLERANCE,
         "how far a coordinate may be off, and in degrees a rotary axis; 0.001 (in inches 0.0013 mm)", default=0.001,
+        key="tolerance_mm",
     ),
     Option(
         "span", "--span", length("a tolerance", "0.001", "DEG"),
-        "how far the tool axis may be off between points; by default the definition's tolerance",
+        "how far the tool axis may be off between points; by default the definition's tolerance", key="span_deg",
     ),
     Option(
         "span_tip", "--span-tip", _TOLERANCE,
         "how far the tip may be off between points without TCP, and lines off the arc that they stand for",
+        key="span_tip_mm",
     ),
     Option("tool", "--tool", Text("T"), "tool that was called in place of the CL file's", default=""),
-    Option(
-        "work_offset", "--work-offset", Text("G"),
-        "work offset of the program; with --cl that of the control's definition", key="work_offset",
-        aliases=("--offset",),
+    WORK_OFFSET.but(
+        help="work offset of the program; with --cl that of the control's definition", aliases=("--offset",)
     ),
     Option(
         "edge", "--edge", whole("a cutting edge", "its D number, such as 1", "D"),
         "cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
     ),
-    READING.but(strict={"own": True}),
+    READING.but(units={"key": "units"}, dialect={"key": "dialect"}, strict={"own": True}),
     Option(
         "frame", "--frame", Choice(("first", "absolute")),
         "whose coordinate system the program's is: the first operation's, or the CAM's absolute one", default="first",
+        key="frame",
     ),
     ZERO,
     TOOL_LENGTH.but(help="length of the tool, for programs without TCP"),
-    FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed"),
+    FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed", key="feed"),
     Option(
         "feed_limit", "--feed-limit", length("a feed", "2000", "MM_MIN"),
         "the feed_limit of that post, in place of the CL file's",
@@ -143,8 +145,8 @@ _SIMULATE: Final = job(
         level=Level.WHOLE,
     ),
     Option(
-        "until", "--until", Text("BLOCK"), "N number of the block before which the last program ends", key="until",
-        level=Level.WHOLE,
+        "until", "--until", Measure("BLOCK", least=0, is_whole=True),
+        "N number of the block before which the last program ends", key="until", level=Level.WHOLE,
     ),
     JSON,
     REPORT.but(help="findings, tables and pictures as a page (.html), or data (.json)", own=True, key=""),

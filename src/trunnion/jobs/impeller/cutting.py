@@ -218,7 +218,7 @@ def _cut(
 ) -> ImpellerCut:  # fmt: skip
     """As ``cut_impeller``: all files appear when it ends."""
     definition = found.definition
-    job = replace(job, papers=PaperFiles(report=files.report), forcing="")
+    job = replace(job, papers=PaperFiles(report=files.report), can_force=False)
     with open_target(files.program, papers={"report": files.report}, inputs=inputs) as target:
         naming = job.control.subprograms if job.subprograms(target.files, target.path) is not None else None
         steps = [step for step in definition.steps if step.name in chosen]

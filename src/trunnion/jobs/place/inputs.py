@@ -18,7 +18,7 @@ from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.planning import plan
 from trunnion.machines import Machine
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
 from trunnion.model.rotations import about_x
@@ -168,7 +168,7 @@ def _toolpaths_of(
 def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run:
     run = readers.run_program(program, machine, subprograms=subprograms)
     if run.errors:
-        found = [Problem(each.file, each.line, foreign(each.text, "", each.code)) for each in run.errors[:_MOST_NAMED]]
+        found = [Problem(each.file, each.line, each.wording) for each in run.errors[:_MOST_NAMED]]
         raise RefusedError(
             (*found, Problem(str(program), 0, Wording("PLC120", "not_understood", count=len(run.errors))))
         )

@@ -12,7 +12,8 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import SettingValue
 from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.place.bodies import BodiesInput, stock_mesh
-from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import PostedSetup, Project
 from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
@@ -50,7 +51,7 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
         raise InputError(Problem(str(project), 0, Wording("PLC160", "project_with_hooks")))
     setup = _setup(loaded, project, name)
     settings = dict(setup.settings)
-    angles, problems = checked_angles(setup.turn, setup.tilt), list[Problem]()
+    angles, problems = checked_angles(*setup.angles), list[Problem]()
     if Clamping(*angles).is_turned and settings.pop("zero", None) is not None:
         problems.append(
             Problem(

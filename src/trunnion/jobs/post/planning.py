@@ -194,7 +194,7 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program), *leaning]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
-        refused = Problem(file, 0, "no program is written", job.forcing, code="CTL940")
+        refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]

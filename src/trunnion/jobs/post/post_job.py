@@ -44,15 +44,9 @@ _MODES: Final = {
     "tcp": MachiningMode.TCP,
 }
 
-#: What a refusal says of ``force``.
-FORCING: Final = "force=True writes it"
-
 #: The setting that makes a program of several files, and its value, as they are written.
 _DIVIDING: Final = "programs=operations"
 _DIVIDED: Final = "operations"
-
-#: What gives subprograms other numbers.
-_OTHER_NUMBERS: Final = "begin with another number by setting first_number=2001"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,7 +67,7 @@ class PostJob:
     notices       comments for the head of the program
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
-    forcing       what a refusal says of ``force``; empty where it cannot be asked for
+    can_force     whether ``force`` can be asked for, which refusals then say
     """
 
     machine: Machine
@@ -91,7 +85,7 @@ class PostJob:
     notices: tuple[str, ...] = ()
     clamping: Clamping = field(default_factory=Clamping)
     decisions: tuple[Decision, ...] = ()
-    forcing: str = FORCING
+    can_force: bool = True
 
     @property
     def printed(self) -> dict[str, str]:
@@ -144,7 +138,7 @@ class PostJob:
         if path is None:
             raise InputError(argument_problem("output", Wording("FIL210", "no_place_for_several_files")))
         numbered = self.control.subprograms.first_number is not None
-        open_file = partial(files.add_file, other_name=_OTHER_NUMBERS) if numbered else files.add_file
+        open_file = partial(files.add_file, is_numbered=True) if numbered else files.add_file
         return SubprogramOutput(path.stem, open_file, None if size is None else int(size))
 
 

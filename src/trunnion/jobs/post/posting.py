@@ -25,7 +25,7 @@ from trunnion.jobs.post.left_over_files import left_over
 from trunnion.jobs.post.machining_times import new_time_token, prints_times, write_times
 from trunnion.jobs.post.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.planning import load_toolpaths, new_problems, plan_program
-from trunnion.jobs.post.post_job import FORCING, PostJob, prepare
+from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.program_places import ProgramPlaces
 from trunnion.jobs.post.proving import prove, report_proof
 from trunnion.jobs.post.reading import as_clamped
@@ -170,21 +170,21 @@ def post_beside(
     tilt: float | None = None,
     is_placed: bool = False,
     group: OutputGroup | None = None,
-    forcing: str = FORCING,
+    can_force: bool = True,
     later: list[PostPapers] | None = None,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work.
 
     The program appears with those of the ``group``, if there is one. Where it ``is_placed``, its head says how the part
-    is clamped, even if that is as it is drawn. What a refusal says of ``force`` is ``forcing``. Papers are written, or
-    go into the list ``later``: who gives it writes them.
+    is clamped, even if that is as it is drawn. A refusal speaks of ``force`` where it ``can_force``. Papers are
+    written, or go into the list ``later``: who gives it writes them.
     """
     check_observer(observer)
     angles = checked_angles(turn, tilt)
     loaded = as_machine(machine)
     job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
     existing = check_paths("subprograms", subprograms)
-    job = replace(job, beside=tuple(existing), forcing=forcing)
+    job = replace(job, beside=tuple(existing), can_force=can_force)
     hook_files = check_paths("hooks", hooks)
     inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *others]
     if simulation is not None:

@@ -23,7 +23,8 @@ from trunnion.jobs.post_project.posting import ProjectResult, check_within, file
 from trunnion.jobs.post_project.setups import ProjectOptions
 from trunnion.jobs.post_project.text_difference import TextDifference, text_difference
 from trunnion.jobs.post_project.watching import State, state_of
-from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.result_output import NO_PAPERS
 from trunnion.jobs.verify.comparing import diff

@@ -12,7 +12,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.post.papers.writing import PostPapers
 from trunnion.jobs.post_project.checks import SetupFindings
-from trunnion.jobs.project.file import simulated_files
+from trunnion.jobs.project.named_files import simulated_files
 from trunnion.jobs.project.project import Project
 from trunnion.jobs.simulate.result import SimulationResult
 

@@ -23,7 +23,8 @@ from trunnion.jobs.post_project.left_over_setups import left_over_setups, rememb
 from trunnion.jobs.post_project.operation_programs import programs_of_operations
 from trunnion.jobs.post_project.replaced_files import check_replaced
 from trunnion.jobs.post_project.setups import NO_OPTIONS, PostedPrograms, ProjectOptions, ProjectPosting, post_setups
-from trunnion.jobs.project.file import load_project, project_inputs, told_by_keys
+from trunnion.jobs.project.file import load_project, told_by_keys
+from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.messages import Wording
 

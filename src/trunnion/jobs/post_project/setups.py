@@ -136,9 +136,8 @@ def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program
     return post_beside(
         program.cl, posting.inputs, machine=machine, output=program.output, settings=program.settings,
         strict=posting.is_strict, force=False, explain=posting.options.explain, papers=program.papers,
-        columns=project.checks.longest_s is not None, subprograms=setup.subprograms, hooks=project.hooks,
-        observer=posting.observer, group=posting.group, forcing="", later=posting.later, turn=setup.turn,
-        tilt=setup.tilt,
+        columns=project.checks.longest_s is not None, hooks=project.hooks, observer=posting.observer,
+        group=posting.group, can_force=False, later=posting.later, **setup.arguments,
     )  # fmt: skip
 
 

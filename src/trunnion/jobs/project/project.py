@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 from trunnion.jobs.inputs.settings import SettingValue
 from trunnion.jobs.inputs.simulation_input import Places, SimulationInput
@@ -41,9 +42,8 @@ class PostedSetup:
     output       file of the program; of a program for each operation, what their names begin with
     division     into which files
     settings     by their names, as ``trunnion.post`` takes them
-    subprograms  files that exist already and that templates call
     released     earlier programs that the new ones must move like; subprograms of one stand behind it
-    turn, tilt   of the part as it is clamped, degrees; None: as it is drawn
+    arguments    of ``trunnion.post``, by their names: those of its other options that a set-up states
     papers       files of its report, setup sheet, listing and manifest
     places       where the project states settings: file, line and key, by their names; ``settings`` of all others
     """
@@ -54,12 +54,20 @@ class PostedSetup:
     output: Path
     division: Division = Division.ONE
     settings: Mapping[str, SettingValue] = field(default_factory=dict)
-    subprograms: tuple[str, ...] = ()
     released: tuple[str, ...] = ()
-    turn: float | None = None
-    tilt: float | None = None
+    arguments: Mapping[str, Any] = field(default_factory=dict)
     papers: PaperFiles = NO_PAPERS
     places: Places = field(default_factory=dict)
+
+    @property
+    def subprograms(self) -> tuple[str, ...]:
+        """Files that exist already and that templates call."""
+        return tuple(self.arguments.get("subprograms", ()))
+
+    @property
+    def angles(self) -> tuple[float | None, float | None]:
+        """Turn and tilt of the part as it is clamped, degrees; None: as it is drawn."""
+        return self.arguments.get("turn"), self.arguments.get("tilt")
 
 
 @dataclass(frozen=True, slots=True)

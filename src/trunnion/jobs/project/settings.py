@@ -8,13 +8,14 @@ from typing import Any, Final
 from trunnion.definitions import Table
 from trunnion.errors import InputError, Problem, key_subject
 from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
+from trunnion.jobs.project.keys import SETTINGS
 from trunnion.jobs.project.project import PostedSetup
 
 #: Settings that a table may have.
 _MOST_SETTINGS: Final = 500
 
-#: Settings that have a key of their own, which the simulation reads too.
-_OWN_KEYS: Final = {"zero": "zero_mm", "tool_length": "tool_length_mm", "programs": "divide"}
+#: Settings that have a key of another name.
+_OWN_KEYS: Final = {each.setting: each.key for each in SETTINGS if each.key != each.setting} | {"programs": "divide"}
 
 
 def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tuple[str, int, str]]]:
@@ -41,14 +42,14 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
             continue
         found[name], places[name] = value, (*own.location(name), own.key_path(name))
     own.mark_read(*own.keys())
-    for name, key in (("zero", "zero_mm"), ("tool_length", "tool_length_mm"), ("work_offset", "work_offset")):
-        if key not in table:
-            continue
+    for name, key in ((each.setting, each.key) for each in SETTINGS if each.key in table):
         if name in found:
             own.add_problem(name, f"is said by the key {key} too", "write one of them")
         value = table.to_dict()[key]
         if isinstance(value, str | float | int | list):  # anything else is a mistake that is told already
             found[name], places[name] = value, (*table.location(key), table.key_path(key))
+    if "divide" in table:
+        places["programs"] = (*table.location("divide"), table.key_path("divide"))
     return found, places
 
 

@@ -17,7 +17,8 @@ from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.project.file import is_project, library_files, project_files, read_project
+from trunnion.jobs.project.file import is_project, read_project
+from trunnion.jobs.project.named_files import library_files, project_files
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.machines import Machine

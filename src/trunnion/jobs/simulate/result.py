@@ -6,7 +6,6 @@ from functools import partial
 from typing import Annotated, Any, ClassVar, Final
 
 from trunnion.errors import Problem, Severity
-from trunnion.jobs.inputs.reading import FilePath
 from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
 from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperation, SimulationFinding, setup_findings
 from trunnion.simulation.simulator import Simulation
@@ -90,18 +89,6 @@ class SimulationResult:
         broken = any(remark.severity is Severity.ERROR for remark in self.remarks)
         gouged = self.gouge is not None and self.gouge.largest > self.limit
         return not self.findings and not gouged and not broken
-
-    def write_report(self, file: FilePath) -> None:
-        """Write a report: a page that works offline (``.html``), or data (``.json``).
-
-        Raises
-        ------
-        InputError
-            When the name ends otherwise, the file cannot be written, or it is one of the programs.
-        """
-        from trunnion.jobs.simulate.report import write_simulation_report
-
-        write_simulation_report(self, file)
 
 
 def make_result(cut: CutSetup) -> SimulationResult:

@@ -104,7 +104,9 @@ def _check_programs(runs: Sequence[Run], machine: Machine) -> None:
                 Problem(
                     file,
                     line,
-                    Wording("SIM140", "no_program_of_machine", first=first.text, count=len(wrong), machine=machine.key),
+                    Wording(
+                        "SIM140", "no_program_of_machine", first=first.wording, count=len(wrong), machine=machine.key
+                    ),
                 )
             )
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Literal
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.arguments import check_observer
@@ -12,15 +12,13 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
 from trunnion.jobs.inputs.simulation_input import Places, SetupInput, SimulationInput
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project, read_project
+from trunnion.jobs.project.keys import OF_ONE_SETUP
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
-
-#: Arguments that differ from set-up to set-up.
-_OF_ONE_SETUP: Final = ("part", "fixtures", "subprograms", "zero", "tool_length", "turn", "tilt")
 
 
 def simulate(
@@ -159,7 +157,7 @@ def _overruled(
 ) -> SimulationInput:
     """Return a project with what was given in its place."""
     stated = {name: value for name, value in own.items() if not _is_left_out(value)}
-    several = [name for name in _OF_ONE_SETUP if name in stated and len(project.setups) > 1]
+    several = [name for name in OF_ONE_SETUP if name in stated and len(project.setups) > 1]
     if several:
         raise InputError([argument_problem(name, Wording("SIM111", "of_all_setups")) for name in several])
     last: dict[str, Any] = {} if until is None else {"until": until}

@@ -18,7 +18,7 @@ from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.result_output import check_output_name
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run
@@ -173,12 +173,7 @@ def twin_program(
         raise InputError(Problem(str(path), 0, Wording("TWN110", "cl_file_served")))
     run = restore_rapids(as_run(nc, placed, check_paths("subprograms", subprograms)), rapid_feed_of(placed))
     if run.errors:
-        raise RefusedError(
-            [
-                Problem(each.file, each.line, foreign(each.text, "the twin runs no program with errors", each.code))
-                for each in run.errors
-            ]
-        )
+        raise RefusedError([Problem(each.file, each.line, each.wording.within("stops_twin")) for each in run.errors])
     if not len(run):
         raise InputError(Problem(run.files[0], 0, Wording("TWN111", "nothing_moves")))
     return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])

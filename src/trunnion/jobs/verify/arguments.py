@@ -69,7 +69,7 @@ def checked(given: VerifyArguments) -> VerifyArguments:
     check_choice("feed", given.feed, ("programmed", "fastest"))
     feed_limit = _feed_limit(given)
     if given.is_fastest and not has_cl:
-        raise _without_cl("feed", "is fastest, and only CL files say what feeds may be at most")
+        raise InputError(argument_problem("feed", Wording("ARG130", "fastest_feed_without_cl")))
     if given.units is not None:
         check_choice("units", given.units, ("mm", "inch"))
     tool = _tool(given.tool)
@@ -78,15 +78,11 @@ def checked(given: VerifyArguments) -> VerifyArguments:
         check_tolerance(name, getattr(given, name), optional=name.startswith("span"))
     hooks = check_paths("hooks", given.hooks)
     if hooks and not has_cl:
-        raise _without_cl("hooks", "change CL files, and there are none")
+        raise InputError(argument_problem("hooks", Wording("ARG130", "hooks_without_cl")))
     turn, tilt = checked_angles(given.turn, given.tilt)
     if (turn or tilt) and not has_cl:
-        raise _without_cl("turn" if turn else "tilt", "is that of CL files, and there are none")
+        raise InputError(argument_problem("turn" if turn else "tilt", Wording("ARG130", "clamping_without_cl")))
     return replace(given, feed_limit=feed_limit, tool=tool, edge=edge, hooks=hooks, turn=turn, tilt=tilt)
-
-
-def _without_cl(argument: str, what: str) -> InputError:
-    return InputError(argument_problem(argument, what, "name them with cl", code="ARG130"))
 
 
 def _feed_limit(given: VerifyArguments) -> float | None:

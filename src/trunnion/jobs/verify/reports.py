@@ -29,27 +29,35 @@ def write_post_report(
         add_report(verification, sink, place.name, decisions, simulation)
 
 
-def write_report(verification: Verification, file: FilePath, *, decisions: Sequence[Decision] = ()) -> None:
-    """Write a report of a verification: a page that works offline (``.html``), or data (``.json``).
+def write_report(
+    result: "Verification | SimulationResult", file: FilePath, *, decisions: Sequence[Decision] = ()
+) -> None:
+    """Write a report: a page that works offline (``.html``), or data (``.json``).
 
     Parameters
     ----------
-    verification
-        Of ``trunnion.verify`` or ``trunnion.post``, with its columns.
+    result
+        Of ``trunnion.verify`` or ``trunnion.post``, with its columns, or of ``trunnion.simulate``.
     file
         An older file is replaced when the new one is complete.
     decisions
-        Of the planner.
+        Of the planner, beside a verification.
 
     Raises
     ------
     InputError
         When the name ends otherwise, the verification has no columns, the file cannot be written, or it is one that the
-        verification is about.
+        result is about.
     """
-    if not isinstance(verification, Verification):
-        raise wrong_argument("verification", verification, "give the result of trunnion.verify or trunnion.post")
-    write_post_report(verification, file, decisions, None)
+    if isinstance(result, Verification):
+        write_post_report(result, file, decisions, None)
+        return
+    from trunnion.jobs.simulate.report import write_simulation_report
+    from trunnion.jobs.simulate.result import SimulationResult
+
+    if not isinstance(result, SimulationResult):
+        raise wrong_argument("result", result, "give the result of trunnion.verify, trunnion.post or trunnion.simulate")
+    write_simulation_report(result, file)
 
 
 def add_report(

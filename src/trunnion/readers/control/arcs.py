@@ -11,6 +11,8 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.messages import Wording
+from trunnion.readers.control.worded_error import WordedError
 
 #: How much the radii at start and end may differ: an amount, mm, or a ratio of the radius, whichever is more. These are
 #: the default settings of a Sinumerik.
@@ -24,7 +26,7 @@ SAME_POINT: Final = 1e-9
 MAX_RADIUS: Final = 1e7
 
 
-class ArcError(Exception):
+class ArcError(WordedError):
     """The reason why a block programs no circle."""
 
 
@@ -79,9 +81,9 @@ def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise:
     radius = float(np.linalg.norm(first))
     off = abs(float(np.linalg.norm(last)) - radius)
     if radius < SAME_POINT:
-        raise ArcError("the circle has no radius")
+        raise ArcError(Wording("NC320", "circle_no_radius"))
     if off > max(RADIUS_ERROR, RADIUS_RATIO * radius):
-        raise ArcError(f"the radius is {radius:.4f} at the start and {np.linalg.norm(last):.4f} at the end")
+        raise ArcError(Wording("NC320", "radii_differ", start=radius, end=np.linalg.norm(last)))
     return Arc(end, middle, normal_of(plane, clockwise), radius, turns)
 
 
@@ -90,10 +92,10 @@ def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: 
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
     if length < SAME_POINT:
-        raise ArcError("a radius cannot make a full circle: start and end are the same")
+        raise ArcError(Wording("NC320", "full_circle_by_radius"))
     short = 0.5 * length - abs(radius)
     if short > max(RADIUS_ERROR, RADIUS_RATIO * abs(radius)):
-        raise ArcError(f"a radius of {radius:g} is too small for a chord of {length:.4f}")
+        raise ArcError(Wording("NC320", "radius_too_small", radius=radius, length=length))
     height = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0)) * math.copysign(1.0, radius)
     return _from_chord(start, end, chord, height, plane, clockwise, turns)
 
@@ -103,10 +105,10 @@ def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bo
     chord = _chord(start, end, plane)
     length = float(np.linalg.norm(chord))
     if length < SAME_POINT or not 0.0 < angle < 360.0:
-        raise ArcError(f"an opening angle of {angle:g} makes no circle here")
+        raise ArcError(Wording("NC320", "opening_angle_makes_no_circle", angle=angle))
     half = math.radians(0.5 * angle)
     if length > 2.0 * MAX_RADIUS * math.sin(half):
-        raise ArcError(f"an opening angle of {angle:g} needs a radius that no machine has")
+        raise ArcError(Wording("NC320", "opening_angle_needs_radius_no", angle=angle))
     height = 0.5 * length * math.cos(half) / math.sin(half)
     return _from_chord(start, end, chord, height, plane, clockwise, turns)
 
@@ -114,7 +116,7 @@ def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bo
 def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
     """Return the arc of an opening angle about a centre, which determine its end."""
     if not 0.0 < angle < 360.0:
-        raise ArcError(f"an opening angle of {angle:g} makes no circle here")
+        raise ArcError(Wording("NC320", "opening_angle_makes_no_circle", angle=angle))
     u, v = (plane + 1) % 3, (plane + 2) % 3
     radians = math.radians(-angle if clockwise else angle)
     a, b = start[u] - centre[u], start[v] - centre[v]
@@ -130,11 +132,11 @@ def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
     normal = np.cross(a, b)
     size = float(normal @ normal)
     if size < SAME_POINT * max(float(a @ a), float(b @ b), SAME_POINT):
-        raise ArcError("the three points of the circle lie on a line")
+        raise ArcError(Wording("NC320", "three_points_circle_lie_line"))
     centre = start + (np.cross(normal, a) * float(b @ b) + np.cross(b, normal) * float(a @ a)) / (2.0 * size)
     radius = float(np.linalg.norm(start - centre))
     if not SAME_POINT < radius < MAX_RADIUS:
-        raise ArcError("the three points of the circle make no circle that a machine has")
+        raise ArcError(Wording("NC320", "three_points_circle_make_no"))
     return Arc(end, centre, normal / math.sqrt(size), radius, turns)
 
 

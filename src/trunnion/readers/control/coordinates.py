@@ -15,6 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, forward
 from trunnion.machines.inverse import kinematic_parameters
+from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
@@ -145,10 +146,10 @@ class CoordinateControl(RowRecorder):
         total = self._plane.compose(frame)
         x, y, z = total.linear
         if not abs(float(np.cross(x, y) @ z)) >= 1e-9:
-            self.note("the frame would flatten space: it is not used", Severity.ERROR, "NC330")
+            self.note(Wording("NC330", "frame_would_flatten_space_not"), Severity.ERROR)
             return
         if float(np.abs(total.linear).max()) > 1e6 or float(np.abs(total.shift).max()) > MAX_POSITION:
-            self.note("the frame is larger than any machine: it is not used", Severity.ERROR, "NC330")
+            self.note(Wording("NC330", "frame_larger_than_any_machine"), Severity.ERROR)
             return
         with self.frame_change(keep_base=keep_base):
             self._program = frame
@@ -207,8 +208,7 @@ class CoordinateControl(RowRecorder):
     def warn_of_unknown_zero(self, word: str) -> None:
         """Warn of the first block that writes values of a work offset, if they cannot be held against the zero."""
         if self.machine.workpiece_zero is None and not self._stored_systems:
-            text = f"{word} writes the work offset, and nobody said where the workpiece zero is on the machine"
-            self.note(text, Severity.WARNING, "NC352")
+            self.note(Wording("NC352", "offset_over_unknown_zero", word=word), Severity.WARNING)
 
     def report_unused_offsets(self) -> None:
         """Report each stored work offset behind the last motion at the part: only the next program moves with it.
@@ -220,9 +220,8 @@ class CoordinateControl(RowRecorder):
             # Other positions, such as another home, are for moves to machine positions.
             if row >= (self._in_use.at_part if what == OFFSET else self.row):
                 self.line = line if file == self.modal.file.current else here
-                motion = "the last motion at the part" if what == OFFSET else "the last motion"
-                text = f"{word} behind {motion} changes {what} the next program"
-                self._note_left(f"{text}: write it before the motions that need it")
+                variant = "offset_behind_motion" if what == OFFSET else "position_behind_motion"
+                self._note_left(Wording("NC351", variant, word=word, changes=what))
         self.line = here
 
     # What the next program begins with
@@ -251,18 +250,21 @@ class CoordinateControl(RowRecorder):
             ):
                 continue
             self.line = mode.place.line if mode.place.file == self.modal.file.current else here
-            begins = "begins with it" if stays else f"may begin with it ({self.reset_by})"
-            text = f"{mode.word} behind the last motion at the part stays on, and the next program {begins}"
-            self._note_left(f"{text}: leave it out, or set it back before the end", stays=stays)
+            wording = (
+                Wording("NC351", "mode_stays", word=mode.word)
+                if stays
+                else Wording("NC351", "mode_may_stay", word=mode.word, reset_by=self.reset_by)
+            )
+            self._note_left(wording, stays=stays)
         self.line = here
 
-    def report_left(self, what: str, begins: str = "begins") -> None:
-        """Report a plane, a rotation or a shift that the program leaves on, and with which the next one ``begins``."""
-        self._note_left(f"ends with {what} on: the next program {begins} with it")
+    def report_left(self, left: Wording, *, may_begin: bool = False) -> None:
+        """Report a plane, a rotation or a shift that the program leaves on: the next one begins with it, or may."""
+        self._note_left(Wording("NC351", "may_be_left" if may_begin else "left", left=left))
 
-    def _note_left(self, text: str, *, stays: bool = True) -> None:
+    def _note_left(self, wording: Wording, *, stays: bool = True) -> None:
         """Note what is left to the next program; one that never cuts may leave it on purpose, as a set-up does."""
-        self.note(text, Severity.ERROR if stays and self._in_use.cuts else Severity.WARNING, "NC351")
+        self.note(wording, Severity.ERROR if stays and self._in_use.cuts else Severity.WARNING)
 
     @property
     def _in_use(self) -> RowsInUse:
@@ -277,8 +279,7 @@ class CoordinateControl(RowRecorder):
 
     def report_left_on(self, word: str) -> None:
         """Report a word that is still in force at the end of the program, which the next program may begin with."""
-        text = f"ends with {word} on, and the next program may begin with it ({self.reset_by}): end it before"
-        self.note(text, Severity.WARNING, "NC351")
+        self.note(Wording("NC351", "left_on", word=word, reset_by=self.reset_by), Severity.WARNING)
 
     # Modes
 
@@ -297,9 +298,7 @@ class CoordinateControl(RowRecorder):
         if code != self.no_offset:
             self._offsets.add(code)
             if len(self._offsets) > 1:
-                self.note(
-                    f"{name}: work offsets are not known here, all count as the same one", Severity.WARNING, "NC331"
-                )
+                self.note(Wording("NC331", "work_offsets_not_known_here", name=name), Severity.WARNING)
         if self.no_offset in (code, offset.current):
             with self.frame_change():
                 offset.set(self.row, code)

@@ -5,6 +5,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+from trunnion.messages import Wording
+from trunnion.readers.control.worded_error import WordedError
+
 #: Faster feeds, mm/min, are mistakes of the program.
 MAX_FEED: Final = 1e9
 
@@ -12,12 +15,8 @@ MAX_FEED: Final = 1e9
 MAX_PECKS: Final = 1000
 
 
-class CycleExecutionError(Exception):
+class CycleExecutionError(WordedError):
     """The reason why a cycle cannot be executed; the message continues "the cycle"."""
-
-    def __init__(self, text: str, *, code: str = "NC380") -> None:
-        super().__init__(text)
-        self.code = code
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,9 +54,9 @@ Between = Callable[[float], list[HoleMotion]]
 def check_pecks(depth: float, peck: float, word: str) -> None:
     """Refuse pecks, given by ``word``, that would not get to a depth within ``MAX_PECKS`` pecks."""
     if peck <= 0.0:
-        raise CycleExecutionError(f"has a {word} that is not above 0")
+        raise CycleExecutionError(Wording("NC380", "not_above_zero", word=word))
     if depth / peck > MAX_PECKS:
-        raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+        raise CycleExecutionError(Wording("NC380", "too_many_pecks", most=MAX_PECKS))
 
 
 def peck_depths(total: float, first: float, less: float = 0.0, least: float = 0.0) -> list[float]:
@@ -72,7 +71,7 @@ def peck_depths(total: float, first: float, less: float = 0.0, least: float = 0.
     while total - depths[-1] > 1e-9:
         peck = max(peck - less, least)
         if peck <= 0.0 or len(depths) >= MAX_PECKS:
-            raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+            raise CycleExecutionError(Wording("NC380", "too_many_pecks", most=MAX_PECKS))
         depths.append(min(depths[-1] + peck, total))
     depths[-1] = total
     return depths
@@ -113,5 +112,5 @@ def descent(
 def finite(value: float | None) -> float | None:
     """Return a number of a cycle; refuse infinity and NaN."""
     if value is not None and not math.isfinite(value):
-        raise CycleExecutionError("has a number that is not finite")
+        raise CycleExecutionError(Wording("NC380", "number_not_finite"))
     return value

@@ -14,6 +14,7 @@ from trunnion.arrays import Codes, Floats, Ints
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.machines.inverse import kinematic_parameters
+from trunnion.messages import Wording
 from trunnion.model.axis_positions import (
     NO_ROTARY_SOLUTION,
     NO_SLIDE_SOLUTION,
@@ -58,7 +59,7 @@ SPINDLE_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0, "ori
 _ROTARY_WORDS: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
 
 #: Reports a diagnostic at the block that is being executed.
-Note = Callable[[str, Severity, str], None]
+Note = Callable[[Wording, Severity], None]
 
 
 class ScannedRows(NamedTuple):
@@ -179,14 +180,14 @@ class RowRecorder:
         rpm = float(self.modal.rpm.current)
         seconds = amount if amount >= 0.0 else -60.0 * amount / rpm if rpm > 0.0 else 0.0
         if seconds > _LONG_DWELL and math.isfinite(seconds):
-            self.note_wait(f"a dwell of {format_duration(seconds)}: is its unit right?")
+            self.note_wait(Wording("NC226", "long_dwell", duration=format_duration(seconds)))
 
-    def note_wait(self, what: str) -> None:
+    def note_wait(self, wait: Wording) -> None:
         """Note once for each block that the machine waits, or stops, there."""
         place = self.modal.file.current, self.line
         if place not in self._told_waits:
             self._told_waits.add(place)
-            self.note(what, Severity.WARNING, "NC226")
+            self.note(wait, Severity.WARNING)
 
     def add_builders_word(self, letter: str, value: float) -> None:
         """Record an M or H word of the machine's builder, and note the first of each: nobody has said what it does."""
@@ -194,7 +195,7 @@ class RowRecorder:
         word = f"{letter}{value:g}"
         if word not in self._told_words:
             self._told_words.add(word)
-            self.note(f"{word} belongs to the machine: what it does is not known", Severity.WARNING, "NC225")
+            self.note(Wording("NC225", "word_of_machine", word=word), Severity.WARNING)
 
     # Tools
 
@@ -233,7 +234,7 @@ class RowRecorder:
         self.add_event("delta", (name, value))
         if not value:
             return
-        self.note(f"{name} adds {value:g} mm to the tool: the path is that without it", Severity.WARNING, "NC360")
+        self.note(Wording("NC360", "tool_delta", word=name, value=value), Severity.WARNING)
 
     @property
     def tool_in_spindle(self) -> str:
@@ -252,11 +253,7 @@ class RowRecorder:
         vector   (3,) programmed tool axis, of any length
         """
         if not within_limits(end) or any(abs(value) > MAX_POSITION for value in rotary.values):
-            self.note(
-                "a position is farther away than any machine reaches: the block is not executed",
-                Severity.ERROR,
-                "NC310",
-            )
+            self.note(Wording("NC310", "too_far"), Severity.ERROR)
             return False
         bits |= rotary.bits if vector is None else int(ProgrammedWord.VECTOR)
         c = self.columns
@@ -280,11 +277,7 @@ class RowRecorder:
     def add_lines(self, ends: Floats, bits: int) -> bool:
         """Add lines of one block to programmed positions (k, 3); the rest is as ``add_row`` has it."""
         if not within_limits(ends):
-            self.note(
-                "a position is farther away than any machine reaches: the block is not executed",
-                Severity.ERROR,
-                "NC310",
-            )
+            self.note(Wording("NC310", "too_far"), Severity.ERROR)
             return False
         c, begin = self.columns, 0
         tips = ends @ self.position_map[:, :3].T + self.position_map[:, 3]
@@ -413,19 +406,19 @@ class RowRecorder:
             self.columns.clear()
 
     def _report(self, status: Codes, first: int) -> None:
-        texts = (
-            (OUT_OF_TRAVEL, "no rotary position inside the travel gives this tool axis", "NC350"),
-            (NO_ROTARY_SOLUTION, "no rotary position gives this tool axis: the axes stay", "NC350"),
-            (NO_SLIDE_SOLUTION, "the slides cannot reach this position", "NC310"),
+        wordings = (
+            (OUT_OF_TRAVEL, Wording("NC350", "axis_outside_travel")),
+            (NO_ROTARY_SOLUTION, Wording("NC350", "no_position_for_axis")),
+            (NO_SLIDE_SOLUTION, Wording("NC310", "out_of_reach")),
         )
         if not status.any():
             return
         here = self.line
         for row in np.flatnonzero(status):
             self.line = int(self.columns.line[first + row])
-            for bit, text, code in texts:
+            for bit, wording in wordings:
                 if status[row] & bit:
-                    self.note(text, Severity.WARNING if bit == OUT_OF_TRAVEL else Severity.ERROR, code)
+                    self.note(wording, Severity.WARNING if bit == OUT_OF_TRAVEL else Severity.ERROR)
         self.line = here
 
     # The end

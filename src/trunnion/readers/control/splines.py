@@ -10,7 +10,9 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.messages import Wording
 from trunnion.model.splines import Spline
+from trunnion.readers.control.worded_error import WordedError
 
 #: How far a spline may be from the chords of its points, mm.
 CHORD: Final = 0.001
@@ -25,7 +27,7 @@ MOST_POINTS: Final = 10_000
 _MOST_IN_ALL: Final = 1_000_000
 
 
-class SplineError(Exception):
+class SplineError(WordedError):
     """The reason why blocks program no spline."""
 
 
@@ -53,7 +55,7 @@ def points_of_polynomial(coefficients: Floats, interval: float, length_unit: flo
         bend += power * (power - 1) * np.abs(coefficients[power]) * interval ** (power - 2)
     chords = interval * math.sqrt(float(np.linalg.norm(bend)) * length_unit / (8.0 * CHORD))
     if not chords <= MOST_POINTS:
-        raise SplineError(f"a spline that takes more than {MOST_POINTS} points within {CHORD:g} mm")
+        raise SplineError(Wording("NC322", "spline_too_long", most=MOST_POINTS, chord=CHORD))
     at = np.linspace(0.0, interval, max(math.ceil(chords), 1) + 1)[1:]
     points = np.zeros((len(at), 3))
     for row in coefficients[::-1]:
@@ -74,11 +76,11 @@ def nurbs_points(spline: Spline) -> Floats:
                 break
             chords *= 2
             if not chords <= MOST_POINTS:
-                raise SplineError(f"a spline that takes more than {MOST_POINTS} points within {CHORD:g} mm")
+                raise SplineError(Wording("NC322", "spline_too_long", most=MOST_POINTS, chord=CHORD))
         found.append(pieces[-1, :, :3] / pieces[-1, :, 3:])
         total += chords
         if total > _MOST_IN_ALL:
-            raise SplineError(f"a spline that takes more than {_MOST_IN_ALL} points within {CHORD:g} mm")
+            raise SplineError(Wording("NC322", "spline_too_long", most=_MOST_IN_ALL, chord=CHORD))
     return np.concatenate(found)
 
 

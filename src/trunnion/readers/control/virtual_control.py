@@ -14,6 +14,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
+from trunnion.messages import Wording
 from trunnion.model import axis_positions
 from trunnion.model.run import ProgrammedWord, SpindleWork
 from trunnion.model.splines import Spline, SplineRows
@@ -119,7 +120,7 @@ class VirtualControl(CoordinateControl, ABC):
         axis = self.machine.axes[self.machine.rotary[which]]
         if mode in (PositionMode.SHORTEST, PositionMode.POSITIVE, PositionMode.NEGATIVE):
             if not axis.endless:
-                self.note(f"{mode}() for {axis.name}, which has ends", Severity.WARNING, "NC213")
+                self.note(Wording("NC213", "turns_of_axis_with_ends", mode=mode, axis=axis.name), Severity.WARNING)
                 return axis_positions.PLAIN
             return {
                 PositionMode.SHORTEST: axis_positions.SHORTEST,
@@ -193,10 +194,10 @@ class VirtualControl(CoordinateControl, ABC):
                 arc = circle(self.programmed_position.copy(), end)
                 end = arc.end
             except arcs.ArcError as error:
-                self.note(f"{error}: taken as a straight line", Severity.ERROR, "NC320")
+                self.note(error.wording.within("taken_as_line"), Severity.ERROR)
         rotary = self.rotary_target(axes)
         if vector is not None and rotary.bits:
-            self.note("rotary words and a vector in one block: the vector counts", Severity.ERROR, "NC216")
+            self.note(Wording("NC216", "rotary_words_vector_block_vector"), Severity.ERROR)
             rotary = NO_ROTARY
         turns = vector is not None or rotary.bits != 0
         placed = None if arc is None else self._arc_in_workpiece(arc, turns and not self.tip_programmed)
@@ -228,11 +229,9 @@ class VirtualControl(CoordinateControl, ABC):
     def _machine_move(self, axes: Mapping[str, AxisWord], bits: int, circle: bool) -> None:
         """Move to positions of the machine axes, regardless of frames and TCP."""
         if self.tcp:
-            self.note(
-                "machine positions while TCP is on are taken as positions of the slides", Severity.WARNING, "NC341"
-            )
+            self.note(Wording("NC341", "machine_positions_while_tcp_taken"), Severity.WARNING)
         if circle:
-            self.note("a circle in machine positions is taken as a straight line", Severity.ERROR, "NC320")
+            self.note(Wording("NC320", "circle_machine_positions_taken_straight"), Severity.ERROR)
         self.resolve_rows()
         slides = self.current_joints[self._slides].copy()
         steps = 0
@@ -295,11 +294,7 @@ class VirtualControl(CoordinateControl, ABC):
     def _arc_in_workpiece(self, arc: arcs.Arc, axes_turn: bool) -> tuple[Floats, Floats, float] | None:
         """Return centre, normal and radius in the workpiece frame; None, with a diagnostic, if it is no circle."""
         if axes_turn:
-            self.note(
-                "rotary axes turn during a circle of the slides: the tip does not make a circle",
-                Severity.WARNING,
-                "NC321",
-            )
+            self.note(Wording("NC321", "circle_of_axes_turns"), Severity.WARNING)
         slide_map = None if self.tip_programmed else self._slides_to_tip()
         if self._arc_map is None:
             linear, shift = self.position_map[:, :3], self.position_map[:, 3]
@@ -308,7 +303,7 @@ class VirtualControl(CoordinateControl, ABC):
             self._arc_map = arcs.ArcMap.of(linear, shift), self.frame.keeps_circles
         arc_map, keeps_circles = self._arc_map
         if not keeps_circles:
-            self.note("a circle under unequal scales is an ellipse: taken as a straight line", Severity.ERROR, "NC320")
+            self.note(Wording("NC320", "circle_under_unequal_scales_ellipse"), Severity.ERROR)
             return None
         return arc_map.map_arc(arc)
 
@@ -371,6 +366,4 @@ class VirtualControl(CoordinateControl, ABC):
             return
         axis = forward(self.machine, self.current_joints[None])[1][0]
         if rows and float(np.linalg.norm(axis - along)) > MAX_DRILLING_AXIS_ERROR:
-            self.note(
-                "the cycle drills along the axis of the frame, which is not the tool axis", Severity.WARNING, "NC382"
-            )
+            self.note(Wording("NC382", "cycle_drills_along_axis_frame"), Severity.WARNING)

@@ -16,6 +16,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Comment, Diagnostic, Run
 from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import VirtualControl
@@ -82,8 +83,7 @@ class Interpreter(ABC, Generic[A]):
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         slides = {machine.axes[column].name for column in machine.linear}
         if slides != {"X", "Y", "Z"}:
-            what = f"has slides {', '.join(sorted(slides))}"
-            raise InputError(Problem(machine.key, 0, what, "this reader needs X, Y and Z", code="NC121"))
+            raise InputError(Problem(machine.key, 0, Wording("NC121", "other_axes", axes=tuple(sorted(slides)))))
         self._path = path
         self._machine = machine
         self._options = options
@@ -147,8 +147,8 @@ class Interpreter(ABC, Generic[A]):
         self.control.resolve_rows()
         diagnostics = list(self._diagnostics)
         if self._unlisted:
-            text = f"and {self._unlisted} findings more"
-            diagnostics.append(Diagnostic(0, text, Severity.ERROR, self._files[0], code="NC150"))
+            more = Wording("NC150", "more", count=self._unlisted)
+            diagnostics.append(Diagnostic(0, more, Severity.ERROR, self._files[0]))
         return self.control.finish(self._files, self._comments, diagnostics)
 
     def _check_rest(self, main: SourceText) -> None:
@@ -159,20 +159,19 @@ class Interpreter(ABC, Generic[A]):
                 main.load()
                 if main.search(self.jump_words):
                     return
-                text = "stands behind the end of the program: it never runs; another program needs a file of its own"
-                self._note(text, Severity.ERROR, "NC161")
+                self._note(Wording("NC161", "behind_end_of_file"), Severity.ERROR)
                 return
 
     @abstractmethod
     def _has_words(self, raw: str) -> bool:
         """Whether a line has anything but comments, marks of the transfer and its number."""
 
-    def _note(self, text: str, severity: Severity, code: str) -> None:
+    def _note(self, wording: Wording, severity: Severity) -> None:
         if len(self._diagnostics) >= MAX_DIAGNOSTICS:
             self._unlisted += 1
             return
         file = self._files[self.control.modal.file.current]
-        self._diagnostics.append(Diagnostic(self.control.line, text, severity, file, code=code))
+        self._diagnostics.append(Diagnostic(self.control.line, wording, severity, file))
 
     # The loop
 
@@ -196,7 +195,7 @@ class Interpreter(ABC, Generic[A]):
             self._counter.count_blocks(1, len(raw))
             self._execute_known(active, line, raw) if self._known.any else self._execute_line(active, line, raw)
             if source.jumps_back > MOST_JUMPS_WITHOUT_CHOICE:
-                raise self._limit_error("jumps back again and again, and no condition ends it")
+                raise self._limit_error(Wording("NC140", "jumps_without_choice"))
             self._counter.count_events(control.events)
             self._counter.check_resolutions(control.resolutions)
             self._counter.check_turns(control.turns)
@@ -264,17 +263,12 @@ class Interpreter(ABC, Generic[A]):
     def _open_sources(self) -> list[SourceText]:
         return [self._stack[0].source, *(source for source, _ in self._sources.values())]
 
-    def _limit_error(self, what: str, cure: str = "does it end?") -> InputError:
-        return self._stack[-1].source.problem(self.control.line, f"the program {what}", cure, code="NC140")
+    def _limit_error(self, wording: Wording) -> InputError:
+        return self._stack[-1].source.problem(self.control.line, wording)
 
     def _check_depth(self) -> None:
         if len(self._stack) >= MAX_CALL_DEPTH:
-            raise self._stack[-1].source.problem(
-                self.control.line,
-                f"calls subprograms deeper than {MAX_CALL_DEPTH} levels",
-                "does one call itself?",
-                code="NC141",
-            )
+            raise self._limit_error(Wording("NC141", "subprograms_too_deep", most=MAX_CALL_DEPTH))
 
     # Subprograms
 
@@ -282,7 +276,7 @@ class Interpreter(ABC, Generic[A]):
         """Return the text of a subprogram at its first line, and its index in ``Run.files``; rows are its own now."""
         if path not in self._sources:
             if len(self._sources) >= MAX_SUBPROGRAMS:
-                raise self._limit_error(f"calls more than {MAX_SUBPROGRAMS} subprograms")
+                raise self._limit_error(Wording("NC140", "too_many_subprograms", most=MAX_SUBPROGRAMS))
             self._files.append(str(path))
             self._sources[path] = self.source_type(path, encoding=self._options.encoding), len(self._files) - 1
             source, file = self._sources[path]
@@ -300,21 +294,21 @@ class Interpreter(ABC, Generic[A]):
     def _check_behind_return(self, active: A) -> None:
         """Report blocks of a subprogram behind its return, which is in the present line, that never run."""
         if len(self._stack) > 1:
-            self._note_unreached(active, self._raw, "the return of the subprogram")
+            self._note_unreached(active, self._raw, "behind_return")
 
     def _check_behind_end(self, main: A) -> None:
         """Report blocks of the main program that never run, as the end of the program is in a subprogram."""
         if any(active.source.search(self.jump_words) for active in self._stack):
             return
         self.control.modal.file.set(self.control.row, main.file)
-        self._note_unreached(main, "", "the call of a subprogram that ends the program")
+        self._note_unreached(main, "", "behind_ending_call")
 
-    def _note_unreached(self, active: A, raw: str, what: str) -> None:
+    def _note_unreached(self, active: A, raw: str, variant: str) -> None:
         here = self.control.line
         line = self._unreached.behind(active.source, raw, *self._lines_of(active))
         if line:
             self.control.line = line
-            self._note(f"stands behind {what}: it never runs", Severity.ERROR, "NC161")
+            self._note(Wording("NC161", variant), Severity.ERROR)
             self.control.line = here
 
     def _end_of_source(self) -> None:

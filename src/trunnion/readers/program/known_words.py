@@ -13,6 +13,7 @@ from typing import Final
 from trunnion.definitions import Table
 from trunnion.definitions.duplicate_keys import report_duplicates
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.settings import control_of
 
@@ -37,10 +38,6 @@ _BEFORE_MOTION: Final = (
 #: Effects that are not events of their own: the word itself says what happens.
 _SILENT: Final = frozenset({"no effect", "comes back", HOME, WAITS})
 
-_OWN: Final = (
-    "is a word of the control itself, or begins with one: the declaration would hide it",
-    "leave it out: only words that the control does not know can be declared",
-)
 #: So many letters and points are shown of a key.
 _MOST_LETTERS: Final = 40
 _LEADING_ZEROS: Final = re.compile(r"^([GM])0+([0-9])")
@@ -102,16 +99,14 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
             # TOML takes G54.4 without quotation marks as a key 4 of a table G54.
             whole = ".".join((key, *_first_path(inner)))
             table.mark_read(key)
-            table.add_problem(
-                key, "is a table: the word has a point", f'write "{whole}" = "…", in quotes', code="NC190"
-            )
+            table.add_problem(key, Wording("NC190", "table_word_point", whole=whole))
             continue
         word = _known_word(table, key)
         normal = plain_code(word.word)
         if is_own_word is not None and is_own_word(normal):
-            table.add_problem(key, *_OWN, code="NC190")
+            table.add_problem(key, Wording("NC190", "own_word"))
         elif normal != word.word and word.code is None:
-            table.add_problem(key, "begins with a code with leading zeros", f"write {normal}", code="NC190")
+            table.add_problem(key, Wording("NC190", "begins_code_leading_zeros", normal=normal))
         found[normal] = word
     report_duplicates(table, lambda key: plain_code(_normal(key)))
     table.raise_problems()
@@ -133,15 +128,11 @@ def _known_word(table: Table, key: str) -> KnownWord:
     text, _, means = (value if value is not None else EFFECTS[0]).partition(":")
     effects = tuple(effect.strip() for effect in text.split(","))
     if unknown := [effect for effect in effects if effect not in EFFECTS]:
-        table.add_problem(key, f"has no effect {unknown[0]!r}", f"write one of {', '.join(EFFECTS)}", code="NC190")
+        table.add_problem(key, Wording("NC190", "no_effect", unknown=repr(unknown[0]), effects=tuple(EFFECTS)))
     if not key.strip():
-        table.add_problem(
-            "", "has a word without letters", 'write such as M60, "CYCL DEF 392" or "G65 P9810"', code="NC190"
-        )
+        table.add_problem("", Wording("NC190", "word_without_letters"))
     elif not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
-        table.add_problem(
-            key, "is no word of a program", 'write such as M60, "CYCL DEF 392" or "G65 P9810"', code="NC190"
-        )
+        table.add_problem(key, Wording("NC190", "no_word_program"))
     return KnownWord(_normal(key), effects, means.strip())
 
 
@@ -232,7 +223,11 @@ class KnownWords:
             case "tcp on" | "tcp off":
                 control.set_tcp(value == "on")
             case _ if effect == WAITS:
-                control.note_wait(f"{word.word} waits" + (f": {word.means}" if word.means else ""))
+                control.note_wait(
+                    Wording("NC226", "waits_as_declared", word=word.word, means=word.means)
+                    if word.means
+                    else Wording("NC226", "waits", word=word.word)
+                )
             case _ if effect == HOME:
                 control.go_home()
             case _ if kind == "spindle":

@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
+from trunnion.messages import Wording
 from trunnion.model.run import RunEvent
 from trunnion.readers.program.source_text import SourceText
 
@@ -58,18 +59,13 @@ MAX_SUBPROGRAMS: Final = 1000
 MAX_CALL_DEPTH: Final = 16
 
 
-#: Cures of a program that goes on too long: whether it ends is to be seen first.
-_ENDS: Final = "does it end?"
-_DOES_LESS: Final = "does it end? if it does, divide it: no more are followed in files of so many lines"
-
-
 class StepCounter:
     """Counts the blocks that a program executes, and the comments and events that it makes.
 
     Going once through each file is free, and so is everything that a file contains once.
 
     sources    returns the files that are in use, the program first
-    fail       returns the error of a program that does too much: what it does, and the cure
+    fail       returns the error of a program that does too much
     positions  returns where the tool goes in the rows from one on, (n, k) mm, degrees and whole numbers
     """
 
@@ -77,7 +73,7 @@ class StepCounter:
         self,
         limit: int,
         sources: Callable[[], Sequence[SourceText]],
-        fail: Callable[[str, str], InputError],
+        fail: Callable[[Wording], InputError],
         positions: Callable[[int], Floats],
     ) -> None:
         self._limit = limit
@@ -102,7 +98,7 @@ class StepCounter:
             return
         most = self._limit + min(BLOCKS_PER_LINE * self._lines(), MOST_BLOCKS)
         if self._blocks > most + self._blocks_of_files():
-            raise self._fail(f"executes more than {most} blocks", _DOES_LESS)
+            raise self._fail(Wording("NC140", "too_many_blocks", most=most))
 
     def count_motions(self, motions: int) -> None:
         """Count motions that have no block of their own: a program of many holes has a line for each, and ends."""
@@ -111,7 +107,7 @@ class StepCounter:
             return
         most = self._limit + min(MOTIONS_PER_LINE * self._lines(), MOST_MOTIONS)
         if self._motions > most:
-            raise self._fail(f"makes more than {most} motions in cycles and curves", _DOES_LESS)
+            raise self._fail(Wording("NC140", "too_many_motions", most=most))
 
     def check_turns(self, turns: int) -> None:
         """Check how many whole turns the helices have."""
@@ -119,7 +115,7 @@ class StepCounter:
             return
         most = self._limit + min(TURNS_PER_LINE * self._lines(), MOST_TURNS)
         if turns > most:
-            raise self._fail(f"makes more than {most} turns in helices", _DOES_LESS)
+            raise self._fail(Wording("NC140", "too_many_turns", most=most))
 
     def _lines(self) -> int:
         """Return the lines of all files, as far as they are known."""
@@ -141,7 +137,7 @@ class StepCounter:
         self._visited.update(counts[k].tobytes() for k in range(len(counts)))
         self._in_circles = self._in_circles + passed if len(self._visited) == before else 0
         if self._in_circles > MOST_BLOCKS_IN_CIRCLES:
-            raise self._fail(f"has executed {MOST_BLOCKS_IN_CIRCLES} blocks and goes nowhere new", _ENDS)
+            raise self._fail(Wording("NC140", "goes_in_circles", blocks=MOST_BLOCKS_IN_CIRCLES))
 
     def check_resolutions(self, resolutions: int) -> None:
         """Check how often the control has worked out its axes, which takes as long as many blocks."""
@@ -150,7 +146,7 @@ class StepCounter:
             return
         most = least + RESOLUTIONS_PER_LINE * self._lines()
         if resolutions > most:
-            raise self._fail(f"makes the control work out its axes more than {most} times", _DOES_LESS)
+            raise self._fail(Wording("NC140", "too_many_resolutions", most=most))
 
     def count_records(self, records: int, characters: int) -> None:
         """Count comments or events with so many characters."""
@@ -159,7 +155,7 @@ class StepCounter:
             return
         most = self._limit + sum(source.size for source in self._sources())
         if self._records > most:
-            raise self._fail(f"makes more than {most} comments and events", _DOES_LESS)
+            raise self._fail(Wording("NC140", "too_many_records", most=most))
 
     def count_events(self, events: Sequence[RunEvent]) -> None:
         """Count the events that are new since the last call."""

@@ -2,8 +2,12 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
+from trunnion.messages import Wording
 
-def same_group(codes: Sequence[int], groups: Iterable[Collection[int]], text_of: Callable[[int], str]) -> Iterator[str]:
+
+def same_group(
+    codes: Sequence[int], groups: Iterable[Collection[int]], text_of: Callable[[int], str]
+) -> Iterator[Wording]:
     """Yield what is wrong with the G codes of a block: different ones of one group.
 
     Parameters
@@ -20,5 +24,4 @@ def same_group(codes: Sequence[int], groups: Iterable[Collection[int]], text_of:
     for group in groups:
         found = [text_of(code) for code in dict.fromkeys(codes) if code in group]
         if len(found) > 1:
-            what = f"{' and '.join(found[:2])} in one block, of which the control takes one at most"
-            yield f"{what}: write them in blocks of their own"
+            yield Wording("NC212", "one_at_most", words=tuple(found[:2]))

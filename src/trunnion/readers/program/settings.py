@@ -8,6 +8,7 @@ from trunnion.definitions import Table, resolve_extends
 from trunnion.encoding import ENCODINGS
 from trunnion.families import DEFAULT_FAMILY
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 
 #: In ``[control.reading.words]``: the control does not have the word, or has it with another meaning.
 UNKNOWN: Final = "unknown"
@@ -34,9 +35,7 @@ def no_reading(machine: Machine) -> None:
     """Raise ``InputError`` for every key of the table ``reading``, where the family's reader asks for none."""
     table = reading_of(machine)
     for key in list(table.keys()):
-        table.add_problem(
-            key, "is not a key that is known here", "leave it out: this family has no such keys", code="DEF320"
-        )
+        table.add_problem(key, Wording("DEF320", "unknown_key"))
     table.raise_problems()
 
 

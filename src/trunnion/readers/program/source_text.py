@@ -16,6 +16,7 @@ from trunnion.arrays import Bytes, Ints
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.files import WriteProgress
+from trunnion.messages import Wording
 
 #: Bytes read at a time.
 CHUNK: Final = 1 << 20
@@ -60,9 +61,7 @@ class SourceText:
             # Stays open while the program is read; the interpreter calls ``close``.
             self._file = path.open("rb", buffering=0)
         except (OSError, ValueError) as error:
-            raise InputError(
-                Problem(str(path), 0, f"cannot be read: {error}", "give the path of an NC program", code="NC111")
-            ) from None
+            raise InputError(Problem(str(path), 0, Wording("NC111", "cannot_read", error=error))) from None
         self.whole = False
         self._write_progress: WriteProgress | None = None
         self._size = os.fstat(self._file.fileno()).st_size
@@ -94,9 +93,9 @@ class SourceText:
         """Return bytes of the program as text."""
         return data.decode() if data.isascii() else decode(data, self._encoding)
 
-    def problem(self, line: int, what: str, cure: str = "", *, code: str) -> InputError:
+    def problem(self, line: int, wording: Wording) -> InputError:
         """Return the error for a fault at a line."""
-        return InputError(Problem(str(self.path), line, what, cure, code=code))
+        return InputError(Problem(str(self.path), line, wording))
 
     def follow(self, write_progress: WriteProgress) -> None:
         """Read a file that is still being written: wait for what is not there yet."""
@@ -139,8 +138,7 @@ class SourceText:
             if length >= 0:
                 break
             if size > MAX_LINE_LENGTH:
-                what = f"is longer than {MAX_LINE_LENGTH} characters"
-                raise self.problem(self.line, what, "this is not a program", code="NC110")
+                raise self.problem(self.line, Wording("NC110", "long_line", most=MAX_LINE_LENGTH))
             size *= 8
         self.position += length + 1
         self.line += 1
@@ -155,7 +153,7 @@ class SourceText:
         try:
             got = self._file.readinto(memoryview(self._chunk)[filled : filled + CHUNK])
         except OSError as error:
-            raise self.problem(0, f"cannot be read: {error}", code="NC111") from None
+            raise self.problem(0, Wording("NC111", "cannot_be_read", error=error)) from None
         if not self._filled:
             self._chunk[:got] = self._as_text(bytes(self._chunk[:got]))
         if not got:
@@ -165,9 +163,7 @@ class SourceText:
         filled += got
         cut = self._chunk.rfind(b"\n", 0, filled) + 1
         if filled - cut > MAX_LINE_LENGTH:
-            raise self.problem(
-                self.line, f"is longer than {MAX_LINE_LENGTH} characters", "this is not a program", code="NC110"
-            )
+            raise self.problem(self.line, Wording("NC110", "long_line", most=MAX_LINE_LENGTH))
         self._remainder, self._filled = cut, filled
         self.buffer = np.frombuffer(self._chunk, np.uint8, cut)
         self.buffer.setflags(write=False)
@@ -188,15 +184,14 @@ class SourceText:
             self._wait(0)
         size = self.size
         if size > MAX_LOADED_SIZE:
-            what = f"has {size} bytes, more than the {MAX_LOADED_SIZE} that a program with jumps may have"
-            raise self.problem(0, what, code="NC140")
+            raise self.problem(0, Wording("NC140", "too_large_for_jumps", size=size, most=MAX_LOADED_SIZE))
         try:
             if self._file.closed:
                 self._file = self.path.open("rb", buffering=0)
             self._file.seek(0)
             data = self._file.read(size)
         except OSError as error:
-            raise self.problem(0, f"cannot be read: {error}", code="NC111") from None
+            raise self.problem(0, Wording("NC111", "cannot_be_read", error=error)) from None
         self._file.close()
         data = self._as_text(data)
         if not data.endswith(b"\n"):
@@ -209,12 +204,9 @@ class SourceText:
     def _as_text(self, data: bytes) -> bytes:
         """Return the beginning of the file with blanks in place of a byte order mark; text of two bytes is refused."""
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in data[:_PROBED]:
-            raise self.problem(
-                0, "is UTF-16 or no text", "save it as UTF-8 or plain ASCII: no control reads this", code="NC110"
-            )
+            raise self.problem(0, Wording("NC110", "no_text"))
         if b"\r" in data[:_PROBED] and b"\n" not in data:
-            cure = "save it with line feeds, with or without CR: no control reads it so"
-            raise self.problem(0, "has line ends of CR alone: it is one single line", cure, code="NC110")
+            raise self.problem(0, Wording("NC110", "line_ends_of_cr"))
         if data.startswith(codecs.BOM_UTF8):
             self._encoding = "utf-8"
             return data.replace(codecs.BOM_UTF8, b"   ", 1)

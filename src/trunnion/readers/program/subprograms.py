@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.messages import Wording
 
 
 class Subprograms:
@@ -26,13 +27,9 @@ class Subprograms:
                 problems.append(unusable)
             elif rank is None:
                 endings = ", ".join(suffix for suffix in self._suffixes if suffix)
-                problems.append(
-                    Problem(
-                        str(path), 0, "is not a name of a subprogram", f"let it end in one of {endings}", code="NC130"
-                    )
-                )
+                problems.append(Problem(str(path), 0, Wording("NC130", "not_a_subprogram_name", endings=endings)))
             elif (first := found.setdefault((self._stem(path.name), rank), path)) is not path:
-                problems.append(Problem(str(path), 0, f"is called as {first} is", "name one of them", code="NC130"))
+                problems.append(Problem(str(path), 0, Wording("NC130", "same_name", first=first)))
         if problems:
             raise InputError(problems)
         for (stem, _), path in sorted(found.items(), key=lambda each: each[0][1]):

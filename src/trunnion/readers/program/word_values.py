@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from trunnion.messages import Wording
+
 
 @dataclass(frozen=True, slots=True)
 class Values:
@@ -31,6 +33,8 @@ def whole(least: float, greatest: float) -> Values:
     return Values((), least, greatest)
 
 
-def fault_of_value(word: str, letter: str, value: float, known: Values) -> str:
-    """Return what is wrong with the value of a word; empty if it is known."""
-    return "" if value in known else f"{word} {letter}{value:g}: the control knows {known} there"
+def fault_of_value(word: str, letter: str, value: float, known: Values) -> Wording | None:
+    """Return what is wrong with the value of a word; None if it is known."""
+    if value in known:
+        return None
+    return Wording("NC215", "unknown_value", word=word, letter=letter, value=value, known=known)

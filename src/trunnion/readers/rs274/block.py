@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, ExpressionReader, Parameters, Value
 
 #: Longer lines are no blocks.
@@ -88,17 +89,17 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
             if semicolon:
                 comments.append(rest)
             elif rest.strip():
-                raise BlockError("something stands behind the end of the block")
+                raise BlockError(Wording("NC210", "something_stands_behind_end_block"))
             break
         end = raw.find(")", begin.end())
         if end < 0:
-            raise BlockError("a comment does not end")
+            raise BlockError(Wording("NC210", "comment_does_not_end"))
         comments.append(raw[begin.end() : end])
         at = end + 1
     outside = "".join(parts)
     if not outside.isascii():  # a blank or a letter that only looks like one, and that no control takes
         strange = next(character for character in outside if not character.isascii())
-        raise BlockError(f"{strange!r} outside a comment, where only ASCII may stand")
+        raise BlockError(Wording("NC210", "not_ascii", found=repr(strange)))
     text = "".join(outside.split()).upper()
     block_skip = text.startswith("/")
     if block_skip:
@@ -121,7 +122,7 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
             block.assignments.append((key, reader.assigned_value()))
             continue
         if not "A" <= letter <= "Z":
-            raise BlockError(f"{letter!r} is not a word")
+            raise BlockError(Wording("NC210", "not_a_word", found=repr(letter)))
         value, whole = reader.signed_value()
         if value is None:
             # A word whose value is an unset parameter counts as not written.
@@ -140,14 +141,14 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
 def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> ExpressionReader:
     """Return a reader at the start of a block."""
     if len(text) > MAX_LENGTH:
-        raise BlockError(f"the block is longer than {MAX_LENGTH} characters", code="NC214")
+        raise BlockError(Wording("NC214", "long_block", most=MAX_LENGTH))
     return ExpressionReader(text, arithmetic, parameters)
 
 
 def _code(value: float, letter: str, parts: int) -> int:
     code = round(value * parts)
     if abs(value * parts - code) > 1e-3 or not 0 <= code < _MAX_CODE:
-        raise BlockError(f"{letter} takes a whole number" + (", or one with a tenth" if parts > 1 else ""))
+        raise BlockError(Wording("NC210", "number_with_tenth" if parts > 1 else "whole_number", word=letter))
     return code
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control import arcs
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
@@ -46,9 +47,9 @@ class Rs274Control(VirtualControl):
         """Return the value of a mode with which any program may end."""
         return self.usual_inches if name == "units" else super().usual(name)
 
-    def left_on(self) -> str:
-        """Return what the end of the program leaves on, so that the next one begins with it; empty if nothing."""
-        return ""
+    def left_on(self) -> Wording | None:
+        """Return what the end of the program leaves on, so that the next one begins with it; None if nothing."""
+        return None
 
     @property
     def _length_offset(self) -> Floats:
@@ -76,22 +77,22 @@ class Rs274Control(VirtualControl):
 
     def _arc(self, words: Mapping[str, float], turns: int, start: Floats, end: Floats) -> arcs.Arc:
         if not 0 <= turns < MAX_TURNS:
-            raise arcs.ArcError(f"a circle with {turns} turns")
+            raise arcs.ArcError(Wording("NC320", "too_many_turns_of_circle", turns=turns))
         if any(abs(value) * self.length_unit > MAX_POSITION for value in words.values()):
-            raise arcs.ArcError("a circle with numbers that no machine has")
+            raise arcs.ArcError(Wording("NC320", "circle_numbers_no_machine"))
         clockwise = self.motion == CLOCKWISE
         given = {axis: words[name] * self.length_unit for axis, name in enumerate("IJK") if name in words}
         if self.plane_axis in given:
-            self.note(f"{'IJK'[self.plane_axis]} has no meaning for a circle in this plane", Severity.WARNING, "NC213")
+            self.note(Wording("NC213", "no_word_of_circle", word="IJK"[self.plane_axis]), Severity.WARNING)
             del given[self.plane_axis]
         if "R" in words:
             if given:
-                self.note("R and a centre in one block: R counts", Severity.ERROR, "NC216")
+                self.note(Wording("NC216", "r_centre_block_r_counts"), Severity.ERROR)
             return arcs.by_radius(start, end, words["R"] * self.length_unit, self.plane_axis, clockwise, turns)
         if not given:
-            raise arcs.ArcError("the circle has no centre")
+            raise arcs.ArcError(Wording("NC320", "circle_no_centre"))
         if not self.relative_centres and len(given) < 2:
-            raise arcs.ArcError("the circle needs both words of its centre")
+            raise arcs.ArcError(Wording("NC320", "circle_needs_both_words_centre"))
         centre = start.copy()
         for axis, value in given.items():
             centre[axis] = start[axis] + value if self.relative_centres else value

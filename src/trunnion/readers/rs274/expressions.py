@@ -11,6 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, Protocol
 
+from trunnion.messages import Wording
+from trunnion.readers.control.worded_error import WordedError
+
 #: How deep brackets and signs may nest.
 MAX_NESTING: Final = 40
 
@@ -23,12 +26,8 @@ _NAME = re.compile(r"<([^<>#\[\]]{1,80})>")
 Value = float | None
 
 
-class BlockError(Exception):
+class BlockError(WordedError):
     """The reason why a block is not executed."""
-
-    def __init__(self, text: str, *, code: str = "NC210") -> None:
-        super().__init__(text)
-        self.code = code
 
 
 class Parameters(Protocol):
@@ -94,7 +93,9 @@ class ExpressionReader:
         """Read a text that must come next."""
         if not self.accept(text):
             raise BlockError(
-                f"{text} is missing before {self.rest!r}" if self.rest else f"{text} is missing at the end"
+                Wording("NC210", "missing_before", expected=text, rest=repr(self.rest))
+                if self.rest
+                else Wording("NC210", "missing_at_end", expected=text)
             )
 
     def letter(self) -> str:
@@ -107,12 +108,14 @@ class ExpressionReader:
         match = _NUMBER.match(self.text, self.at)
         if match is None:
             raise BlockError(
-                f"a number is missing before {self.rest!r}" if self.rest else "a number is missing at the end"
+                Wording("NC210", "number_missing_before", rest=repr(self.rest))
+                if self.rest
+                else Wording("NC210", "number_missing_at_end")
             )
         self.at = match.end()
         value = float(match.group())
         if value > MAX_VALUE:
-            raise BlockError("a number is larger than any machine's", code="NC215")
+            raise BlockError(Wording("NC215", "number_too_large"))
         return value, "." not in match.group()
 
     def signed_value(self) -> tuple[Value, bool]:
@@ -143,7 +146,7 @@ class ExpressionReader:
             return match.group(1)
         value, _ = self.signed_value()
         if value is None or abs(value - round(value)) > 1e-4 or not 0 <= round(value) < 10_000_000:
-            raise BlockError("a parameter needs a whole number")
+            raise BlockError(Wording("NC210", "parameter_needs_whole_number"))
         return round(value)
 
     def bracket(self) -> Value:
@@ -216,7 +219,7 @@ class ExpressionReader:
     def _deeper(self) -> None:
         self._depth += 1
         if self._depth > MAX_NESTING:
-            raise BlockError(f"expressions nest deeper than {MAX_NESTING} levels")
+            raise BlockError(Wording("NC210", "expressions_too_deep", most=MAX_NESTING))
 
 
 def _or_zero(value: Value) -> float:
@@ -228,9 +231,9 @@ def _evaluate(operation: Callable[[], float], name: str) -> float:
     try:
         value = operation()
     except (ValueError, OverflowError, ZeroDivisionError):
-        raise BlockError(f"{name} has no value here", code="NC215") from None
+        raise BlockError(Wording("NC215", "no_value_here", name=name)) from None
     if isinstance(value, complex) or not abs(value) <= MAX_VALUE:
-        raise BlockError(f"{name} has no value here", code="NC215")
+        raise BlockError(Wording("NC215", "no_value_here", name=name))
     return float(value)
 
 

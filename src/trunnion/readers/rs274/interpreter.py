@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
@@ -98,7 +99,7 @@ class Rs274Interpreter(Interpreter[A]):
         return bool(text) and not text.startswith("%")
 
     def _report_block(self, error: BlockError) -> None:
-        self._note(f"not understood: {error}: the block is not executed", Severity.ERROR, error.code)
+        self._note(error.wording.within("reason_not_executed"), Severity.ERROR)
 
     def _handle_comment(self, comment: str) -> None:
         """Act on a comment that has a meaning for the control."""
@@ -153,13 +154,13 @@ class Rs274Interpreter(Interpreter[A]):
         here = control.line
         for row in missing.tolist():
             control.line = int(columns.line[row - columns.base])
-            self._note("a line without a feed", Severity.ERROR, "NC240")
+            self._note(Wording("NC240", "line_without_feed"), Severity.ERROR)
         control.line = here
 
     # Words
 
     def _report_repeated_word(self, letter: str) -> None:
-        self._note(f"{letter} is written twice: the last one counts", Severity.ERROR, "NC212")
+        self._note(Wording("NC212", "last_counts", word=letter), Severity.ERROR)
 
     def _axis_words(self, block: Block) -> dict[str, AxisWord]:
         """Return the words of the machine's axes; report those of other axes."""
@@ -171,7 +172,7 @@ class Rs274Interpreter(Interpreter[A]):
             if letter in "XYZ" or letter in self.control.rotary_names:
                 axes[letter] = value, PositionMode.MODAL
             else:
-                self._note(f"{letter}: the machine has no such axis", Severity.ERROR, "NC230")
+                self._note(Wording("NC230", "no_such_axis", axis=letter), Severity.ERROR)
         return axes
 
     def _feed_and_speed(self, block: Block) -> None:
@@ -179,7 +180,7 @@ class Rs274Interpreter(Interpreter[A]):
         feed = block.take("F")
         if feed is not None:
             if feed < 0.0:
-                raise BlockError("a feed below zero", code="NC215")
+                raise BlockError(Wording("NC215", "feed_below_zero"))
             control.programmed_feed = feed if self._inverse_time else feed * control.feed_unit
         speed = block.take("S")
         if speed is not None:
@@ -212,7 +213,7 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _report_unused_words(self, block: Block) -> None:
         for letter in block.unused():
-            self._note(f"{letter} has no use in this block", Severity.ERROR, "NC213")
+            self._note(Wording("NC213", "unused_word", word=letter), Severity.ERROR)
 
     # Motion
 
@@ -231,6 +232,6 @@ class Rs274Interpreter(Interpreter[A]):
         if control.motion != RAPID:
             feed = control.programmed_feed
             if math.isnan(feed) or feed <= 0.0 or (self._inverse_time and not written):
-                what = "a line" if control.motion == LINEAR else "a circle"
-                self._note(f"{what} without a feed", Severity.ERROR, "NC240")
+                variant = "line_without_feed" if control.motion == LINEAR else "circle_without_feed"
+                self._note(Wording("NC240", variant), Severity.ERROR)
         return written

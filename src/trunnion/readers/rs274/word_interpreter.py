@@ -6,6 +6,7 @@ from typing import Final, TypeVar
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -49,14 +50,14 @@ class WordInterpreter(Rs274Interpreter[A]):
         """Read the words of a block as those of the family."""
         block = read_block(reader, self._report_repeated_word)
         for word in self.control.own_words.translate(block):
-            self._note(f"unknown word {word}", Severity.ERROR, "NC211")
+            self._note(Wording("NC211", "unknown_word", word=word), Severity.ERROR)
         self._check_groups(block)
         return block
 
     def _check_groups(self, block: Block) -> None:
         """Report two G codes of a block that set one mode."""
         for fault in same_group(block.g, self.table.groups["G"], lambda code: self.table.words("G", [code])[0].text):
-            self._note(fault, Severity.ERROR, "NC212")
+            self._note(fault, Severity.ERROR)
 
     def _execute_words(self, block: Block) -> None:
         """Execute a block: units and feed modes, F and S, T, M codes, G codes, the motion, and M codes behind it."""
@@ -102,7 +103,7 @@ class WordInterpreter(Rs274Interpreter[A]):
                 self._execute_word(word, block)
             elif word.when is When.BEHIND_MODES:
                 if behind is not None and not behind.moves and not word.moves:
-                    raise BlockError("two G words want the words of the block")
+                    raise BlockError(Wording("NC210", "two_g_words_want_words"))
                 behind = word
         self._before_motion(codes, block)
         if behind is not None:
@@ -136,7 +137,7 @@ class WordInterpreter(Rs274Interpreter[A]):
             block.take(letter)
         if word.effect in _NOT_SIMULATED:
             severity, code = _NOT_SIMULATED[word.effect]
-            self._note(f"{word.text}: {word.does}", severity, word.problem or code)
+            self._note(Wording(word.problem or code, "not_simulated", word=word.text, does=word.does), severity)
         elif word.effect is Effect.UNKNOWN:
             self._execute_unknown(word)
         if word.act:
@@ -146,7 +147,7 @@ class WordInterpreter(Rs274Interpreter[A]):
         if word.text[0] == "M" and self.has_builders_words:
             self.control.add_builders_word("M", float(word.code))
         else:
-            self._note(f"unknown word {word.text}", Severity.ERROR, "NC211")
+            self._note(Wording("NC211", "unknown_word", word=word.text), Severity.ERROR)
 
     def _report_values(self, words: Sequence[Word], block: Block) -> None:
         """Report letters with values that a word cannot have."""
@@ -155,7 +156,7 @@ class WordInterpreter(Rs274Interpreter[A]):
                 if letter in block.words and (
                     fault := fault_of_value(word.text, letter, block.words[letter].value, known)
                 ):
-                    self._note(fault, Severity.ERROR, "NC215")
+                    self._note(fault, Severity.ERROR)
 
     def _motion(self, word: Word, block: Block) -> None:
         self._select_motion(word.code)
@@ -222,9 +223,9 @@ class WordInterpreter(Rs274Interpreter[A]):
         """Wait for the seconds of a letter; ``word.sets`` is how it is written."""
         seconds = block.take(word.letters)
         if seconds is None:
-            self._note(f"{word.text} without a time {word.sets}", Severity.ERROR, "NC218")
+            self._note(Wording("NC218", "no_time", word=word.text, written=word.sets), Severity.ERROR)
         elif seconds < 0.0:
-            raise BlockError("a dwell below zero", code="NC215")
+            raise BlockError(Wording("NC215", "negative_dwell"))
         else:
             self.control.add_event("dwell", seconds)
 
@@ -239,22 +240,23 @@ class WordInterpreter(Rs274Interpreter[A]):
 
     # Cycles
 
-    def _report_rotary_words(self, axes: Collection[str], where: str = "a cycle") -> None:
+    def _report_rotary_words(self, axes: Collection[str], *, of_thread: bool = False) -> None:
         if set(axes) - set("XYZ"):
-            self._note(f"rotary words in {where}: they are not executed", Severity.ERROR, "NC213")
+            variant = "rotary_words_of_thread" if of_thread else "rotary_words_of_cycle"
+            self._note(Wording("NC213", variant), Severity.ERROR)
 
     def _require_words(self, words: Collection[str]) -> None:
         """Refuse the cycle in force if it lacks one of the words that it needs."""
         for letter in self.table.cycles[self.motion_code].needs:
             if letter not in words:
-                raise BlockError(f"the cycle has no {letter}")
+                raise BlockError(Wording("NC210", "cycle_no", letter=letter))
 
     def _may_be_left_on(self) -> list[str]:
         return [self.table.cycles[self.motion_code].text] if self.motion_code in self.table.cycles else []
 
     def _check_cycle_feed(self) -> None:
         if not self.control.programmed_feed > 0.0:
-            self._note("a cycle without a feed", Severity.ERROR, "NC240")
+            self._note(Wording("NC240", "cycle_without_feed"), Severity.ERROR)
 
     @staticmethod
     def _cycle_motions(motions: Callable[[], list[HoleMotion]]) -> list[HoleMotion]:
@@ -262,4 +264,4 @@ class WordInterpreter(Rs274Interpreter[A]):
         try:
             return motions()
         except CycleExecutionError as error:
-            raise BlockError(f"the cycle {error}", code=error.code) from None
+            raise BlockError(error.wording.within("of_cycle")) from None

@@ -11,6 +11,7 @@ from typing import Final
 
 from trunnion.definitions import Table
 from trunnion.definitions.duplicate_keys import report_duplicates
+from trunnion.messages import Wording
 from trunnion.readers.program.known_words import plain_code
 from trunnion.readers.program.settings import UNKNOWN
 from trunnion.readers.rs274.block import Block, g_code_text
@@ -69,9 +70,7 @@ def read_word_meanings(
         value = own.text(key)
         word, target = _code(key), _code(value)
         if word is None or (word[0] == "G" and word[1] in _PLAIN):
-            own.add_problem(
-                key, "is no word that could mean another", "write such as G234 or M128; G0 to G3 stay", code="NC190"
-            )
+            own.add_problem(key, Wording("NC190", "no_word_could_mean_another"))
             continue
         letter, code = word
         names = (meanings or {}).get(letter, {})
@@ -80,16 +79,12 @@ def read_word_meanings(
         elif value in names:
             (g if letter == "G" else m)[code] = names[value]
         elif target is not None and not is_own_word(plain_code(value)):
-            own.add_problem(
-                key, f"is {value!r}, which the family does not have", "write a word that it has", code="NC190"
-            )
+            own.add_problem(key, Wording("NC190", "meaning_family_lacks", value=repr(value)))
         elif target is not None and target[0] == letter:
             (g if letter == "G" else m)[code] = target[1]
         else:
             others = ", ".join((*names, UNKNOWN))
-            own.add_problem(
-                key, f"is {value!r}", f"write the {letter} word that means the same, or {others}", code="NC190"
-            )
+            own.add_problem(key, Wording("NC190", "unknown_meaning", value=repr(value), letter=letter, others=others))
     report_duplicates(own, lambda key: _code(key) or key)
     own.report_unread_keys()
     return WordMeanings(g, m)

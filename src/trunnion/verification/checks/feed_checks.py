@@ -9,11 +9,11 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.feed_path import NO_ROTATION, FeedPath, row_feed_path_lengths
 from trunnion.model.toolpath import Kind
 from trunnion.timing import HARDLY_MOVES
-from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
+from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, needlessly_lowered_feeds
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
-from trunnion.verification.results import Check, Place
+from trunnion.verification.results import Check
 from trunnion.wording import counted
 
 #: A tip that moves by less than this, mm, or by less than rounding, may be taken to rest.
@@ -34,8 +34,10 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original:
 
     ``original`` has the feeds of the CL files.
     """
-    compared = _compare_points(context, original)
-    count, places = compared.count, compared.places
+    found = Faults()
+    declared = [*accepted.feed, *needlessly_lowered_feeds(context.run, context.expected, context.matching)]
+    found.add_rows(len(declared), (context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in declared))
+    ranges = _compare_points(context, original, found)
     for segments in context.matching.arc_segments:
         wanted, tolerances = (
             context.expected.point(segments.cl).feed,
@@ -46,15 +48,12 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original:
         digit = np.full(len(asked), FEED_PER_REV_SHARE * wanted if per_rev else tolerances.feed)
         near, feed = _compare_feeds(context, segments.nc, asked, tolerances.tip, digit)
         for k in np.flatnonzero(~near).tolist():
-            count += 1
             text = f"moves with {feed[k]:g} mm/min; the CL file wants {wanted:g}"
-            places.append(context.place_with_cl(int(segments.nc[k]), float(feed[k]), text, segments.cl))
-    faults = [*accepted.feed, *needlessly_lowered_feeds(context.run, context.expected, context.matching)]
-    named = [context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in faults[:MAX_PLACES]]
-    good = ", ".join(map(_range_text, sorted(compared.ranges.items()))) or "nothing is cut"
+            found.add(context.place_with_cl(int(segments.nc[k]), float(feed[k]), text, segments.cl))
+    good = ", ".join(map(_range_text, sorted(ranges.items()))) or "nothing is cut"
     lowest, rows = accepted.slowed
     good += f"; lowered at {counted(rows, 'row')}, down to {lowest:.2f}, for the rotary axes" if rows else ""
-    return check_from_places("feed", "feeds as the CL file says", [*named, *places], good, count + len(faults))
+    return found.check("feed", "feeds as the CL file says", good)
 
 
 def _range_text(item: tuple[str, tuple[float, float]]) -> str:
@@ -62,19 +61,10 @@ def _range_text(item: tuple[str, tuple[float, float]]) -> str:
     return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
 
 
-@dataclass(slots=True, eq=False)
-class _ComparedFeeds:
-    """Places of wrong feeds and how many there are, and the lowest and highest feed of the CL files by unit."""
-
-    places: list[Place]
-    count: int
-    ranges: dict[str, tuple[float, float]]
-
-
-def _compare_points(context: ComparedContext, original: ExpectedPath) -> _ComparedFeeds:
-    """Return feeds of all motions that go or lead to a CL point."""
+def _compare_points(context: ComparedContext, original: ExpectedPath, found: Faults) -> dict[str, tuple[float, float]]:
+    """Compare the feeds of all motions that go or lead to a CL point; return the lowest and highest by unit."""
     run, expected = context.run, context.expected
-    found = _ComparedFeeds([], 0, {})
+    ranges: dict[str, tuple[float, float]] = {}
     feed_tolerance = max(section.tolerances.feed for section in expected.sections)
     for nc, cl in context.matching.all_pair_chunks():
         at_feed = (run.kind[nc] != Kind.RAPID) & (expected.kind(cl) != Kind.RAPID)
@@ -91,18 +81,24 @@ def _compare_points(context: ComparedContext, original: ExpectedPath) -> _Compar
         wrong |= stated & ~near
         for unit, rows in (("mm/min", stated & ~per_rev), ("mm/rev", stated & per_rev)):
             if rows.any():
-                low, high = found.ranges.get(unit, (np.inf, -np.inf))
-                found.ranges[unit] = min(low, float(asked[rows].min())), max(high, float(asked[rows].max()))
+                low, high = ranges.get(unit, (np.inf, -np.inf))
+                ranges[unit] = min(low, float(asked[rows].min())), max(high, float(asked[rows].max()))
         if not wrong.any():
             continue
-        bad = np.flatnonzero(wrong)
-        found.count += len(bad)
-        for k in bad[: max(MAX_PLACES - len(found.places), 0)].tolist():
-            unit = {93: "mm/min (inverse time)", 95: "mm/rev"}.get(int(mode[k]), "mm/min")
-            has = "no feed" if np.isnan(feed[k]) else f"{feed[k]:g} {unit}"
-            text = f"moves with {has}; the CL file wants {asked[k]:g} {'mm/rev' if per_rev[k] else 'mm/min'}"
-            found.places.append(context.place_with_cl(int(nc[k]), float(feed[k]), text, int(cl[k])))
-    return found
+        texts = (
+            (int(k), _feed_text(float(feed[k]), int(mode[k]), float(asked[k]), "mm/rev" if per_rev[k] else "mm/min"))
+            for k in np.flatnonzero(wrong)
+        )
+        places = (context.place_with_cl(int(nc[k]), float(feed[k]), text, int(cl[k])) for k, text in texts)
+        found.add_rows(int(wrong.sum()), places)
+    return ranges
+
+
+def _feed_text(feed: float, mode: int, asked: float, unit: str) -> str:
+    """Return a feed that is wrong, and the one asked for, in words."""
+    own = {93: "mm/min (inverse time)", 95: "mm/rev"}.get(mode, "mm/min")
+    has = "no feed" if math.isnan(feed) else f"{feed:g} {own}"
+    return f"moves with {has}; the CL file wants {asked:g} {unit}"
 
 
 def _asked_at_rest(context: ComparedContext, nc: Ints, asked: Floats, own: Floats) -> tuple[Floats, Ints]:

@@ -7,7 +7,7 @@ from trunnion.model.run import Run
 from trunnion.verification.checks.drill_motions import HoleFault
 from trunnion.verification.checks.hole_faults import hole_faults
 from trunnion.verification.checks.tool_checks import length_fault, tool_fault
-from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
+from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.expected.holes import Hole
 from trunnion.verification.expected.spindle_and_tool import names_tool
 from trunnion.verification.matching.hole_approaches import clearance_between_holes
@@ -32,32 +32,27 @@ def check_holes(context: ComparedContext) -> Check:
     by_index = {match.index: match for match in matches}
     dwells = _dwells_by_row(run)
     work = {each.first: each.work for each in run.spindle_holes}
-    places: list[Place] = []
-    count = 0
+    found = Faults()
     before: _Drilled | None = None
     for index, hole in enumerate(expected.holes):
         match = by_index.get(index)
         if match is None:
-            count += 1
-            places.append(Place(context.last_line, -1, 0.0, "nothing drills this hole", hole.file, hole.line))
+            found.add(Place(context.last_line, -1, 0.0, "nothing drills this hole", hole.file, hole.line))
             continue
         drilled = _Drilled(hole, match)
         faults = list(hole_faults(run, hole, match, dwells, work, _clearance_on_the_way(context, before, drilled)))
         faults += _faults_around(context, drilled)
         before = drilled
-        count += len(faults)
-        for fault in faults[: max(MAX_PLACES - len(places), 0)]:
+        for fault in faults:
             at = context.place(fault.row, fault.value, fault.text)
-            places.append(replace(at, cl_file=hole.file, cl_line=hole.line))
-    soft = list(_floating_threads(context, by_index))
-    count, places = count + len(soft), places + soft[: max(MAX_PLACES - len(places), 0)]
+            found.add(replace(at, cl_file=hole.file, cl_line=hole.line))
+    found.add(*_floating_threads(context, by_index))
     for match in (match for match in matches if match.index >= len(expected.holes)):
-        count += 1
-        places.append(context.place(match.first, 0.0, "drills where the CL file has no more holes"))
+        found.add(context.place(match.first, 0.0, "drills where the CL file has no more holes"))
     good = counted(len(matches), "hole") if matches else "the CL file has none"
     by_motion = sum(match.by_motion for match in matches)
     good += f", {by_motion} of them by motion" if by_motion else ""
-    return check_from_places("holes", "holes as the cycles of the CL file ask", places, good, count)
+    return found.check("holes", "holes as the cycles of the CL file ask", good)
 
 
 def _floating_threads(context: ComparedContext, matches: Mapping[int, MatchedHole]) -> Iterator[Place]:

@@ -1,6 +1,7 @@
 """Rapids that go sideways below the height to which the tool was last retracted."""
 
 import math
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.context import MAX_PLACES, ComparedContext, Context
+from trunnion.verification.context import ComparedContext, Context
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, approach_rows
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import hole_rows, match_holes
@@ -18,19 +19,18 @@ from trunnion.verification.results import Place
 _STILL: Final = 1e-3
 
 
-def low_rapids(context: Context) -> list[Place]:
+def low_rapids(context: Context) -> Iterator[Place]:
     """Places of low rapids that no CL file asks for."""
     run = context.run
     suspects = _suspects(context)
     if not suspects.any():
-        return []
+        return
     rapids = np.flatnonzero((run.kind == Kind.RAPID) & ((run.programmed & int(POSITION_WORDS)) != 0))
     rapids = rapids[~run.state.machine_frame.at(rapids)]
     before, after, tools = run.positions(np.maximum(rapids - 1, 0)), run.positions(rapids), run.state.tool.at(rapids)
     retracts = np.sort(np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64))
     count = np.searchsorted(retracts, rapids, side="right")  # retracts up to each rapid
     retracted_before = np.diff(count, prepend=0) > 0
-    places: list[Place] = []
     height: float | None = None
     axis, tool, entry = np.zeros(3), -1, -math.inf
     for k, row in enumerate(rapids.tolist()):
@@ -45,13 +45,10 @@ def low_rapids(context: Context) -> list[Place]:
             height = min(height, left)
         if suspects[row] and height is not None and aside > _STILL and highest < height - _STILL:
             text = f"rapid goes sideways {height - highest:.3f} mm below the retract height"
-            places.append(context.place(row, height - highest, text))
-            if len(places) >= MAX_PLACES:
-                break
+            yield context.place(row, height - highest, text)
         elif height is None or (aside <= _STILL and up > _STILL):
             height = float(end @ axis)
         entry = float(end @ axis)
-    return places
 
 
 def _height_left_at(run: Run, row: int, axis: Floats, entry: float) -> float | None:

@@ -11,7 +11,7 @@ from trunnion.verification.checks.compensation_corners import compensated_blind
 from trunnion.verification.checks.compensation_planes import compensated_askew
 from trunnion.verification.checks.low_rapids import low_rapids
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
-from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
+from trunnion.verification.context import ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
@@ -110,10 +110,9 @@ def _tcp_left_on(context: Context) -> Iterator[Place]:
             yield context.place_of_event(event, 0.0, f"{what} with TCP on")
 
 
-def _turned_under_tcp(context: Context) -> list[Place]:
+def _turned_under_tcp(context: Context) -> Iterator[Place]:
     """Rapids that swing rotary axes right after TCP was switched on: they were not positioned before it."""
     run = context.run
-    places = []
     for first in run.state.tcp.rows_changing_to(True):
         end = min(first + _ROWS_AFTER_TCP, len(run))
         joints = run.chunk(first, end).joints[:, list(run.machine.rotary)]
@@ -125,7 +124,6 @@ def _turned_under_tcp(context: Context) -> list[Place]:
             if turned > _STILL and not run.state.machine_frame[row]:
                 what = f"swings a rotary axis by {turned:.3f} degrees at rapid with TCP on"
                 text = f"{what}: position it before TCP is switched on"
-                places.append(context.place(row, turned, text))
+                yield context.place(row, turned, text)
             if run.programmed[row] & int(POSITION_WORDS):
                 break
-    return places[:MAX_PLACES]

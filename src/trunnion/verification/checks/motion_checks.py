@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
@@ -16,6 +16,8 @@ from trunnion.verification.results import Check, Place
 from trunnion.wording import counted
 
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
+
+_ORDER = "every CL point has its block, every block its point"
 
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
@@ -41,15 +43,11 @@ def check_order(context: ComparedContext) -> Check:
     still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
     places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]
-    places += [
-        context.place(row, 0.0, "goes to a position that is not a CL point")
-        for row in extra[: 2 * MAX_PLACES - len(places)]
-    ]
-    if places:
-        places.sort(key=lambda place: place.nc_line)
-        count = len(matching.missing) + len(extra)
-        return check_from_places("order", "every CL point has its block, every block its point", places, "", count)
-    return _in_order(context, retracts, still)
+    places += [context.place(row, 0.0, "goes to a position that is not a CL point") for row in extra[:MAX_PLACES]]
+    if not places:
+        return _in_order(context, retracts, still)
+    found = Faults(sorted(places, key=lambda place: place.nc_line), len(matching.missing) + len(extra))
+    return found.check("order", _ORDER, "")
 
 
 def _in_order(context: ComparedContext, retracts: list[RewindRetract], still: list[int]) -> Check:
@@ -74,8 +72,7 @@ def _in_order(context: ComparedContext, retracts: list[RewindRetract], still: li
         summary += f", {counted(len(retracts), 'retract')} along the tool axis to turn"
     if still:
         summary += f", {counted(len(still), 'block')} without motion"
-    title = "every CL point has its block, every block its point"
-    return Check("order", title, True, summary, places=tuple(notes[:MAX_PLACES]))
+    return Check("order", _ORDER, True, summary, places=tuple(notes[:MAX_PLACES]))
 
 
 def _retracts_before_home(run: Run, row: int, tolerance: float) -> bool:
@@ -101,8 +98,7 @@ def check_kind(context: ComparedContext) -> Check:
     """Rapid, line or circle; and for circles centre, direction and turns."""
     run, expected, matching = context.run, context.expected, context.matching
     by_lines = {segments.cl for segments in matching.arc_segments if segments.pieces is None}
-    places: list[Place] = []
-    count = 0
+    found = Faults()
     for nc, cl in matching.all_pair_chunks():
         for k in np.flatnonzero(run.kind[nc] != expected.kind(cl)).tolist():
             row, point = int(nc[k]), int(cl[k])
@@ -112,16 +108,14 @@ def check_kind(context: ComparedContext) -> Check:
             at_rapid_feed = expected.point(point).feed == context.settings.rapid_feed
             if actual is Kind.RAPID and wanted is Kind.LINEAR and at_rapid_feed:
                 continue
-            count += 1
-            if len(places) < MAX_PLACES:
-                text = f"moves {_KINDS[actual]}; the CL file wants it {_KINDS[wanted]}"
-                places.append(context.place_with_cl(row, 0.0, text, point))
-    others = list(_rapids_on_arcs(context)) + list(_wrong_circles(context))
-    places = sorted(places + others, key=lambda place: place.nc_line)
+            text = f"moves {_KINDS[actual]}; the CL file wants it {_KINDS[wanted]}"
+            found.add(context.place_with_cl(row, 0.0, text, point))
+    others = [*_rapids_on_arcs(context), *_wrong_circles(context)]
+    found = Faults(sorted(found.places + others, key=lambda place: place.nc_line), found.count + len(others))
     rapids, arcs = expected.rapid_count, len(expected.arcs.row)
     lines = len(expected) - rapids - arcs
     good = ", ".join((counted(rapids, "rapid"), counted(arcs, "arc"), counted(lines, "line")))
-    return check_from_places("kind", "rapid, line or circle as the CL file says", places, good, count + len(others))
+    return found.check("kind", "rapid, line or circle as the CL file says", good)
 
 
 def _is_flat(context: ComparedContext, cl: int) -> bool:

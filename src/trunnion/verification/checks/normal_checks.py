@@ -12,11 +12,11 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.context import MAX_PLACES, ComparedContext
+from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.expected.path import Section
 from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS
 from trunnion.verification.matching.rewind_retracts import find_rewind_retracts
-from trunnion.verification.results import Check, Place
+from trunnion.verification.results import Check
 from trunnion.wording import counted
 
 _TITLE: Final = "surface normals against the contact points"
@@ -32,8 +32,8 @@ def check_normals(context: ComparedContext) -> list[Check]:
     ]
     if not normals and not len(run.normals):
         return []
-    places: list[Place] = []
-    wrong = right = 0
+    found = Faults()
+    right = 0
     largest = limit = 0.0
     compared = [np.zeros(0, np.int64)]
     returns = _returns(context)
@@ -61,21 +61,23 @@ def check_normals(context: ComparedContext) -> list[Check]:
                 (beyond, "the surface normal is off"),
             )
             for rows, text in faults:
-                wrong += int(rows.sum())
-                for k in np.flatnonzero(rows)[: MAX_PLACES - len(places)].tolist():
-                    value = float(off[k]) if both[k] else 0.0
-                    full = f"{text} by {value:.9f}" if both[k] else text
-                    places.append(context.place_with_cl(int(nc[k]), value, full, int(cl[k])))
+                own = np.where(both, off, 0.0)
+                places = (
+                    context.place_with_cl(
+                        int(nc[k]), float(own[k]), f"{text} by {own[k]:.9f}" if both[k] else text, int(cl[k])
+                    )
+                    for k in np.flatnonzero(rows)
+                )
+                found.add_rows(int(rows.sum()), places)
     left = np.setdiff1d(run.normals.row, np.concatenate(compared)) if normals else compared[0]
-    wrong += len(left)
-    for row in left[: MAX_PLACES - len(places)].tolist():
-        places.append(context.place(row, 0.0, "has a surface normal, but goes to no contact point"))
+    text = "has a surface normal, but goes to no contact point"
+    found.add_rows(len(left), (context.place(int(row), 0.0, text) for row in left))
     summary = f"{counted(right, 'normal')} as the contact points have them, largest difference {largest:.9f}"
     if not normals:
         summary = f"{counted(len(run.normals), 'normal')}, and the CL files have no contact points to compare them with"
-    if wrong:
-        summary += f", {wrong} are not"
-    return [Check("normal", _TITLE, not wrong, summary, largest, limit or None, "", tuple(places))]
+    if found.count:
+        summary += f", {found.count} are not"
+    return [Check("normal", _TITLE, not found.count, summary, largest, limit or None, "", tuple(found.places))]
 
 
 def _returns(context: ComparedContext) -> tuple[Ints, Ints]:

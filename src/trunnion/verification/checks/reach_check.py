@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.timing import reached_feeds
-from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
+from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.deviations.reached_rows import ReachedRows, longest, reached_rows
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.results import Check
@@ -39,22 +39,22 @@ def check_reach(context: ComparedContext, original: ExpectedPath) -> list[Check]
     unknown = lowered & np.isnan(found.feed) & ~kept
     kept &= declared & (too_high | too_low)
     bad = np.flatnonzero(above_most | ((too_high | too_low) & ~kept) | unknown)
-    places = []
-    for row in bad[:MAX_PLACES].tolist():
+    faults = Faults()
+    for row in bad.tolist():
         text = f"has a feed of {feed[row]:g}, and the axes reach {found.feed[row]:.5g} there"
         if above_most[row]:
             text = f"has a feed of {feed[row]:g}, more than the {found.most[row]:g} that it may have"
         elif unknown[row]:
             text = f"has a feed of {feed[row]:g} in place of {found.most[row]:g}, and what the axes reach is not known"
-        places.append(context.place_of_cl_row(row, float(feed[row]), text))
+        faults.add(context.place_of_cl_row(row, float(feed[row]), text))
     now = float(reached_feeds(context.run, np.full(len(context.run), np.nan)).seconds.sum())
     times = f"{format_duration(now)} of motion, {format_duration(found.seconds)} at the feeds of the CL file"
     if now > longest(found.seconds):
-        return [Check("reach", _TITLE, False, f"far longer than it may be: {times}", places=tuple(places))]
+        return [Check("reach", _TITLE, False, f"far longer than it may be: {times}", places=tuple(faults.places))]
     summary = "nothing is cut at a feed per minute"
     if np.isfinite(found.most).any():
         summary = f"{_summary(context, found, feed, lowered & ~kept, int(np.count_nonzero(kept)))}; {times}"
-    return [check_from_places("reach", _TITLE, places, summary, len(bad))]
+    return [faults.check("reach", _TITLE, summary)]
 
 
 def _declared(expected: ExpectedPath) -> tuple[Floats, Floats, Flags]:

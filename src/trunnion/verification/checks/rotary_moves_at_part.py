@@ -15,7 +15,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.model.run import Run
-from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.context import Context
 from trunnion.verification.kinematics.cut_extent import cut_extent
 from trunnion.verification.kinematics.home_tolerance import home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -111,7 +111,6 @@ class _Judge:
                 found.at_home += 1
             else:
                 self._judge_by_number(row, found)
-        del found.places[MAX_PLACES:]
         return found
 
     def stands_away(self, place: int) -> bool:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from trunnion.machines import spindle_speed_fault, states_spindle_range
-from trunnion.verification.context import MAX_PLACES, Context, check_from_places
-from trunnion.verification.results import Check, Place
+from trunnion.verification.context import Context, Faults
+from trunnion.verification.results import Check
 from trunnion.verification.row_ranges import chunk_bounds
 
 _KEY = "rpm"
@@ -16,7 +16,7 @@ def check_spindle_range(context: Context) -> Check:
     run = context.run
     if not states_spindle_range(run.machine):
         return Check(_KEY, _TITLE, True, "the machine's definition states no spindle speeds")
-    places: list[Place] = []
+    found = Faults()
     speeds: set[float] = set()
     last = 0.0
     for start, end in chunk_bounds(len(run)):
@@ -26,7 +26,8 @@ def check_spindle_range(context: Context) -> Check:
             if speed > 0.0:
                 speeds.add(speed)
                 fault = spindle_speed_fault(run.machine, speed)
-                places += [context.place(start + k, speed, str(fault))] if fault and len(places) < MAX_PLACES else []
+                if fault:
+                    found.add(context.place(start + k, speed, str(fault)))
         last = float(rpm[-1])
     good = f"{min(speeds):g} to {max(speeds):g} rev/min" if speeds else "the spindle does not turn"
-    return check_from_places(_KEY, _TITLE, places, good)
+    return found.check(_KEY, _TITLE, good)

@@ -13,7 +13,7 @@ from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
 from trunnion.verification.checks.restated_modes import RestatedModes
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
-from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
+from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
 from trunnion.wording import format_duration
@@ -72,7 +72,7 @@ def check_stops(context: ComparedContext) -> Check:
     good = ", ".join(f"{count[kind]} {name}" for kind, name in _NAMES.items() if count[kind])
     good = (good or "the CL file has none") + _own_stops(context.run, own)
     title = "stops and dwells as the CL file says"
-    return check_from_places("stops", title, places[:MAX_PLACES], good, len(places) or None)
+    return check_from_places("stops", title, places, good)
 
 
 def _own_stops(run: Run, stops: list[_FoundStop]) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.model.run import Run, RunEvent
 from trunnion.verification.checks.rotary_moves_at_part import STILL, rotary_moves_at_part, turn_flags
-from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
+from trunnion.verification.context import ComparedContext, Context, Faults
 from trunnion.verification.kinematics.positioning_moves import (
     ROTARY_WORDS,
     only_positions_rotary_axes,
@@ -45,13 +45,12 @@ def check_turns(context: Context) -> Check:
     """Rotary axes turn away from the part and in no plane; planes are off at tool changes and at the end."""
     changes = _plane_changes(context.run)
     turns = rotary_moves_at_part(context)
-    places = turns.places + _turns_in_a_plane(context, changes)
-    places += list(_planes_left_on(context, changes))[:MAX_PLACES]
-    places += _turned_without_plane(context) if isinstance(context, ComparedContext) else []
-    places.sort(key=lambda place: place.nc_line)
+    places = [*turns.places, *_turns_in_a_plane(context, changes), *_planes_left_on(context, changes)]
+    unplaced = _turned_without_plane(context) if isinstance(context, ComparedContext) else Faults()
+    found = Faults(sorted([*places, *unplaced.places], key=lambda place: place.nc_line), len(places) + unplaced.count)
     on = sum(change.on for change in changes)
     good = turns.summary() + (f"; {on} tilted planes, each off before the next turn" if on else "")
-    return check_from_places("turns", "turns and planes in a safe order", places, good)
+    return found.check("turns", "turns and planes in a safe order", good)
 
 
 def _plane_changes(run: Run) -> list[_PlaneChange]:
@@ -89,10 +88,9 @@ def _tilts(event: RunEvent) -> bool:
     return bool(event.value) and not str(event.value).startswith("RESET")
 
 
-def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> list[Place]:
+def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> Iterator[Place]:
     """Rotary axes that turn without TCP in a plane, which holds for one rotary position only."""
     run = context.run
-    places = []
     for k, change in enumerate(changes):
         if not change.on or change.follows:
             continue
@@ -105,20 +103,20 @@ def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> list[Pla
             same_block = run.lines[row] == event.line and run.state.file[row] == event.file
             if not (same_block and row == event.before_row):
                 text = "turns a rotary axis in a tilted plane: switch the plane off first"
-                places.append(context.place(row, 0.0, text))
-    return places[:MAX_PLACES]
+                yield context.place(row, 0.0, text)
 
 
-def _turned_without_plane(context: ComparedContext) -> list[Place]:
+def _turned_without_plane(context: ComparedContext) -> Faults:
     """Work under turned rotary axes with neither TCP nor a plane: where it is depends on the workpiece zero.
 
     Only where the zero is known can the tip be compared at all. Otherwise a missing plane would not be noticed
     wherever the zero is taken to lie on the rotary axes.
     """
     run = context.run
+    found = Faults()
     if run.machine.workpiece_zero is not None:
-        return []
-    places: list[Place] = []
+        return found
+    text = "works under turned rotary axes with TCP off and in no plane: say where the workpiece zero is (zero)"
     for nc, cl in context.matching.pair_chunks():
         turned = ~run.state.xyz_is_tip.at(nc)
         if not turned.any():  # with TCP, as most are
@@ -126,10 +124,9 @@ def _turned_without_plane(context: ComparedContext) -> list[Place]:
         # Whole turns leave everything where it was.
         turned &= (np.abs(run.rotary[nc] - 360.0 * np.rint(run.rotary[nc] / 360.0)) > STILL).any(axis=1)
         turned &= ~only_positions_rotary_axes(run, nc)  # on the way from plane to plane
-        for k in np.flatnonzero(turned)[: MAX_PLACES - len(places)].tolist():
-            text = "works under turned rotary axes with TCP off and in no plane: say where the workpiece zero is (zero)"
-            places.append(context.place_with_cl(int(nc[k]), 0.0, text, int(cl[k])))
-    return places
+        places = (context.place_with_cl(int(nc[k]), 0.0, text, int(cl[k])) for k in np.flatnonzero(turned))
+        found.add_rows(int(turned.sum()), places)
+    return found
 
 
 def _planes_left_on(context: Context, changes: list[_PlaneChange]) -> Iterator[Place]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
+from trunnion.verification.context import ComparedContext, Context, Faults, check_from_places
 from trunnion.verification.kinematics.positioning_moves import (
     ROTARY_WORDS,
     first_workpiece_position,
@@ -54,8 +54,7 @@ def _check_selected(context: Context) -> Check:
         return Check("offset", _TITLE, True, "nothing moves")
     used, tcp = context.run.state.work_offset, context.run.state.tcp
     compared = isinstance(context, ComparedContext)
-    places: list[Place] = []
-    count = 0
+    found = Faults()
     for rows, wanted in stretches:
         for start in range(0, len(rows), CHUNK):
             part = rows.rows(start, start + CHUNK)
@@ -63,22 +62,21 @@ def _check_selected(context: Context) -> Check:
             if (here == wanted).all():
                 continue
             wrong = here != wanted if compared else (here != wanted) & ~((here == 0) & ~tcp.at(part))
-            bad = part[wrong]
-            count += len(bad)
-            places += [
-                context.place(row, 0.0, f"works in {_name(context, used[row])}, not in {_name(context, wanted)}")
-                for row in bad[: max(MAX_PLACES - len(places), 0)].tolist()
-            ]
+            at = (
+                (int(row), f"works in {_name(context, used[int(row)])}, not in {_name(context, wanted)}")
+                for row in part[wrong]
+            )
+            found.add_rows(int(wrong.sum()), (context.place(row, 0.0, text) for row, text in at))
     if compared:
-        places += _turned_in_others(context, stretches)
+        found.add(*_turned_in_others(context, stretches))
     known = list(dict.fromkeys(wanted for _, wanted in stretches))
     others = set(used.distinct().tolist()) - {0, *known}
-    if others and not places:
+    if others and not found.count:
         row = min(int(used.rows_with(code)[0]) for code in others)
-        places.append(context.place(row, 0.0, f"{_name(context, used[row])} is not the offset of this program"))
+        found.add(context.place(row, 0.0, f"{_name(context, used[row])} is not the offset of this program"))
     names = [_name(context, code) for code in known]
     good = f"{names[0]} throughout" if len(names) == 1 else ", ".join(names)
-    return check_from_places("offset", _TITLE, places, good, count or None)
+    return found.check("offset", _TITLE, good)
 
 
 def _turned_in_others(context: Context, stretches: Sequence[tuple[RowRanges, int]]) -> Iterator[Place]:

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from trunnion import __version__
+from trunnion.version import __version__
 
 #: What made a paper.
 MADE_BY: Final = f"Trunnion {__version__}"

@@ -7,6 +7,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.control import FanucControl
 from trunnion.readers.families.fanuc.flow import ActiveProgram, Flow, ModalMacro
@@ -57,25 +58,25 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
     def _set_system_value(self, key: int, value: Value) -> bool:
         """Stop at a message of #3006, and report an alarm of #3000; the blocks behind it are read all the same."""
         if key == words.MESSAGE_VARIABLE:
-            self.control.note_wait(f"#{key} stops the program with a message")
+            self.control.note_wait(Wording("NC226", "stops_with_message", key=key))
             self.control.add_event("stop")
         elif key == words.ALARM_VARIABLE:
             number = "" if value is None else f" {value:g}"
-            self._note(f"#{key} raises alarm{number}: the program goes no farther", Severity.ERROR, "NC226")
+            self._note(Wording("NC226", "raises_alarm", key=key, number=number), Severity.ERROR)
         return key in (words.MESSAGE_VARIABLE, words.ALARM_VARIABLE)
 
     def _macro(self, active: ActiveProgram, block: Block) -> None:
         """G65 and G66: a macro with arguments, called now or after every motion."""
         number, repeats = block.take("P"), block.take("L")
         if number is None:
-            raise BlockError("the call of a macro needs P")
+            raise BlockError(Wording("NC210", "call_macro_needs_p"))
         arguments: dict[int, float] = {}
         for letter, word in block.words.items():
             if letter in "PL":
                 continue
             block.take(letter)
             if letter not in words.ARGUMENTS:
-                self._note(f"{letter} is not an argument of a macro", Severity.ERROR, "NC215")
+                self._note(Wording("NC215", "not_argument_macro", letter=letter), Severity.ERROR)
                 continue
             arguments[words.ARGUMENTS[letter]] = self._argument(letter, word)
         if block.m:
@@ -88,7 +89,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
 
     def _argument(self, letter: str, word: Number) -> float:
         if word.whole and word.value and not self.control.settings.calculator and letter not in "DEHMST":
-            self._note(f"argument {letter} without a point: taken as it is written", Severity.WARNING, "NC217")
+            self._note(Wording("NC217", "argument_without_point_taken_written", letter=letter), Severity.WARNING)
         return word.value
 
     def _call_modal_macro(self) -> None:
@@ -100,7 +101,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         """M98: P is the program, L the number of repeats; without L the digits of P before those of the program."""
         number, repeats = block.take("P"), block.take("L")
         if number is None:
-            raise BlockError("M98 needs P")
+            raise BlockError(Wording("NC210", "m98_needs_p"))
         program = _program_number(number)
         programs = 10**self.control.settings.program_digits
         if repeats is None and program >= programs:
@@ -113,7 +114,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         active, line = self._here
         number, repeats = block.take("P"), _repeats(block.take("L"))
         if number is None:
-            raise BlockError("the call of a local subprogram needs P, the number of its first block")
+            raise BlockError(Wording("NC210", "call_local_subprogram_needs_p"))
         begin = self._flow.target(active, line, _program_number(number))
         if repeats < 1:
             return
@@ -127,10 +128,13 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         """Report a jump that depends on an input of the machine: it cannot be followed."""
         target, number = block.take("P"), block.take("Q")
         own = next(f"M{code}" for code, meaning in self.control.own_words.m.items() if meaning == word.code)
-        where = "" if target is None else f" to N{target:g}"
-        which = "an input" if number is None else f"input {number:g}"
-        what = f"{own} jumps{where} unless {which} is on, which only the machine knows: it is not followed"
-        self._note(f"{what}; leave the jump out", Severity.ERROR, "NC222")
+        if target is None:
+            wording = Wording("NC222", "jump_on_some_input", word=own)
+        elif number is None:
+            wording = Wording("NC222", "jump_to_on_some_input", word=own, target=target)
+        else:
+            wording = Wording("NC222", "jump_to_on_input", word=own, target=target, input=number)
+        self._note(wording, Severity.ERROR)
 
     def _enter_subprogram(self, number: int, repeats: int, arguments: dict[int, float] | None) -> None:
         """Start a program of this file or a subprogram file; a macro if there are ``arguments``."""
@@ -145,8 +149,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         if arguments is not None:
             self._variables.enter(arguments)
             if self._variables.depth > _MAX_MACRO_DEPTH:
-                what = f"macros inside each other deeper than {_MAX_MACRO_DEPTH} levels: controls may have no more"
-                self._note(what, Severity.WARNING, "NC141")
+                self._note(Wording("NC141", "macros_too_deep", most=_MAX_MACRO_DEPTH), Severity.WARNING)
         self._stack.append(entered)
 
     def _find_program(self, number: int, repeats: int) -> tuple[ActiveProgram, int]:
@@ -158,7 +161,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         names = (f"O{number:04d}", f"O{number:05d}", f"O{number}", f"{number:04d}", f"{number}")
         path = next((path for name in names if (path := self._subprograms.find(name))), None)
         if path is None:
-            raise BlockError(f"missing subprogram O{number:04d}; name its file", code="NC132")
+            raise BlockError(Wording("NC132", "missing_subprogram_number", number=number))
         source, file = self._open_subprogram(path)
         assert isinstance(source, FanucText)
         return ActiveProgram(source, file, repeats), source.program(number) or 1
@@ -172,9 +175,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
                 self._flow.jump(active, line, _program_number(target))
                 return
             # No event "end": the control goes on at the first block.
-            self._note(
-                "M99 begins the program anew without end: only its first run is followed", Severity.WARNING, "NC162"
-            )
+            self._note(Wording("NC162", "m99_begins_program_anew_without"), Severity.WARNING)
             raise ProgramEnd
         depth = len(self._stack)
         self._check_behind_return(active)
@@ -205,7 +206,7 @@ def _jump_words(settings: Settings) -> re.Pattern[bytes]:
 
 def _program_number(number: float) -> int:
     if number != int(number) or not 0 <= number < 1e9:
-        raise BlockError("P is not the number of a program or block")
+        raise BlockError(Wording("NC210", "p_not_number_program_block"))
     return int(number)
 
 
@@ -213,5 +214,5 @@ def _repeats(repeats: float | None) -> int:
     if repeats is None:
         return 1
     if repeats != int(repeats) or not 0 <= repeats <= _MAX_REPEATS:
-        raise BlockError("L is not how often")
+        raise BlockError(Wording("NC210", "l_not_how_often"))
     return int(repeats)

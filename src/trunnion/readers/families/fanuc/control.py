@@ -5,6 +5,7 @@ import numpy as np
 from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, Mount
+from trunnion.messages import Wording, phrase
 from trunnion.model.axis_positions import PLAIN
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
@@ -97,15 +98,15 @@ class FanucControl(Rs274Control):
     def _shift(self) -> Floats:
         return np.asarray(self.offset_of(self.system) - self.zero + self.preset + self.local)
 
-    def left_on(self) -> str:
-        """Return the word of a rotation, or of a shift without use, that the end of the program leaves on.
+    def left_on(self) -> Wording | None:
+        """Return the rotation, or the shift without use, that the end of the program leaves on; None if nothing.
 
         The plane of the rotary position (G254 of a Haas) ends with M2 and M30.
         """
         shifts = {"G52": self.local.any(), "G92": self.preset.any()}
         if not self.rotation.is_identity:
-            return "G68"
-        return next((word for word, on in shifts.items() if on and self.unused_shift), "")
+            return phrase("left_word", word="G68")
+        return next((phrase("left_word", word=word) for word, on in shifts.items() if on and self.unused_shift), None)
 
     def update_frame(self) -> None:
         """Put offsets and rotations into effect; the axes stay."""
@@ -129,7 +130,7 @@ class FanucControl(Rs274Control):
         """G68.2: tilt the plane by its origin (3,), mm, and Euler angles Z, X, Z, degrees, in the work offset."""
         self._report_length("G68.2")
         if self.tilted:
-            self.note("G68.2 while a plane is tilted: the old one is given up", Severity.WARNING, "NC351")
+            self.note(Wording("NC351", "g68_2_while_plane_tilted"), Severity.WARNING)
         first, second, third = euler
         linear = rotation_matrix(2, first) @ rotation_matrix(0, second) @ rotation_matrix(2, third)
         self.rotation = AffineMap()
@@ -140,16 +141,12 @@ class FanucControl(Rs274Control):
         if np.allclose(linear[:, 2], (0.0, 0.0, 1.0), rtol=0.0, atol=1e-9):
             self.preconditions.meet("G53.1")
         else:
-            self.preconditions.require(
-                "G53.1", "moves in the plane of G68.2 before G53.1 has turned the tool to it", "NC351"
-            )
+            self.preconditions.require("G53.1", Wording("NC351", "plane_before_turn"))
 
     def _report_length(self, word: str) -> None:
         """Report a word that switches a plane inside a tool length: the length must be switched inside the plane."""
         if self.length_active and not self.plane_of_pose:
-            self.note(
-                f"{word} with a tool length in force: an alarm (PS0049); G49 comes before it", Severity.ERROR, "NC340"
-            )
+            self.note(Wording("NC340", "tool_length_force_alarm_ps0049", word=word), Severity.ERROR)
 
     def cancel_rotation(self) -> None:
         """G69: cancel rotations and the tilted plane; one that follows the rotary position stays."""
@@ -166,11 +163,7 @@ class FanucControl(Rs274Control):
     def take_plane_of_pose(self) -> None:
         """Take the plane normal to the tool as it stands, about the zero of the work offset."""
         if self.tcp:
-            self.note(
-                "the plane of the rotary position while TCP is on: the control has one or the other",
-                Severity.ERROR,
-                "NC340",
-            )
+            self.note(Wording("NC340", "plane_rotary_position_while_tcp"), Severity.ERROR)
         self.resolve_rows()
         first, second = (float(self.current_joints[column]) for column in self.machine.rotary)
         self.rotation = AffineMap()
@@ -187,7 +180,7 @@ class FanucControl(Rs274Control):
     def align_with_plane(self) -> None:
         """G53.1: turn the rotary axes so that the tool is normal to the plane, with the least rotation."""
         if not self.tilted:
-            self.note("G53.1 without a plane of G68.2: it is not executed", Severity.ERROR, "NC351")
+            self.note(Wording("NC351", "g53_1_without_plane_g68"), Severity.ERROR)
             return
         self.preconditions.meet("G53.1")
         self.resolve_rows()
@@ -198,9 +191,7 @@ class FanucControl(Rs274Control):
             if tool_orientation.is_in_travel(self.machine, pair)
         ]
         if not inside:
-            self.note(
-                "G53.1: no rotary position inside the travel stands the tool on this plane", Severity.ERROR, "NC350"
-            )
+            self.note(Wording("NC350", "g53_1_no_rotary_position"), Severity.ERROR)
             return
         current, first = self.current_joints[list(self.machine.rotary)], self.deciding_axis
         rotations = [np.round(np.abs(np.array(pair) - current), 6).tolist() for pair in inside]

@@ -6,6 +6,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.virtual_control import RAPID
@@ -28,16 +29,17 @@ class CycleInterpreter(OffsetInterpreter):
         # What was reported of the cycle in force, which has no words yet.
         self._waiting: Diagnostic | None = None
         # What has stopped the spindle besides M5, if the program has not started it since; else empty.
-        self._spindle_stands = ""
+        self._spindle_stands: Wording | None = None
         # Axes whose positions must be stated in a new plane before the tool cuts there.
         self._not_stated: frozenset[str] = frozenset()
 
     def _select_motion(self, code: int) -> None:
         control = self.control
         if code in words.THREADS:
-            self._spindle_stands = ""  # the cycle turns it
+            self._spindle_stands = None  # the cycle turns it
         elif self.motion_code in words.THREADS:
-            self._spindle_stands = "a thread has stopped it" if control.settings.threads_stop_spindle else ""
+            stands = Wording("NC370", "thread_stopped_spindle")
+            self._spindle_stands = stands if control.settings.threads_stop_spindle else None
         super()._select_motion(code)
         if code not in self.table.cycles:
             self._initial = None
@@ -70,9 +72,9 @@ class CycleInterpreter(OffsetInterpreter):
         self._require_words(self._modal_words)
         holes = 1 if repeats is None else int(repeats)
         if not 0 <= holes <= _MAX_HOLES:
-            raise BlockError(f"{letter} of a cycle is how often it drills")
+            raise BlockError(Wording("NC210", "repeats_of_cycle", letter=letter))
         if letter == "L" and holes > 1 and control.absolute:
-            raise BlockError("L repeats a cycle with G91 only")
+            raise BlockError(Wording("NC210", "l_repeats_cycle_g91_only"))
         self._withdraw_waiting()
         self._check_cycle_feed()
         hole = self._hole()
@@ -95,7 +97,7 @@ class CycleInterpreter(OffsetInterpreter):
         if self._modal_words or self._waiting is not None:
             return
         noted = len(self._diagnostics)
-        self._note("a cycle without a position, Z and R", Severity.ERROR, "NC218")
+        self._note(Wording("NC218", "cycle_without_position_and_depth"), Severity.ERROR)
         at_once = self.control.settings.repeat_letter == "L" and repeats != 0.0
         if not at_once and len(self._diagnostics) > noted:
             self._waiting = self._diagnostics[-1]
@@ -109,18 +111,17 @@ class CycleInterpreter(OffsetInterpreter):
     def _check_cut(self, axes: Collection[str], *, of_machine: bool) -> None:
         """Report a cut that a thread has left without a spindle, or that a new plane has left without a position."""
         if self.control.length_ended_at and "Z" in axes and not of_machine:
-            what = f"Z without the tool length, which G28 in line {self.control.length_ended_at} has taken off"
-            self._note(f"{what}: write G43 with it", Severity.ERROR, "NC361")
+            self._note(Wording("NC361", "length_taken_off", line=self.control.length_ended_at), Severity.ERROR)
             self.control.length_ended_at = 0
         if self._not_stated and not of_machine:
             if self.motion_code != 0:
                 missing = ", ".join(sorted(self._not_stated))
-                self._note(f"cuts in a new plane before {missing} is stated at rapid there", Severity.ERROR, "NC351")
+                self._note(Wording("NC351", "cuts_new_plane_before_stated", missing=missing), Severity.ERROR)
                 self._not_stated = frozenset()
             self._not_stated -= set(axes)
         if self._spindle_stands and self.motion_code not in (0, *words.THREADS):
-            self._note(f"cuts while the spindle stands still: {self._spindle_stands}", Severity.ERROR, "NC370")
-            self._spindle_stands = ""
+            self._note(self._spindle_stands, Severity.ERROR)
+            self._spindle_stands = None
 
     def _check_words(self, block: Block) -> None:
         """Refuse words that describe pecks and retracts on some controls, and dwells whose unit is in doubt."""
@@ -128,15 +129,11 @@ class CycleInterpreter(OffsetInterpreter):
         if settings.repeat_letter == "L":
             pecks = "K" if self.motion_code == cycles.FINE_BORE else "IJK"
             if found := [letter for letter in pecks if letter in block.words]:
-                raise BlockError(
-                    f"{found[0]} of a cycle, which describes pecks or a retract, is not simulated", code="NC220"
-                )
+                raise BlockError(Wording("NC220", "peck_word_not_simulated", word=found[0]))
         dwell = block.words.get("P")
         in_doubt = settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value
         if in_doubt and not words.takes_number(block):
-            raise BlockError(
-                "P of a cycle without a point: no source says whether it counts seconds or milliseconds", code="NC217"
-            )
+            raise BlockError(Wording("NC217", "p_cycle_without_point_no"))
 
     def _hole(self) -> cycles.Hole:
         control, given = self.control, self._modal_words

@@ -6,6 +6,7 @@ Heights are positions along the axis normal to the working plane, in the units o
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import (
     CycleExecutionError,
@@ -117,7 +118,7 @@ def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
 def _back_bore(hole: Hole) -> list[HoleMotion]:
     """Return the motions of G87: beside the hole down to R, over it, up to Z, and out beside it."""
     if not hole.to_initial:
-        raise CycleExecutionError("G87 needs G98")
+        raise CycleExecutionError(Wording("NC380", "g87_needs_g98"))
     lateral = hole.lateral
     return [
         HoleMotion(True, hole.initial, lateral=lateral),

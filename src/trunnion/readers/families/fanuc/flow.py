@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import Variables
@@ -63,7 +64,9 @@ class Flow:
             active, line, reader
         )
         if not reader.ended:
-            raise BlockError(f"something stands behind {match.group()}: {reader.rest!r}")
+            raise BlockError(
+                Wording("NC210", "stands_behind_condition", condition=match.group(), rest=repr(reader.rest))
+            )
         return True
 
     def _holds(self, active: ActiveProgram, reader: ExpressionReader) -> bool:
@@ -74,7 +77,7 @@ class Flow:
         try:
             return bool(reader.bracket_value())
         except BlockError as error:
-            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR, "NC143")
+            self._note(Wording("NC143", "condition", reason=error.wording), Severity.ERROR)
             reader.at = _behind_bracket(reader.text, begin)
             return False
 
@@ -106,12 +109,13 @@ class Flow:
         """Return the line of a block number of the program of a line; report one that stands twice."""
         target = active.source.number(number, line)
         if target is None:
-            raise BlockError(f"there is no block N{number} to go to", code="NC133")
+            raise BlockError(Wording("NC133", "missing_block", number=number))
         doubled = active.source.doubled_number(number, line)
         if doubled and (active.file, line) not in self._jumps_to_doubled:
             self._jumps_to_doubled.add((active.file, line))
-            what = f"goes to N{number}, which lines {doubled[0]} and {doubled[1]} both have"
-            self._note(f"{what}: which one the control finds is up to its parameters", Severity.ERROR, "NC163")
+            self._note(
+                Wording("NC163", "doubled_number", number=number, first=doubled[0], second=doubled[1]), Severity.ERROR
+            )
         return target
 
     def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
@@ -133,7 +137,7 @@ class Flow:
 
 def _whole(value: float | None) -> int:
     if value is None or abs(value - round(value)) > 1e-6 or not 0 <= value < _HIGHEST:
-        raise BlockError("a whole number is missing")
+        raise BlockError(Wording("NC210", "whole_number_missing"))
     return round(value)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, Mount
+from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
@@ -24,7 +25,6 @@ from trunnion.readers.rs274.block import Block, block_reader
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import MOTIONS
 from trunnion.readers.rs274.word_table import Word
-from trunnion.wording import counted
 
 
 class FanucInterpreter(CycleInterpreter):
@@ -80,7 +80,7 @@ class FanucInterpreter(CycleInterpreter):
             return
         if self._needs_number:
             self._needs_number = False
-            self._note("the program begins without its number: write O and digits first", Severity.ERROR, "NC160")
+            self._note(Wording("NC160", "program_begins_without_number_write"), Severity.ERROR)
         reader = block_reader(text, ARITHMETIC, self._variables)
         if self._flow.accept(active, line, reader):
             self._nurbs.break_off()
@@ -107,9 +107,9 @@ class FanucInterpreter(CycleInterpreter):
         """Start a program at its O number; if another program runs into it, that one ends."""
         digits = text[1:]
         if not digits.isdigit() or len(digits) > 8:
-            raise BlockError(f"no program number: {text[:40]!r}")
+            raise BlockError(Wording("NC210", "no_program_number", text=repr(text[:40])))
         if active.begun and active.line != line:
-            self._note("the program runs into the next one: it ends here", Severity.ERROR, "NC160")
+            self._note(Wording("NC160", "program_runs_next_ends_here"), Severity.ERROR)
             self._break_off()
         active.begun = True
 
@@ -127,7 +127,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _check_return(self) -> None:
         if len(self._stack) > 1:
-            self._note("the subprogram ends without M99: the control does not return from it", Severity.ERROR, "NC160")
+            self._note(Wording("NC160", "subprogram_ends_without_m99_control"), Severity.ERROR)
 
     def _break_off(self) -> None:
         """End the active program where it stands."""
@@ -162,7 +162,7 @@ class FanucInterpreter(CycleInterpreter):
         if not self.control.settings.m_codes_last:
             return super()._late_words(codes)
         if len(codes) > 1:
-            self._note("two M words in a block: the control takes one", Severity.ERROR, "NC212")
+            self._note(Wording("NC212", "two_m_words_block_control"), Severity.ERROR)
         return codes
 
     def _before_motion(self, codes: Sequence[Word], block: Block) -> None:
@@ -184,7 +184,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _contour_control(self, word: Word, block: Block) -> None:
         if "Q" not in block.words:
-            self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR, "NC215")
+            self._note(Wording("NC215", "g5_1_needs_q1_q0"), Severity.ERROR)
 
     def _exact_stop(self, word: Word, block: Block) -> None:
         self.control.add_exact_stop(word.sets)
@@ -193,7 +193,7 @@ class FanucInterpreter(CycleInterpreter):
         self.control.set_mode("limits", word.text, self._limits_off, word.sets)
         self._limits_off = word.sets
         if any(letter in block.words for letter in word.letters):
-            self._note("G22 with positions limits where the axes may go: not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "g22_positions_limits_axes_may"), Severity.ERROR)
 
     def _take_plane_of_pose(self, word: Word, block: Block) -> None:
         self.control.take_plane_of_pose()
@@ -212,7 +212,7 @@ class FanucInterpreter(CycleInterpreter):
         control.set_mode("length", word.text, control.length_active, on)
         control.set_length(on)
         if word.text == "G44":
-            self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "g44_tool_length_other_sign"), Severity.ERROR)
 
     def _cancel_rotation(self, word: Word, block: Block) -> None:
         self.control.cancel_rotation()
@@ -242,28 +242,22 @@ class FanucInterpreter(CycleInterpreter):
     def _check_look_ahead(self) -> None:
         """Report radius compensation while the control may not read ahead: it does not see the next corner."""
         if self._blocks_ahead and self.control.modal.compensation.current:
-            ahead = counted(self._blocks_ahead, "block")
-            what = f"radius compensation while the control reads only {ahead} ahead hides the next corner"
-            self._note(f"{what}: end the limit before it", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "look_ahead_under_compensation", count=self._blocks_ahead), Severity.ERROR)
 
     def _tcp(self, word: Word, block: Block) -> None:
         """G43.4 and G43.5; P selects how the tool axis moves within blocks."""
         control = self.control
         posture = block.take("P")
         if posture not in (None, 0.0, 1.0):
-            self._note(f"P{posture:g} of G43.4 and G43.5 is not known", Severity.ERROR, "NC215")
+            self._note(Wording("NC215", "unknown_posture", posture=posture), Severity.ERROR)
         control.length_ended_at = 0
         vectors = word.sets
         if control.tcp and control.vectors != vectors:
-            self._note(
-                "G43.4 and G43.5 change without G49 between them: taken as if it were there", Severity.WARNING, "NC341"
-            )
+            self._note(Wording("NC341", "g43_4_g43_5_change"), Severity.WARNING)
         if vectors and any(letter in block.words for letter in "IJK") and not self._only_head_turns:
-            self._note("I J K in the block of G43.5: an alarm where a table turns (PS5421)", Severity.ERROR, "NC340")
+            self._note(Wording("NC340", "vector_in_block_of_g43_5"), Severity.ERROR)
         if control.plane_of_pose:
-            self._note(
-                "TCP in the plane of the rotary position: the control has one or the other", Severity.ERROR, "NC340"
-            )
+            self._note(Wording("NC340", "tcp_plane_rotary_position_control"), Severity.ERROR)
         control.set_tcp(True)
         control.set_length(True)
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
@@ -280,12 +274,12 @@ class FanucInterpreter(CycleInterpreter):
 
     def _iso(self, word: Word, block: Block) -> None:
         if word.group == "spindle":
-            self._spindle_stands = ""
+            self._spindle_stands = None
         super()._iso(word, block)
 
     def _stop_for_thread(self, word: Word, block: Block) -> None:
         if self.motion_code not in words.THREADS:
-            self._spindle_stands = f"{word.text} has stopped it for a thread"
+            self._spindle_stands = Wording("NC370", "word_stopped_spindle", word=word.text)
         self._execute_unknown(word)
 
     # Motion
@@ -297,11 +291,11 @@ class FanucInterpreter(CycleInterpreter):
             self._check_cut(axes, of_machine=words.MACHINE in block.g)
         vector = self._vector(block) if control.vectors and self.motion_code in (0, 10) else None
         if control.vectors and axes.keys() & set(control.rotary_names) and words.MACHINE not in block.g:
-            self._note("rotary words under G43.5, which takes I J K: an alarm (PS5421)", Severity.ERROR, "NC340")
+            self._note(Wording("NC340", "rotary_words_with_vector"), Severity.ERROR)
         if control.plane_of_pose and axes.keys() & set(control.rotary_names):
-            self._note("rotary axes turn in the plane of the rotary position: end it first", Severity.ERROR, "NC340")
+            self._note(Wording("NC340", "rotary_axes_turn_plane_rotary"), Severity.ERROR)
         if self.motion_code == words.NURBS and words.MACHINE not in block.g and (axes or vector is not None):
-            raise BlockError("a position behind the last knot of G6.2, where only G6.2 goes on", code="NC322")
+            raise BlockError(Wording("NC322", "position_behind_last_knot_g6"))
         if self.motion_code in self.table.cycles:
             self._drill_block(block, axes)
             if axes:
@@ -312,7 +306,7 @@ class FanucInterpreter(CycleInterpreter):
             return
         if words.MACHINE in block.g:
             if not control.absolute:
-                raise BlockError("G53 needs G90")
+                raise BlockError(Wording("NC210", "g53_needs_g90"))
             control.motion = MOTIONS[self.motion_code]
             absolute = {name: (word[0], PositionMode.ABSOLUTE) for name, word in axes.items()}
             control.move(absolute, None, machine_frame=True, feed_written=self._check_feed(block))
@@ -328,10 +322,10 @@ class FanucInterpreter(CycleInterpreter):
         values = [block.take(letter) for letter in "IJK"]
         incline = block.take("Q")
         if incline:
-            self._note("the inclination Q of G43.5 is not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "inclination_q_g43_5_not"), Severity.ERROR)
         if all(value is None for value in values):
             return None
         vector = np.array([value or 0.0 for value in values])
         if not 1e-12 < float(np.linalg.norm(vector)) < MAX_POSITION:
-            raise BlockError("the tool axis has no direction")
+            raise BlockError(Wording("NC210", "tool_axis_no_direction"))
         return vector

@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
@@ -30,10 +31,10 @@ class OffsetInterpreter(CallInterpreter):
         takes_number = word.numbered or (word.text == "G54" and extended == _FAMILY_WORD)
         more = block.take("P") if takes_number else None
         if word.numbered and more is None:
-            raise BlockError(f"{extended} needs P")
+            raise BlockError(Wording("NC210", "extended_offset_needs_p", word=extended))
         if more is not None:
             if more != int(more) or not extended_offset(int(more), highest):
-                raise BlockError(f"P of {extended} is not from 1 to {highest}", code="NC215")
+                raise BlockError(Wording("NC215", "extended_offset_out_of_range", word=extended, most=highest))
             system = 6 + int(more)
         control.system = system
         offset = 53 + system if system <= 6 else extended_offset(system - 6)
@@ -45,19 +46,19 @@ class OffsetInterpreter(CallInterpreter):
     def _dwell(self, word: Word, block: Block) -> None:
         number = block.words.get("X") or block.words.get("U")
         if number is not None and self.control.settings.point_is_seconds:
-            raise BlockError("the time of a dwell is P on this control")
+            raise BlockError(Wording("NC210", "time_dwell_p_control"))
         for letter in "XU":
             block.take(letter)
         milliseconds = block.take("P")
         if (milliseconds or 0.0) < 0.0 or (number is not None and number.value < 0.0):
-            raise BlockError("a dwell below zero", code="NC215")
+            raise BlockError(Wording("NC215", "negative_dwell"))
         if number is not None:
             unit = self.control.settings.seconds if number.whole else 1.0
             self.control.add_event("dwell", number.value * unit)
         elif milliseconds is not None:
             self.control.add_event("dwell", milliseconds / 1000.0)
         else:
-            self._note("G4 without a time", Severity.WARNING, "NC218")
+            self._note(Wording("NC218", "g4_without_time"), Severity.WARNING)
 
     # Offsets and shifts
 
@@ -65,23 +66,23 @@ class OffsetInterpreter(CallInterpreter):
         """Return X, Y and Z of a block in mm; shifts of rotary axes are reported unless they are 0."""
         for name in self.control.rotary_names:
             if block.take(name):
-                self._note(f"a shift of {name} is not simulated", Severity.ERROR, "NC220")
+                self._note(Wording("NC220", "shift_not_simulated", name=name), Severity.ERROR)
         values = [block.take(name) for name in "XYZ"]
         scaled = [None if value is None else value * self.control.length_unit for value in values]
         if any(value is not None and abs(value) > MAX_POSITION for value in scaled):
-            raise BlockError("a shift is larger than any machine", code="NC215")
+            raise BlockError(Wording("NC215", "shift_larger_than_any_machine"))
         return scaled
 
     def _refuse_tilted(self) -> None:
         if self.control.tilted:
-            self._note("shifts in a tilted plane are not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "shifts_tilted_plane_not_simulated"), Severity.ERROR)
 
     def _shifted(self, block: Block) -> list[float | None]:
         """Return X, Y and Z of a shift in mm; one of the axes must be there."""
         rotary = any(name in block.words for name in self.control.rotary_names)
         values = self._point(block)
         if not rotary and all(value is None for value in values):
-            raise BlockError("G52 and G92 need the axes that they shift")
+            raise BlockError(Wording("NC210", "shift_needs_axes"))
         return values
 
     def _local_shift(self, word: Word, block: Block) -> None:
@@ -101,7 +102,7 @@ class OffsetInterpreter(CallInterpreter):
         control.note_shift()
         rotation = control.rotation
         if control.tilted or not rotation.keeps_lengths or not np.allclose(rotation.linear, np.eye(3)):
-            self._note("G92 in a turned frame is not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "g92_turned_frame_not_simulated"), Severity.ERROR)
         control.update_frame()
 
     def _set_data(self, word: Word, block: Block) -> None:
@@ -109,15 +110,17 @@ class OffsetInterpreter(CallInterpreter):
         control = self.control
         kind, number = block.take("L"), block.take("P")
         known = words.DATA_NUMBERS.get(int(kind)) if kind is not None and kind == int(kind) else None
-        fault = "" if known is None or number is None else fault_of_value(f"G10 L{kind:g}", "P", number, known)
+        fault = None if known is None or number is None else fault_of_value(f"G10 L{kind:g}", "P", number, known)
         if fault:
             for letter in "RXYZQDH":
                 block.take(letter)
-            raise BlockError(fault, code="NC215")
+            raise BlockError(fault)
         if kind is not None and kind in words.TOOL_DATA:
             for letter in "RXYZQDH":
                 block.take(letter)
-            self._note(f"G10 L{kind:g} {words.TOOL_DATA[int(kind)]}: not simulated", Severity.ERROR, "NC220")
+            self._note(
+                Wording("NC220", "tool_data_not_simulated", kind=kind, does=words.TOOL_DATA[int(kind)]), Severity.ERROR
+            )
             return
         if (
             kind not in (2.0, 20.0)
@@ -127,7 +130,7 @@ class OffsetInterpreter(CallInterpreter):
         ):
             for letter in "RXYZ":
                 block.take(letter)
-            raise BlockError("G10 with this L and P is not simulated", code="NC220")
+            raise BlockError(Wording("NC220", "g10_l_p_not_simulated"))
         values = self._point(block)
         system = int(number) if kind == 2.0 else 6 + int(number)
         old = control.offset_of(system)
@@ -148,10 +151,10 @@ class OffsetInterpreter(CallInterpreter):
         control = self.control
         axes, settings = self._axis_words(block), control.settings
         if not axes and not settings.home_takes_all:
-            raise BlockError("G28 and G30 need the axes that go home")
+            raise BlockError(Wording("NC210", "home_needs_axes"))
         if word.numbered:
             which = block.take("P")
-            self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING, "NC224")
+            self._note(Wording("NC224", "second_reference", which=which or 2), Severity.WARNING)
         self._counter.count_motions(1)
         motion, control.motion = control.motion, RAPID
         before = control.programmed_position.copy()
@@ -168,8 +171,7 @@ class OffsetInterpreter(CallInterpreter):
         """Take the tool length off behind G28, where the control does."""
         control = self.control
         if control.tcp:
-            what = "G28 with TCP on: whether it ends TCP with the tool length is not known; write G49 before it"
-            self._note(what, Severity.ERROR, "NC341")
+            self._note(Wording("NC341", "g28_tcp_whether_ends_tcp"), Severity.ERROR)
             return
         if control.length_active:
             control.length_ended_at = control.line
@@ -201,7 +203,7 @@ class OffsetInterpreter(CallInterpreter):
             axis[control.plane_axis] = 1.0
         length = float(np.linalg.norm(axis))
         if angle is None or not 1e-12 < length < MAX_POSITION or not abs(angle) < MAX_POSITION:
-            raise BlockError("G68 needs an angle R, and an axis that has a direction")
+            raise BlockError(Wording("NC210", "g68_needs_angle_r_axis"))
         control.rotate(centre, axis / length, angle)
 
     def _tilt(self, word: Word, block: Block) -> None:
@@ -212,9 +214,9 @@ class OffsetInterpreter(CallInterpreter):
         angles = [block.take(letter) or 0.0 for letter in "IJK"]
         order = block.take("Q")
         if kind or (order is not None and order != 313):
-            raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are", code="NC220")
+            raise BlockError(Wording("NC220", "g68_2_p_q_not"))
         if any(not abs(angle) < MAX_POSITION for angle in angles):
-            raise BlockError("an angle is not one that a plane has", code="NC215")
+            raise BlockError(Wording("NC215", "angle_not_plane"))
         self.control.tilt(origin, (angles[0], angles[1], angles[2]))
 
     def _align_with_plane(self, word: Word, block: Block) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.program.source_text import SourceText
 
 #: Endings of program names.
@@ -90,7 +91,7 @@ class FanucText(SourceText):
         try:
             return self._jump_targets.loops[line]
         except KeyError:
-            raise self.problem(line, "has a DO or END that begins or ends nothing", code="NC142") from None
+            raise self.problem(line, Wording("NC142", "stray_do_or_end")) from None
 
     def _match_loops(self) -> dict[int, int]:
         partners: dict[int, int] = {}
@@ -101,12 +102,12 @@ class FanucText(SourceText):
             if match.group(1).upper() == b"DO":
                 open_.append((number, line))
                 if len(open_) > MAX_NESTING:
-                    raise self.problem(line, f"nests loops deeper than {MAX_NESTING} levels", code="NC141")
+                    raise self.problem(line, Wording("NC141", "loops_too_deep", most=MAX_NESTING))
             elif not open_ or open_[-1][0] != number:
-                raise self.problem(line, f"has END{number} without its DO{number}", code="NC142")
+                raise self.problem(line, Wording("NC142", "end_without_do", number=number))
             else:
                 begin = open_.pop()[1]
                 partners[begin], partners[line] = line, begin
         if open_:
-            raise self.problem(open_[-1][1], f"begins DO{open_[-1][0]}, which never ends", code="NC142")
+            raise self.problem(open_[-1][1], Wording("NC142", "never_ends", word=f"DO{open_[-1][0]}"))
         return partners

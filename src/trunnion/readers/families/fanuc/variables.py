@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.rs274.expressions import (
     COMMON_FUNCTIONS,
     COMMON_OPERATORS,
@@ -27,7 +28,7 @@ _LARGEST_BITS: Final = 2**31
 def _bits(value: float) -> int:
     number = round(value)
     if abs(value - number) > 1e-6 or abs(number) >= _LARGEST_BITS:
-        raise BlockError("AND, OR and XOR need whole numbers")
+        raise BlockError(Wording("NC210", "logic_needs_whole_numbers"))
     return number
 
 
@@ -86,7 +87,7 @@ class Variables:
     def value(self, key: int | str) -> Value:
         """Return the value of a variable, None for an empty one."""
         if isinstance(key, str):
-            raise BlockError(f"#<{key}>: variables have numbers here", code="NC223")
+            raise BlockError(Wording("NC223", "named_variable", key=key))
         if key == 0:
             return None
         if key <= LOCAL_COUNT:
@@ -95,7 +96,7 @@ class Variables:
             return self._common.get(key)
         value = self._system_value(key)
         if value is None:
-            raise BlockError(f"#{key} is a value that only the control knows", code="NC222")
+            raise BlockError(Wording("NC222", "only_control_knows", key=key))
         return value
 
     def is_set(self, key: int | str) -> bool:
@@ -107,7 +108,7 @@ class Variables:
         if isinstance(key, int) and key >= SYSTEM_FROM and self._set_system_value(key, value):
             return
         if isinstance(key, str) or not (0 < key <= LOCAL_COUNT or COMMON_FROM <= key < SYSTEM_FROM):
-            raise BlockError(f"#{key} is not a variable that programs set", code="NC223")
+            raise BlockError(Wording("NC223", "variable_not_set_by_programs", key=key))
         table = self._local[-1] if key <= LOCAL_COUNT else self._common
         if value is None:
             table.pop(key, None)

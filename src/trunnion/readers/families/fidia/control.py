@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine
+from trunnion.messages import Wording
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
@@ -63,7 +64,7 @@ class FidiaControl(Rs274Control):
         """Change to the selected tool, whose length counts from the next G55 on."""
         super().change_tool()
         if self.tool_in_spindle.strip("0"):
-            self.preconditions.require("G55", "moves with another tool before G55 has taken up its length", "NC361")
+            self.preconditions.require("G55", Wording("NC361", "tool_before_g55"))
 
     def take_plane(self) -> None:
         """G154: the plane normal to the tool as it stands, about the zero of the work offset."""
@@ -86,7 +87,7 @@ class FidiaControl(Rs274Control):
         if not math.isfinite(top):
             return
         if self.tcp:
-            self.note("M242 while TCP is on: the slide Z goes up", Severity.WARNING, "NC341")
+            self.note(Wording("NC341", "m242_while_tcp_slide_z"), Severity.WARNING)
         self.resolve_rows()
         slides = self.current_joints[self._slides].copy()
         slides[2] = top

@@ -6,6 +6,7 @@ positions along Z, in the units of the program.
 
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent, peck_depths
 
@@ -24,7 +25,7 @@ def cycle_motions(code: int, words: dict[str, float], units: float) -> list[Hole
     """
     height, start, depth = words["Z"], words["R"], words["E"]
     if not height >= start > depth:
-        raise CycleExecutionError("does not go down from Z by R to E")
+        raise CycleExecutionError(Wording("NC380", "does_not_go_down_z"))
     dwell = max(words.get("H", 0.0), 0.0)
     down = [HoleMotion(True, start)] if start != height else []
     into = HoleMotion(False, depth, dwell=dwell)

@@ -8,6 +8,7 @@ from typing import Final
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.virtual_control import RAPID
@@ -30,7 +31,7 @@ class _NoParameters:
     """This language has no parameters."""
 
     def value(self, key: int | str) -> Value:
-        raise BlockError("parameters are not simulated", code="NC220")
+        raise BlockError(Wording("NC220", "parameters_not_simulated"))
 
     def is_set(self, key: int | str) -> bool:
         return False
@@ -75,7 +76,7 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
         reader = block_reader(text.replace("HD", "H"), _NO_ARITHMETIC, _NO_PARAMETERS)
         block = self._read_block(reader)
         if block.assignments:
-            raise BlockError("parameters are not simulated", code="NC220")
+            raise BlockError(Wording("NC220", "parameters_not_simulated"))
         self._tool = None if tool is None else tool.group(1)
         self._execute_words(block)
 
@@ -84,7 +85,7 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
         if words.DWELL in block.g:  # behind all other G words
             self._dwell(self.table.words("G", [words.DWELL])[0], block)
             if self._axis_words(block):
-                raise BlockError("axis words beside G4")
+                raise BlockError(Wording("NC210", "axis_words_beside_g4"))
 
     def _call_tool(self, block: Block) -> None:
         if self._tool is not None:
@@ -92,19 +93,19 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
 
     def _before_motion(self, codes: Sequence[Word], block: Block) -> None:
         if self._tool is not None and _TOOL_CHANGES.isdisjoint(block.m):
-            self._note(f"T{self._tool} without M306 or M6: the tool is only chosen", Severity.WARNING, "NC362")
+            self._note(Wording("NC362", "tool_only_chosen", tool=self._tool), Severity.WARNING)
 
     # Words
 
     def _units(self, word: Word, block: Block) -> None:
         super()._units(word, block)
         if word.sets:
-            self._note("G70: what F counts in inches is not known", Severity.ERROR, "NC241")
+            self._note(Wording("NC241", "g70_what_f_counts_inches"), Severity.ERROR)
 
     def _work_offset(self, word: Word, block: Block) -> None:
         control, number = self.control, block.take("O")
         if number is None or number != int(number) or not 1 <= number <= 99:
-            raise BlockError("G55 needs O from 1 to 99")
+            raise BlockError(Wording("NC210", "g55_needs_o_1_99"))
         control.set_offset(words.OFFSET_BASE + int(number), f"G55 O{number:g}")
         control.set_length(True)
         control.preconditions.meet("G55")
@@ -139,9 +140,7 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
             control.go_to_machine(axes, feed_written=self._check_feed(block))
         elif rotary and control.tilted and not control.tcp:
             if set(axes) != rotary:
-                self._note(
-                    "positions and rotary words in one block of a plane: only the axes turn", Severity.ERROR, "NC216"
-                )
+                self._note(Wording("NC216", "positions_rotary_words_block_plane"), Severity.ERROR)
             control.motion = MOTIONS[self.motion_code]
             control.turn_axes({name: axes[name] for name in rotary}, feed_written=self._check_feed(block))
         else:
@@ -159,7 +158,7 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
             return
         self._report_rotary_words(axes)
         if control.plane_axis != 2 or not control.absolute:
-            raise BlockError("cycles are simulated in G17 and G90 only", code="NC220")
+            raise BlockError(Wording("NC220", "cycles_simulated_g17_g90_only"))
         self._require_words(self._modal_words)
         self._check_cycle_feed()
         motions = self._cycle_motions(

@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, Mount
+from trunnion.messages import Wording
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
@@ -33,7 +34,7 @@ class HeidenhainControl(PlaneControl):
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self.shortest_path = False
         # Lines that end an operation with M126 on, with what they do; and whether the program ever writes M127.
-        self._shortest_path_left_on: list[tuple[int, str]] = []
+        self._shortest_path_left_on: list[tuple[int, Wording]] = []
         self._cancels_shortest_path = False
         self.spatial_angles_active = False
         self.angles = [0.0, 0.0, 0.0]
@@ -66,13 +67,12 @@ class HeidenhainControl(PlaneControl):
     def _judge_feed_path(self) -> None:
         """Note M116 with TCP: the manuals say that they exclude each other."""
         if self.tcp and self.modal.feed_path.current == int(FeedPath.TIP):
-            self.note("M116 and M128 exclude each other: write M117 before M128", Severity.ERROR, "NC340")
+            self.note(Wording("NC340", "m116_m128_exclude_each_other"), Severity.ERROR)
 
     def judge_compensation(self) -> None:
         """Note radius compensation with M128, which takes the delta values (DR) and not the radius (TNC 640 manual)."""
         if self.tcp and self.modal.compensation.current:
-            text = "radius compensation with M128 is by the delta values DR, and not by the radius of the tool"
-            self.note(f"{text}: write M129 before it, or the path of the tool centre", Severity.ERROR, "NC340")
+            self.note(Wording("NC340", "compensation_with_m128"), Severity.ERROR)
 
     def note_preset(self, number: int) -> None:
         """Remember the preset of a cycle 247; going back to that of the head leaves nothing to the next program."""
@@ -92,10 +92,10 @@ class HeidenhainControl(PlaneControl):
         self._cancels_shortest_path |= not on
         self.shortest_path = on
 
-    def end_operation(self, what: str) -> None:
+    def end_operation(self, variant: str) -> None:
         """Remember M126 that is still on where an operation is over."""
         if self.shortest_path:
-            self._shortest_path_left_on.append((self.line, what))
+            self._shortest_path_left_on.append((self.line, Wording("NC363", variant)))
 
     def end_program(self) -> None:
         """Note every M126 that was left on.
@@ -107,24 +107,22 @@ class HeidenhainControl(PlaneControl):
         self.report_unused_offsets()
         self.report_trailing_modes()
         if left := self.left_on():
-            self.report_left(left, "may begin")
+            self.report_left(left, may_begin=True)
         if self.shortest_path and not self._cancels_shortest_path:
-            self.note("ends with M126 on: taken to end with the program; M127 says so", Severity.WARNING, "NC363")
+            self.note(Wording("NC363", "ends_m126_taken_end_program"), Severity.WARNING)
         elif self._cancels_shortest_path:
-            self.end_operation("ends")
+            self.end_operation("ends_with_m126")
             end = self.line
-            for line, what in self._shortest_path_left_on:
+            for line, left_on in self._shortest_path_left_on:
                 self.line = line
-                text = f"{what} with M126 on, which the program cancels elsewhere: write M127 before it"
-                self.note(text, Severity.ERROR, "NC363")
+                self.note(left_on, Severity.ERROR)
             self.line = end
 
     def feed_at_tip(self, on: bool) -> None:
         """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
         heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
         if on and heads:
-            text = f"M116 leaves out the axes of a head: the feed where {' and '.join(heads)} turns is unknown"
-            self.note(text, Severity.WARNING, "NC241")
+            self.note(Wording("NC241", "feed_of_head_unknown", axes=tuple(heads)), Severity.WARNING)
         self.modal.feed_path.set(self.row, int(FeedPath.TIP if on else FeedPath.AXES))
         self._judge_feed_path()
 
@@ -140,9 +138,7 @@ class HeidenhainControl(PlaneControl):
     def call_tool(self, name: str | None, tool_axis: int | None) -> None:
         """TOOL CALL: another tool, or None; and another tool axis, which is normal to the working plane, or None."""
         if self.tcp and name is None:
-            self.note(
-                "TOOL CALL with M128 on: switch it off before (M129), and on again after", Severity.ERROR, "NC340"
-            )
+            self.note(Wording("NC340", "tool_call_m128_switch_off"), Severity.ERROR)
         if name is not None:
             self.select_tool(name)
         active = self._length_active if name is None else name.strip("0") != ""
@@ -153,7 +149,7 @@ class HeidenhainControl(PlaneControl):
         else:
             self._length_active, self.plane_axis = active, along
         if name is not None:
-            self.end_operation("changes the tool")
+            self.end_operation("changes_tool_with_m126")
             self.change_tool()
             self._fetched_from = self.row
             self._report_sizes(name)
@@ -169,13 +165,12 @@ class HeidenhainControl(PlaneControl):
         for letter, value in self._tool_sizes.get(name, {}).items():
             if value:
                 self.add_event("delta", (f"TOOL DEF {letter}", value))
-                text = f"TOOL DEF gives tool {name} {letter} {value:g} mm: the path is that without it"
-                self.note(text, Severity.WARNING, "NC360")
+                self.note(Wording("NC360", "tool_def_size", tool=name, letter=letter, value=value), Severity.WARNING)
 
     def fetch_tool(self) -> None:
         """M6: change to the tool that TOOL CALL has called, unless the tool has not moved since then."""
         if self._fetched_from != self.row:
-            self.end_operation("changes the tool")
+            self.end_operation("changes_tool_with_m126")
             self.change_tool()
 
     # Directions
@@ -231,9 +226,7 @@ class HeidenhainControl(PlaneControl):
             super().move(axes, vector, circle=circle, machine_frame=machine_frame, feed_written=feed_written)
             return
         if circle is not None:
-            self.note(
-                "rotary axes turn during a circle of a tilted plane: taken as a straight line", Severity.ERROR, "NC321"
-            )
+            self.note(Wording("NC321", "circle_of_plane_turns"), Severity.ERROR)
         self._turn_in_plane(axes, int(ProgrammedWord.FEED) if feed_written else 0)
 
     def _vector_of_angles(self, axes: Mapping[str, AxisWord]) -> Floats:
@@ -259,6 +252,6 @@ class HeidenhainControl(PlaneControl):
             reachable = not np.abs(goal).max() > MAX_POSITION
             slides = self._slides_for(self._mapped(goal), joints) if reachable else None
         if slides is None:
-            self.note("the slides cannot reach this position: the block is not executed", Severity.ERROR, "NC310")
+            self.note(Wording("NC310", "slides_cannot_reach"), Severity.ERROR)
             return
         self.move_axes(self._line_kind, slides, rotary, bits)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.model.run import SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
@@ -95,16 +96,14 @@ class Definitions:
         """Another block follows: no line can follow on those of an older cycle; its title alone defines nothing."""
         if self._open is not None and self._open[1] == 0:
             number = self._open[0]
-            self._note(
-                f"cycle {number} has a title ({number}.0) and no line {number}.1 after it", Severity.ERROR, "NC210"
-            )
+            self._note(Wording("NC210", "title_without_line", number=number), Severity.ERROR)
         self._open = None
 
     def define(self, text: str, parameters: Parameters) -> None:
         """Execute a block; ``text`` is what follows CYCL DEF."""
         match = _NUMBER.match(text)
         if match is None:
-            raise KlartextError("a cycle has a number")
+            raise KlartextError(Wording("NC210", "cycle_number"))
         number, rest = int(match[1]), text[match.end() :].strip()
         if match[2] is None:
             self.end_lines()
@@ -118,7 +117,7 @@ class Definitions:
             return
         before, self._open = self._open, (number, line)
         if before != (number, line - 1):
-            raise KlartextError(f"line {line} of cycle {number} does not follow its line {line - 1}")
+            raise KlartextError(Wording("NC210", "line_out_of_order", line=line, number=number, before=line - 1))
         self._continue_definition(number, line, rest, parameters)
 
     def _begin_definition(self, number: int, title: str) -> None:
@@ -126,7 +125,7 @@ class Definitions:
         if number in LEGACY_CYCLES or number in CYCLES_NOT_SIMULATED:
             self.defined_cycle = Cycle(number)
         elif number not in _IMMEDIATE:
-            self._note(f"cycle {number} {title[:40]} is unknown", Severity.ERROR, "NC211")
+            self._note(Wording("NC211", "cycle_unknown", number=number, title=title[:40]), Severity.ERROR)
 
     def _continue_definition(self, number: int, line: int, rest: str, parameters: Parameters) -> None:
         if number in CYCLES_NOT_SIMULATED:
@@ -134,7 +133,7 @@ class Definitions:
         if number in LEGACY_CYCLES:
             name = _FIELDS[number].get(line)
             if self.defined_cycle is None or self.defined_cycle.number != number or name is None:
-                raise KlartextError(f"a line of cycle {number} that does not belong there")
+                raise KlartextError(Wording("NC210", "stray_line", number=number))
             self.defined_cycle.values[name] = _last(rest, parameters)
             return
         control = self._control
@@ -157,13 +156,13 @@ class Definitions:
                 self._tolerance(line, words(rest), parameters)
                 control.add_event("cycle32", rest)
             case _:
-                self._note(f"a line of cycle {number}, which is unknown", Severity.ERROR, "NC211")
+                self._note(Wording("NC211", "line_cycle_unknown", number=number), Severity.ERROR)
 
     # Cycles that act at once
 
     def _shift(self, rest: str, parameters: Parameters) -> None:
         if rest.startswith("#"):
-            self._note("cycle 7 takes a datum from a table, which only the control has", Severity.ERROR, "NC222")
+            self._note(Wording("NC222", "cycle_7_takes_datum_table"), Severity.ERROR)
             return
         shift = list(self._control.datum.shift)
         values = _axis_values(words(rest), parameters, "XYZ")
@@ -172,7 +171,7 @@ class Definitions:
             value *= self._control.length_unit
             shift[axis] = shift[axis] + value if word.incremental else value
         if any(abs(value) > MAX_POSITION for value in shift):
-            raise KlartextError("a shift that no machine has", code="NC215")
+            raise KlartextError(Wording("NC215", "shift_no_machine"))
         datum = replace(self._control.datum, shift=(shift[0], shift[1], shift[2]))
         parts = {plane_datums.SHIFTS["XYZ".index(word.name)] for word, _ in values}
         self._control.set_datum(datum, parts, incremental=any(word.incremental for word, _ in values))
@@ -180,7 +179,7 @@ class Definitions:
     def _mirror(self, block_words: list[Word]) -> None:
         names = [word.name for word in block_words]
         if any(name not in ("X", "Y", "Z") for name in names):
-            raise KlartextError("only X, Y and Z are mirrored here")
+            raise KlartextError(Wording("NC210", "only_x_y_z_mirrored"))
         mirrored = ("X" in names, "Y" in names, "Z" in names)
         self._control.set_datum(replace(self._control.datum, mirrored=mirrored), {plane_datums.MIRROR})
 
@@ -189,7 +188,7 @@ class Definitions:
         incremental = any(word.incremental for word in block_words)
         for word in block_words:
             if word.name != "ROT" or word.operand is None:
-                raise KlartextError(f"unknown word {word.name}", code="NC211")
+                raise KlartextError(Wording("NC211", "unknown_word", word=word.name))
             value = value_of(word.operand, parameters)
             angle = angle + value if word.incremental else value
         self._control.set_datum(
@@ -200,19 +199,19 @@ class Definitions:
         scale, centre = [1.0, 1.0, 1.0], [0.0, 0.0, 0.0]
         for word in block_words:
             if word.operand is None:
-                raise KlartextError(f"{word.name} needs a value")
+                raise KlartextError(Wording("NC210", "word_needs_value", word=word.name))
             value = value_of(word.operand, parameters)
             if word.name in ("CCX", "CCY", "CCZ"):
                 centre["XYZ".index(word.name[2])] = value * self._control.length_unit
                 continue
             if not _MIN_SCALE < value < _MAX_SCALE:
-                raise KlartextError(f"a scale of {value:g}", code="NC215")
+                raise KlartextError(Wording("NC215", "bad_scale", value=value))
             if word.name == "SCL":
                 scale = [value, value, value]
             elif word.name in ("X", "Y", "Z"):
                 scale["XYZ".index(word.name)] = value
             else:
-                raise KlartextError(f"unknown word {word.name}", code="NC211")
+                raise KlartextError(Wording("NC211", "unknown_word", word=word.name))
         datum = replace(
             self._control.datum, scale=(scale[0], scale[1], scale[2]), centre=(centre[0], centre[1], centre[2])
         )
@@ -224,10 +223,10 @@ class Definitions:
             known = TOLERANCE_WORDS.get((line, word.name))
             value = None if word.operand is None else value_of(word.operand, parameters)
             if known is None or value is None:
-                raise KlartextError(f"unknown word {word.name} in line {line} of cycle 32", code="NC211")
+                raise KlartextError(Wording("NC211", "unknown_word_line_cycle_32", word=word.name, line=line))
             if value < 0.0 or (isinstance(known, Values) and value not in known):
                 raise KlartextError(
-                    f"{word.name}{value:g} in line {line} of cycle 32: the control does not know it", code="NC215"
+                    Wording("NC215", "line_cycle_32_control_does", word=word.name, value=value, line=line)
                 )
         if line == 1:
             operands = [word.operand for word in block_words if word.name == "T" and word.operand is not None]
@@ -253,16 +252,18 @@ class Definitions:
         q_values = self._read_parameters(number, rest, parameters)
         if number in CYCLES or number in CYCLES_NOT_SIMULATED:
             if number in ACT_WHEN_DEFINED:
-                self._note(f"cycle {number} ({CYCLES_NOT_SIMULATED[number]}) is not simulated", Severity.ERROR, "NC220")
+                self._note(
+                    Wording("NC220", "cycle_not_simulated", number=number, cycle=CYCLES_NOT_SIMULATED[number]),
+                    Severity.ERROR,
+                )
                 return
             self.defined_cycle = Cycle(number, q_values=q_values)
             if number == BORE_MILLING:
-                text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"
-                self._note(text, Severity.WARNING, "NC221")
+                self._note(Wording("NC221", "cycle_208_tool_radius_control"), Severity.WARNING)
         elif number == PRESET:
             self._preset(q_values)
         else:
-            self._note(f"cycle {number} {title[:40].strip()} is unknown", Severity.ERROR, "NC211")
+            self._note(Wording("NC211", "cycle_unknown", number=number, title=title[:40].strip()), Severity.ERROR)
 
     def _read_parameters(self, number: int, rest: str, parameters: Parameters) -> dict[int, float]:
         """Assign the Q parameters of a definition; returns them by number."""
@@ -271,7 +272,7 @@ class Definitions:
         while at < len(rest.rstrip()):
             match = _ASSIGNED.match(rest, at)
             if match is None:
-                raise KlartextError(f"{rest[at : at + 20].strip()} is not a parameter of a cycle")
+                raise KlartextError(Wording("NC210", "not_parameter_cycle", rest=rest[at : at + 20].strip()))
             at = match.end()
             target, sign, parameter, figures, word = match.groups()
             if word in _RAPID and int(target[1:]) in MAY_BE_RAPID:
@@ -279,7 +280,10 @@ class Definitions:
                 parameters.forget(canonical(target))
                 continue
             if word is not None:
-                self._note(f"cycle {number}: {target}={word} is not simulated", Severity.ERROR, "NC220")
+                self._note(
+                    Wording("NC220", "cycle_word_not_simulated", number=number, target=target, word=word),
+                    Severity.ERROR,
+                )
                 continue
             value = parameters[canonical(parameter)] if parameter else float(figures.replace(",", "."))
             value = -value if sign == "-" else value
@@ -290,7 +294,7 @@ class Definitions:
     def _preset(self, q_values: dict[int, float]) -> None:
         preset = q_values.get(339, 0.0)
         if preset != int(preset) or not 0 <= preset < 65535:
-            raise KlartextError(f"preset {preset:g} does not exist", code="NC215")
+            raise KlartextError(Wording("NC215", "preset_does_not_exist", preset=preset))
         self._control.note_preset(int(preset))
         self._control.set_offset(int(preset), f"preset {preset:g}")
 
@@ -315,10 +319,12 @@ class Definitions:
         """
         cycle, control = self.defined_cycle, self._control
         if cycle is None:
-            raise CycleExecutionError("was called before any was defined")
+            raise CycleExecutionError(Wording("NC380", "called_before_any_defined"))
         if cycle.number in CYCLES_NOT_SIMULATED:
             raise CycleExecutionError(
-                f"{cycle.number} ({CYCLES_NOT_SIMULATED[cycle.number]}) is known but not simulated", code="NC220"
+                Wording(
+                    "NC220", "cycle_known_not_simulated", number=cycle.number, cycle=CYCLES_NOT_SIMULATED[cycle.number]
+                )
             )
         # A pitch counts in the unit of lengths, a feed in that of feeds.
         rpm = float(control.modal.rpm.current) * control.length_unit / control.feed_unit
@@ -345,7 +351,7 @@ def _axis_values(block_words: list[Word], parameters: Parameters, names: str) ->
     """Return the words of axes with their values; no others may be there."""
     for word in block_words:
         if word.operand is None or word.name not in names:
-            raise KlartextError(f"unknown word {word.name or word.text}", code="NC211")
+            raise KlartextError(Wording("NC211", "unknown_word", word=word.name or word.text))
     return [(word, value_of(word.operand, parameters)) for word in block_words if word.operand is not None]
 
 
@@ -353,7 +359,7 @@ def _last(text: str, parameters: Parameters) -> float:
     """Return the number at the end of a line."""
     match = _LAST.search(text)
     if match is None:
-        raise KlartextError("a number is missing")
+        raise KlartextError(Wording("NC210", "number_missing"))
     value = parameters[canonical(match[2])] if match[2] else float(match[3].replace(",", "."))
     return -value if match[1] == "-" else value
 

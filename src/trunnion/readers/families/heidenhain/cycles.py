@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import (
     MAX_FEED,
@@ -51,7 +52,7 @@ class Hole:
         self.surface = self.need(203)
         self.depth = self.need(201)
         if self.depth == 0.0:
-            raise CycleExecutionError("has the depth 0")
+            raise CycleExecutionError(Wording("NC380", "depth_0"))
         self.sign = -1.0 if self.depth < 0.0 else 1.0
         self.total = abs(self.depth)
         self.start = self.at(-self.need(200))
@@ -69,7 +70,7 @@ class Hole:
     def need(self, number: int) -> float:
         """Return a value that the cycle must have."""
         if number not in self._values:
-            raise CycleExecutionError(f"has no Q{number}")
+            raise CycleExecutionError(Wording("NC380", "has_no_parameter", number=number))
         return self.get(number)
 
     def at(self, depth: float) -> float:
@@ -102,14 +103,14 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
     for parameter, known in Q_VALUES.items():
         if parameter in values and values[parameter] not in known:
             raise CycleExecutionError(
-                f"has Q{parameter}={values[parameter]:g}, and is known with {known} only", code="NC215"
+                Wording("NC215", "parameter_out_of_range", parameter=parameter, value=values[parameter], known=known)
             )
     hole = Hole(values, rpm)
     motions = [
         replace(motion, rapid=True, feed=None) if motion.feed == math.inf else motion for motion in CYCLES[number](hole)
     ]
     if any(motion.feed is not None and not 0.0 <= motion.feed <= MAX_FEED for motion in motions):
-        raise CycleExecutionError("has a feed that no machine has")
+        raise CycleExecutionError(Wording("NC380", "feed_no_machine"))
     motions = [HoleMotion(True, hole.start), *motions]
     return motions if hole.back == hole.start else [*motions, HoleMotion(True, hole.back)]
 
@@ -146,7 +147,7 @@ def _bore(hole: Hole) -> list[HoleMotion]:
 def _lift_off(hole: Hole, distance: float) -> tuple[float, float]:
     direction = hole.get(214)
     if direction not in _LIFT_DIRECTIONS:
-        raise CycleExecutionError(f"has Q214={direction:g}, which is not a direction")
+        raise CycleExecutionError(Wording("NC380", "bad_direction", direction=direction))
     first, second = _LIFT_DIRECTIONS[int(direction)]
     return first * distance, second * distance
 
@@ -192,7 +193,7 @@ def _deep(hole: Hole) -> list[HoleMotion]:
     motions: list[HoleMotion] = []
     begin = hole.get(379)
     if not 0.0 <= begin < hole.total:
-        raise CycleExecutionError("starts below its depth")
+        raise CycleExecutionError(Wording("NC380", "starts_below_depth"))
     if begin:
         motions.append(HoleMotion(False, hole.at(begin), hole.need(253)))
     depths = [begin + depth for depth in peck_depths(hole.total - begin, hole.get(202), hole.get(212), hole.get(205))]
@@ -219,7 +220,7 @@ def _tap(hole: Hole) -> list[HoleMotion]:
 def _pitch(hole: Hole) -> float:
     feed = abs(hole.need(239)) * hole.rpm
     if feed == 0.0:
-        raise CycleExecutionError("has no pitch or no spindle speed")
+        raise CycleExecutionError(Wording("NC380", "no_pitch_no_spindle_speed"))
     return feed
 
 
@@ -236,10 +237,10 @@ def _bore_mill(hole: Hole) -> list[HoleMotion]:
     """
     radius, most = 0.5 * hole.need(335), hole.need(334)
     if radius <= 0.0 or most <= 0.0:
-        raise CycleExecutionError("has no diameter (Q335) or no infeed (Q334)")
+        raise CycleExecutionError(Wording("NC380", "no_diameter_q335_no_infeed"))
     share = (hole.total + hole.need(200)) / most
     if not 0.0 < share <= MAX_PECKS:
-        raise CycleExecutionError(f"would turn more than {MAX_PECKS} times, or not at all")
+        raise CycleExecutionError(Wording("NC380", "too_many_turns", most=MAX_PECKS))
     side, lateral = -1 if hole.get(351) < 0.0 else 1, (radius, 0.0)
     return [
         HoleMotion(False, None, hole.feed, lateral=lateral),
@@ -262,7 +263,7 @@ def _tap_break(hole: Hole) -> list[HoleMotion]:
 def _centre(hole: Hole) -> list[HoleMotion]:
     """Cycle 240: centring to a depth; for a diameter the point angle of the tool would be needed."""
     if hole.get(343):
-        raise CycleExecutionError("centres to a diameter, for which the tool's point angle is not in the program")
+        raise CycleExecutionError(Wording("NC380", "centres_diameter_tool_point_angle"))
     return [HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)), HoleMotion(True, hole.start)]
 
 
@@ -271,7 +272,7 @@ def _gun_drill(hole: Hole) -> list[HoleMotion]:
     motions: list[HoleMotion] = []
     begin = hole.get(379)
     if not 0.0 <= begin < hole.total:
-        raise CycleExecutionError("starts below its depth")
+        raise CycleExecutionError(Wording("NC380", "starts_below_depth"))
     if begin:
         motions.append(HoleMotion(False, hole.at(begin - hole.need(200)), hole.need(253)))
     motions.append(HoleMotion(False, hole.at(hole.total), hole.feed, dwell=hole.get(211)))
@@ -339,26 +340,26 @@ def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, h
 
     def need(name: str) -> float:
         if name not in values:
-            raise CycleExecutionError(f"has no {name}")
+            raise CycleExecutionError(Wording("NC380", "has_no", word=name))
         value = finite(values[name])
         assert value is not None
         return value
 
     clearance, depth = abs(need("DIST")), need("DEPTH")
     if depth == 0.0:
-        raise CycleExecutionError("has the depth 0")
+        raise CycleExecutionError(Wording("NC380", "depth_0"))
     sign = -1.0 if depth < 0.0 else 1.0
     total = abs(depth)
     surface = here + sign * clearance
     if number != 1:
         feed = abs(need("PITCH")) * rpm if number == 17 else need("F")
         if not 0.0 < feed <= MAX_FEED:
-            raise CycleExecutionError("has no feed that a machine has")
+            raise CycleExecutionError(Wording("NC380", "no_feed_machine"))
         bottom = HoleMotion(False, surface + sign * total, feed, dwell=values.get("DWELL", 0.0))
         return [bottom, HoleMotion(False, here, feed)]
     feed = need("F")
     if not 0.0 <= feed <= MAX_FEED:
-        raise CycleExecutionError("has a feed that no machine has")
+        raise CycleExecutionError(Wording("NC380", "feed_no_machine"))
     # How far above the last depth the rapid approach ends: fixed values of the control.
     gap = 0.6 if total <= 30.0 else min(total / 50.0, 7.0)
 

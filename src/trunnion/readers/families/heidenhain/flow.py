@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.fn_functions import execute
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
@@ -57,7 +58,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
     def _call(self, active: ActiveProgram, rest: str) -> None:
         match = _CALL.match(rest)
         if match is None:
-            raise KlartextError("CALL needs LBL or PGM")
+            raise KlartextError(Wording("NC210", "call_needs_lbl_pgm"))
         rest = rest[match.end() :].strip()
         if match[1] == "PGM":
             self._enter_program(rest.strip('"'))
@@ -70,8 +71,8 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
             self._repeat(active, here, target, int(_label_name(repeats.split("/")[0], active.parameters)))
             return
         if len(active.returns) >= MAX_LABEL_DEPTH:
-            what = f"calls labels deeper than {MAX_LABEL_DEPTH} levels"
-            raise active.source.problem(self.control.line, what, "does one call itself?", code="NC141")
+            too_deep = Wording("NC141", "labels_too_deep", most=MAX_LABEL_DEPTH)
+            raise active.source.problem(self.control.line, too_deep)
         active.returns.append(here)
         active.source.jump(target)
 
@@ -81,8 +82,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         for name, line, first in source.take_doubled_labels():
             self.control.line = line
             shown = name if name.isdigit() else f'"{name[:40]}"'
-            what = f"LBL {shown} is set in line {first} already: the control takes each label once"
-            self._note(f"{what}; give this one another number", Severity.ERROR, "NC163")
+            self._note(Wording("NC163", "doubled_label", label=shown, line=first), Severity.ERROR)
         self.control.line = here
 
     @staticmethod
@@ -100,7 +100,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         name = _label_name(label, active.parameters)
         found = active.source.label(name)
         if found is None:
-            self._note(f"the label {name[:60]} is missing: the program ends here", Severity.ERROR, "NC133")
+            self._note(Wording("NC133", "missing_label", name=name[:60]), Severity.ERROR)
             raise ProgramEnd
         return found
 
@@ -108,7 +108,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         """Call a program, one of the files given by the user."""
         path = self._subprograms.find(name)
         if path is None:
-            self._note(f"missing program {name[:80]}: it is not executed; name its file", Severity.ERROR, "NC132")
+            self._note(Wording("NC132", "missing_program", name=name[:80]), Severity.ERROR)
             return
         self._check_depth()
         parameters = Parameters(self._stack[-1].parameters)
@@ -132,8 +132,8 @@ def _label_name(text: str, parameters: Parameters) -> str:
         return text.strip('"').upper()
     match = _LABEL.fullmatch(text)
     if match is None:
-        raise KlartextError("a label has a number or a name in quotes")
+        raise KlartextError(Wording("NC210", "label_number_name_quotes"))
     number = parameters[canonical(match[1])] if match[1] else float(match[2])
     if number != int(number) or number < 0.0:
-        raise KlartextError(f"{number:g} is not a label")
+        raise KlartextError(Wording("NC210", "not_label", number=number))
     return str(int(number))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.heidenhain.parameters import (
     FUNCTIONS,
@@ -62,7 +63,7 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     """
     match = _NUMBER.match(text)
     if match is None:
-        raise KlartextError("FN needs a number")
+        raise KlartextError(Wording("NC210", "fn_needs_number"))
     number, rest = int(match[1]), text[match.end() :]
     if number in _CONDITIONS:
         return _jump(number, rest, parameters)
@@ -70,15 +71,15 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
         severity = Severity.ERROR if number in FN_SYSTEM_DATA else Severity.WARNING
         of_warning = "NC226" if number in FN_WAITS else "NC221"
         code = "NC220" if severity is Severity.ERROR else of_warning
-        note(f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated", severity, code)
+        note(Wording(code, "fn_known_not_simulated", number=number, does=FN_NOT_SIMULATED[number]), severity)
         return None
     target = ASSIGNED.match(rest.removeprefix("SYSREAD").lstrip() if number == _SYSTEM else rest)
     if target is None:
-        raise KlartextError(f"FN {number} is not simulated", code="NC220")
+        raise KlartextError(Wording("NC220", "fn_not_simulated", number=number))
     name = canonical(target[1])
     if number == _SYSTEM:
         parameters.forget(name)
-        note(f"FN 18 SYSREAD: only the control knows what {name} becomes", Severity.WARNING, "NC222")
+        note(Wording("NC222", "fn_18_sysread_only_control", name=name), Severity.WARNING)
         return None
     try:
         parameters[name] = _value(number, rest[target.end() :].strip(), parameters)
@@ -105,15 +106,15 @@ def _value(number: int, rest: str, parameters: Parameters) -> float:
         word = _SINGLE[number]
         match = re.fullmatch(rf"{word}[ \t]*{_OPERAND}", rest)
         if match is None:
-            raise KlartextError(f"FN {number} takes {word} and one value")
+            raise KlartextError(Wording("NC210", "fn_takes_value", number=number, word=word))
         operand = formula(match[1], parameters)
         return guarded(lambda: FUNCTIONS[word](operand), word)
     if number not in _ARITHMETIC:
-        raise KlartextError(f"FN {number} is not simulated", code="NC220")
+        raise KlartextError(Wording("NC220", "fn_not_simulated", number=number))
     word, work = _ARITHMETIC[number]
     match = re.fullmatch(rf"{_OPERAND}[ \t]*{word}[ \t]*{_OPERAND}", rest)
     if match is None:
-        raise KlartextError(f"FN {number} takes two values")
+        raise KlartextError(Wording("NC210", "fn_takes_two_values", number=number))
     first, second = formula(match[1], parameters), formula(match[2], parameters)
     return checked(guarded(lambda: work(first, second), f"FN {number}"))
 
@@ -122,6 +123,6 @@ def _jump(number: int, rest: str, parameters: Parameters) -> str | None:
     word, holds = _CONDITIONS[number]
     match = re.fullmatch(rf"IF[ \t]*{_OPERAND}[ \t]*{word}[ \t]*{_OPERAND}[ \t]*GOTO[ \t]*LBL(.*)", rest.rstrip())
     if match is None:
-        raise KlartextError(f"FN {number} takes IF, two values with {word} between them, and GOTO LBL")
+        raise KlartextError(Wording("NC210", "fn_takes_if_two_values", number=number, word=word))
     first, second = formula(match[1], parameters), formula(match[2], parameters)
     return match[3] if holds(first, second) else None

@@ -7,6 +7,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.coordinates import INCH
 from trunnion.readers.control.hole_motion import CycleExecutionError
@@ -109,11 +110,11 @@ class HeidenhainInterpreter(FlowInterpreter):
     def _execute_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         if len(raw) > MAX_LENGTH:
             self._block_parts.clear()
-            self._note(f"the line is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR, "NC214")
+            self._note(Wording("NC214", "long_line", most=MAX_LENGTH), Severity.ERROR)
             return
         parts = split_line(raw)
         if self._block_parts and parts.number >= 0 and not ASSIGNED.match(parts.statement):
-            self._note("the block before it goes on (~), and a new one begins", Severity.ERROR, "NC210")
+            self._note(Wording("NC210", "block_before_goes_new_begins"), Severity.ERROR)
             self._finish_block(active)
             self.control.line = line
         if parts.block_skip and self._options.skip:
@@ -125,16 +126,13 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._block_parts.append(parts.statement)
             self._block_length += len(parts.statement)
         elif parts.continues and not self._block_parts:
-            what = "a ~ ends a line without words: it takes the next line into this block"
-            self._note(what, Severity.ERROR, "NC210")
+            self._note(Wording("NC210", "ends_line_without_words_takes"), Severity.ERROR)
         try:
             if not (parts.continues and self._block_parts):
                 self._finish_block(active)
             elif self._block_length > MAX_LENGTH:
                 self._block_parts.clear()
-                self._note(
-                    f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR, "NC214"
-                )
+                self._note(Wording("NC214", "long_block_not_executed", most=MAX_LENGTH), Severity.ERROR)
         finally:
             self._record_comment(line, parts.comment)
 
@@ -150,9 +148,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         try:
             self._statement(active, statement)
         except KlartextError as error:
-            self._note(
-                f"not understood: {statement[:80]}: {error}: the block is not executed", Severity.ERROR, error.code
-            )
+            self._note(error.wording.within("block_not_understood", text=statement[:80]), Severity.ERROR)
 
     def _leave_program(self) -> None:
         if self._block_parts:
@@ -167,9 +163,9 @@ class HeidenhainInterpreter(FlowInterpreter):
     def _note_at_last_line(self, source: SourceText) -> Note:
         """Return what notes faults at the line that was read last."""
 
-        def note(text: str, severity: Severity, code: str) -> None:
+        def note(wording: Wording, severity: Severity) -> None:
             self.control.line = source.line - 1
-            self._note(text, severity, code)
+            self._note(wording, severity)
 
         return note
 
@@ -188,7 +184,7 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._definitions.end_lines()
         (program, before), self._last_block = self._last_block, (active, self._block_start[1])
         if assigned is not None and program is active and self._block_start[1] < 0 <= before:
-            raise KlartextError("a line of a cycle whose CYCL DEF is missing: only such lines have no number")
+            raise KlartextError(Wording("NC210", "line_cycle_whose_cycl_def"))
         if path is not None:
             self._path_block(active, path[0], statement[path.end() :])
             return
@@ -200,7 +196,10 @@ class HeidenhainInterpreter(FlowInterpreter):
         if keyword in self._handlers:
             self._handlers[keyword](active, statement[len(keyword) :])
         elif keyword in BLOCKS_NOT_SIMULATED:
-            self._note(f"{keyword} {BLOCKS_NOT_SIMULATED[keyword]}", Severity.ERROR, "NC220")
+            self._note(
+                Wording("NC220", "block_not_simulated", keyword=keyword, does=BLOCKS_NOT_SIMULATED[keyword]),
+                Severity.ERROR,
+            )
         else:
             # A block of M words, or of a single axis, needs no path function.
             self._path_block(active, "L", statement)
@@ -224,11 +223,11 @@ class HeidenhainInterpreter(FlowInterpreter):
 
     def _begin_program(self, active: ActiveProgram, rest: str) -> None:
         if not rest.split()[:1] == ["PGM"]:
-            raise KlartextError("BEGIN needs PGM")
+            raise KlartextError(Wording("NC210", "begin_needs_pgm"))
         program_frame.begin(active, rest.split(), self.control.row, self._note)
         unit = rest.split()[-1]
         if unit not in ("MM", "INCH"):
-            self._note("BEGIN PGM without MM or INCH", Severity.ERROR, "NC160")
+            self._note(Wording("NC160", "begin_pgm_without_mm_inch"), Severity.ERROR)
         self.control.set_units(unit == "INCH", False)
         self.control.feed_unit = _TENTH if unit == "INCH" else 1.0
 
@@ -256,9 +255,9 @@ class HeidenhainInterpreter(FlowInterpreter):
         if function in ("LP", "CP", "CTP"):
             axes = polar_end(control, block, circle=function == "CP")
         elif block.polar:
-            raise KlartextError(f"{function} has no polar coordinates")
+            raise KlartextError(Wording("NC210", "no_polar_coordinates", function=function))
         if block.radius is not None and function != "CR":
-            raise KlartextError(f"{function} has no radius")
+            raise KlartextError(Wording("NC210", "no_radius", function=function))
         circle = circle_of(control, function, block) if function[0] == "C" else None
         vector = block.tool_axis
         feed = self._feed(block)
@@ -269,7 +268,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._set_compensation(block)
         in_machine = self._moves_in_machine(block)
         if vector is not None and not control.tip_programmed:
-            self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.ERROR, "NC340")
+            self._note(Wording("NC340", "tx_ty_tz_need_m128"), Severity.ERROR)
         moves, row = bool(axes) or vector is not None or circle is not None, control.row
         if moves:
             feed_written = block.feed is not None and not block.rapid
@@ -287,15 +286,14 @@ class HeidenhainInterpreter(FlowInterpreter):
         if block.side:
             self.control.modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
         if block.side in ("RL", "RR"):
-            text = "radius compensation is not simulated: the path is that of the tool centre as programmed"
-            self._note(f"{block.side}: {text}", Severity.WARNING, "NC221")
+            self._note(Wording("NC221", "radius_compensation", word=block.side), Severity.WARNING)
             self.control.judge_compensation()
 
     def _moves_in_machine(self, block: Block) -> bool:
         """Whether a block programs positions of the machine axes (M91, M92)."""
         codes = {code for code, _ in block.m}
         if M_SECOND_MACHINE in codes:
-            self._note("M92: where it counts from is set in the machine, taken as M91", Severity.WARNING, "NC224")
+            self._note(Wording("NC224", "m92_counts_set_machine_taken"), Severity.WARNING)
         return bool(codes & {M_MACHINE, M_SECOND_MACHINE})
 
     def _remove_missing_axes(self, block: Block) -> None:
@@ -304,7 +302,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         if self.control.spatial_angles_active:
             known |= {"A", "B", "C"}
         for name in sorted(block.axes.keys() - known):
-            self._note(f"the machine has no axis {name}: its word is not executed", Severity.ERROR, "NC230")
+            self._note(Wording("NC230", "axis_word_not_executed", axis=name), Severity.ERROR)
             del block.axes[name]
 
     def _feed(self, block: Block) -> float | None:
@@ -312,7 +310,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         if block.feed is not None:
             return block.feed * self.control.feed_unit
         if block.feed_of_tool and self._tool_feed is None:
-            raise KlartextError("F AUTO, and TOOL CALL has no F")
+            raise KlartextError(Wording("NC210", "f_auto_tool_call_no"))
         return self._tool_feed if block.feed_of_tool else None
 
     def _pole(self, active: ActiveProgram, rest: str) -> None:
@@ -323,7 +321,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         pole = control.programmed_position.copy()
         for name, (value, mode) in block.axes.items():
             if name not in ("X", "Y", "Z"):
-                raise KlartextError(f"CC takes no {name}")
+                raise KlartextError(Wording("NC210", "cc_takes_no", name=name))
             axis = "XYZ".index(name)
             pole[axis] = value * control.length_unit + (pole[axis] if mode is PositionMode.INCREMENTAL else 0.0)
         control.pole = pole
@@ -338,7 +336,7 @@ class HeidenhainInterpreter(FlowInterpreter):
     def _cycle(self, active: ActiveProgram, rest: str) -> None:
         match = _CYCLE.match(rest)
         if match is None:
-            raise KlartextError("CYCL needs DEF or CALL")
+            raise KlartextError(Wording("NC210", "cycl_needs_def_call"))
         rest = rest[match.end() :]
         if match[1] == "DEF":
             self._definitions.define(rest, active.parameters)
@@ -350,12 +348,12 @@ class HeidenhainInterpreter(FlowInterpreter):
         call_words = words(rest)
         first = call_words[0].name if call_words else ""
         if first == "PAT":
-            self._note("CYCL CALL PAT: point patterns are not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "cycl_call_pat_point_patterns"), Severity.ERROR)
             return
         with_position = first == "POS"
         block = read_block(call_words[1:] if with_position else call_words, active.parameters)
         if block.axes and not with_position:
-            raise KlartextError("CYCL CALL takes no positions")
+            raise KlartextError(Wording("NC210", "cycl_call_takes_no_positions"))
         self._m_functions.execute_before_motion(block)
         if block.feed is not None:
             control.programmed_feed = block.feed * control.feed_unit
@@ -370,7 +368,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         try:
             motions = self._definitions.call(active.parameters)
         except CycleExecutionError as error:
-            self._note(f"the cycle {error}: it is not executed", Severity.ERROR, error.code)
+            self._note(error.wording.within("cycle_not_executed"), Severity.ERROR)
             return
         self._counter.count_motions(len(motions))
         self.control.drill(motions, self._definitions.spindle_work())
@@ -391,4 +389,4 @@ class HeidenhainInterpreter(FlowInterpreter):
             case ["MODE", "MILL"]:
                 pass
             case _:
-                self._note(f"FUNCTION{rest[:60]} is not simulated", Severity.ERROR, "NC220")
+                self._note(Wording("NC220", "function_not_simulated", text=rest[:60]), Severity.ERROR)

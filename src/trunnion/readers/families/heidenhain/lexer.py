@@ -4,6 +4,7 @@ import re
 from typing import Final, NamedTuple
 
 from trunnion.encoding import capitals
+from trunnion.messages import Wording
 from trunnion.readers.families.heidenhain.parameters import KlartextError
 
 #: Longer statements are not executed.
@@ -100,7 +101,7 @@ def words(statement: str, at: int = 0) -> list[Word]:
     while at < end:
         match = _WORD.match(statement, at)
         if match is None:
-            raise KlartextError(f"{statement[at : at + 20].strip()} is not a word")
+            raise KlartextError(Wording("NC210", "not_a_word", found=statement[at : at + 20].strip()))
         found.append(_word(match))
         at = match.end()
     return found
@@ -121,5 +122,5 @@ def _word(match: re.Match[str]) -> Word:
 def number_of(text: str) -> float:
     """Return a number written with a point or a comma."""
     if len(text) > MOST_DIGITS:
-        raise KlartextError(f"{text[:20]}... has more than {MOST_DIGITS} digits")
+        raise KlartextError(Wording("NC210", "too_many_digits", text=text[:20], most=MOST_DIGITS))
     return float(text.replace(",", "."))

@@ -5,6 +5,7 @@ import re
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.lexer import words
@@ -82,7 +83,7 @@ class MFunctions:
         for (owner, letter), known in M_VALUES.items():
             given = arguments.get(letter) if owner == code else None
             if given is not None and (fault := fault_of_value(f"M{code}", letter, given, known)):
-                self._note(fault, Severity.ERROR, "NC215")
+                self._note(fault, Severity.ERROR)
         self._words_of_function(code, arguments)
         self._note_modes(code, arguments)
         for kind, value in M_EVENTS.get(code, ()):
@@ -95,7 +96,7 @@ class MFunctions:
         elif code in (M_PER_TURN, M_PER_MINUTE):
             control.modal.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
             if code == M_PER_TURN and control.length_unit != 1.0:
-                control.note("M136 in inches: what F counts per revolution is not known", Severity.ERROR, "NC241")
+                control.note(Wording("NC241", "m136_inches_what_f_counts"), Severity.ERROR)
         elif code in (M_FEED_AT_TIP, M_FEED_IN_DEGREES):
             control.feed_at_tip(code == M_FEED_AT_TIP)
         elif code == M_RETRACT:
@@ -112,9 +113,8 @@ class MFunctions:
         elif code in M_NOT_SIMULATED:
             text, changes_path = M_NOT_SIMULATED[code]
             self._note(
-                f"M{code}: {text}",
+                Wording("NC220" if changes_path else "NC221", "not_simulated", word=f"M{code}", does=text),
                 Severity.ERROR if changes_path else Severity.WARNING,
-                "NC220" if changes_path else "NC221",
             )
         elif code not in _HANDLED_ELSEWHERE:
             control.add_builders_word("M", float(code))
@@ -137,18 +137,18 @@ class MFunctions:
         control = self._control
         for (owner, letter), text in M_WORDS_NOT_SIMULATED.items():
             if owner == code and letter in arguments:
-                self._note(f"M{code}: {text}", Severity.ERROR, "NC220")
+                self._note(Wording("NC220", "m_not_simulated", code=code, does=text), Severity.ERROR)
         if code == M_POINT_FILTER and (distance := arguments.get("T")) is not None:
             control.add_tolerance(distance * control.length_unit)
         if code == M_TILTING_AXES and arguments and arguments.keys() != set(control.rotary_names):
             names = " and ".join(sorted(arguments))
-            self._note(f"M{code}: tilting with {names} alone is not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "m_tilting_alone_not_simulated", code=code, names=names), Severity.ERROR)
 
     def _retract(self, arguments: dict[str, float | None]) -> None:
         control = self._control
         distance = arguments.get("MB")
         if distance is None and "MAX" not in arguments:
-            raise KlartextError("M140 needs MB and how far")
+            raise KlartextError(Wording("NC210", "m140_needs_mb_how_far"))
         feed = arguments.get("F")
         control.retract(
             math.inf if distance is None else distance * control.length_unit,
@@ -164,14 +164,14 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     """
     match = _TOOL.match(rest)
     if match is None:
-        raise KlartextError("TOOL needs CALL or DEF")
+        raise KlartextError(Wording("NC210", "tool_needs_call_def"))
     block_words = words(rest, match.end())
     name = _tool_name(match, parameters)
     if match["kind"] == "DEF":
         # With a length and a radius it defines a tool; without them it announces the next one.
         sizes = {word.name: value_of(word.operand, parameters) for word in block_words if word.operand is not None}
         if len(sizes) < len(block_words) or sizes.keys() - {"L", "R"}:
-            raise KlartextError("TOOL DEF takes L and R")
+            raise KlartextError(Wording("NC210", "tool_def_takes_l_r"))
         if name is not None and sizes:
             control.define_tool(name, {key: value * control.length_unit for key, value in sizes.items()})
         elif name is not None:
@@ -181,14 +181,13 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     tool_axes = [word.name for word in block_words if word.operand is None]
     unknown = [*(set(tool_axes) - {"X", "Y", "Z"}), *(values.keys() - {"S", "F", "DL", "DR", "DR2"})]
     if unknown:
-        raise KlartextError(f"unknown word {unknown[0] or 'in quotes'}", code="NC211")
+        raise KlartextError(Wording("NC211", "unknown_word", word=unknown[0] or "in quotes"))
     feed = values.get("F")
     if feed is not None and not 0.0 <= feed <= MAX_FEED:
-        raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}", code="NC215")
+        raise KlartextError(Wording("NC215", "feed_out_of_range", most=MAX_FEED))
     along = "XYZ".index(tool_axes[-1]) if tool_axes else None
     if along is not None and abs(control.machine.spindle_direction[along]) < _ALONG:
-        text = f"TOOL CALL with {tool_axes[-1]}: the length of the tool does not count along the spindle"
-        control.note(text, Severity.ERROR, "NC361")
+        control.note(Wording("NC361", "tool_axis_not_spindle", axis=tool_axes[-1]), Severity.ERROR)
     control.call_tool(name, along)
     if "S" in values:
         control.modal.rpm.set(control.row, abs(values["S"]))

@@ -6,6 +6,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
+from trunnion.messages import Wording
+from trunnion.readers.control.worded_error import WordedError
+
 #: How deep parentheses and signs may nest.
 MAX_NESTING: Final = 40
 
@@ -15,12 +18,8 @@ MAX_VALUE: Final = 1e10
 _TOKEN = re.compile(r"[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+)|([A-Z]+)|([-+*/^%()]))")
 
 
-class KlartextError(Exception):
+class KlartextError(WordedError):
     """The reason why a block is not executed."""
-
-    def __init__(self, text: str, *, code: str = "NC210") -> None:
-        super().__init__(text)
-        self.code = code
 
 
 class Parameters:
@@ -40,7 +39,7 @@ class Parameters:
     def __getitem__(self, name: str) -> float:
         value = self.get(name)
         if value is None:
-            raise KlartextError(f"{name} has no value that the program says", code="NC223")
+            raise KlartextError(Wording("NC223", "no_value_in_program", name=name))
         return value
 
     def __setitem__(self, name: str, value: float) -> None:
@@ -54,7 +53,7 @@ class Parameters:
 def checked(value: float) -> float:
     """Return a value that a parameter can have; KlartextError for others."""
     if not abs(value) <= MAX_VALUE:
-        raise KlartextError("a value is larger than any parameter can hold", code="NC215")
+        raise KlartextError(Wording("NC215", "value_too_large"))
     return value
 
 
@@ -72,7 +71,7 @@ def _power_of(base: float, exponent: float) -> float:
 
 def _tangent(x: float) -> float:
     if math.isclose(math.cos(math.radians(x)), 0.0, abs_tol=1e-12):
-        raise KlartextError(f"TAN {x:g} is infinite")
+        raise KlartextError(Wording("NC210", "infinite_tangent", angle=x))
     return math.tan(math.radians(x))
 
 
@@ -105,7 +104,7 @@ def formula(text: str, parameters: Parameters) -> float:
     parser = _Parser(text, parameters)
     value = parser.sum()
     if parser.token is not None:
-        raise KlartextError(f"{parser.token[:20]} stands where nothing may follow")
+        raise KlartextError(Wording("NC210", "nothing_may_follow", token=parser.token[:20]))
     return checked(value)
 
 
@@ -119,7 +118,7 @@ class _Parser:
         while at < len(text):
             match = _TOKEN.match(text, at)
             if match is None:
-                raise KlartextError(f"{text[at : at + 20].strip()} belongs to no formula")
+                raise KlartextError(Wording("NC210", "no_part_of_formula", found=text[at : at + 20].strip()))
             self._tokens.append(match.group().strip())
             at = match.end()
         self._at = 0
@@ -133,7 +132,7 @@ class _Parser:
     def _take(self) -> str:
         token = self.token
         if token is None:
-            raise KlartextError("a value is missing")
+            raise KlartextError(Wording("NC210", "value_missing"))
         self._at += 1
         return token
 
@@ -150,7 +149,7 @@ class _Parser:
             if operator == "*":
                 value = checked(value * other)
             elif other == 0.0:
-                raise KlartextError("divides by zero")
+                raise KlartextError(Wording("NC210", "divides_zero"))
             else:
                 value = checked(value / other) if operator == "/" else math.fmod(value, other)
         return value
@@ -166,7 +165,7 @@ class _Parser:
     def _factor(self) -> float:
         self._depth += 1
         if self._depth > MAX_NESTING:
-            raise KlartextError(f"nests deeper than {MAX_NESTING} levels")
+            raise KlartextError(Wording("NC210", "nests_too_deep", most=MAX_NESTING))
         try:
             return self._value(self._take())
         finally:
@@ -178,7 +177,7 @@ class _Parser:
         if token == "(":
             value = self.sum()
             if self._take() != ")":
-                raise KlartextError("a parenthesis is not closed")
+                raise KlartextError(Wording("NC210", "parenthesis_not_closed"))
             return value
         if token == "PI":
             return math.pi
@@ -189,7 +188,7 @@ class _Parser:
             return self._parameters[canonical(token)]
         if token[0].isdigit() or token[0] in ".,":
             return checked(float(token.replace(",", ".")))
-        raise KlartextError(f"{token[:20]} belongs to no formula")
+        raise KlartextError(Wording("NC210", "no_part_of_formula", found=token[:20]))
 
 
 def guarded(function: Callable[[], float], name: str) -> float:
@@ -197,4 +196,4 @@ def guarded(function: Callable[[], float], name: str) -> float:
     try:
         return checked(function())
     except (ValueError, OverflowError, ZeroDivisionError):
-        raise KlartextError(f"{name} has no value here", code="NC215") from None
+        raise KlartextError(Wording("NC215", "no_value_here", name=name)) from None

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.messages import Wording
 from trunnion.readers.control import arcs
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
@@ -65,7 +66,7 @@ class Block:
         """TX TY TZ, (3,); components that are not written are 0."""
         vector = self._vector("TX", "TY", "TZ")
         if vector is not None and not np.any(vector):
-            raise KlartextError("the tool vector has no length")
+            raise KlartextError(Wording("NC210", "tool_vector_no_length"))
         return vector
 
     @property
@@ -92,7 +93,7 @@ def read_block(words: Sequence[Word], parameters: Parameters) -> Block:
         arguments = M_ARGUMENTS.get(block.m[-1][0], frozenset()) if block.m else frozenset()
         name = word.name
         if word.text is not None or (name not in arguments and word.operand is None and name not in _FLAGS):
-            raise KlartextError(f"unknown word {name or word.text}", code="NC211")
+            raise KlartextError(Wording("NC211", "unknown_word", word=name or word.text))
         value = None if word.operand is None else value_of(word.operand, parameters)
         if name in arguments:
             block.m[-1][1][name] = value
@@ -117,13 +118,13 @@ def _flag(block: Block, name: str) -> None:
             block.rapid = True
         case _:
             if name != "F":
-                raise KlartextError(f"{name} needs a value")
+                raise KlartextError(Wording("NC210", "word_needs_value", word=name))
 
 
 def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
     if name in _AXES:
         if name in block.axes:
-            raise KlartextError(f"{name} is written twice", code="NC212")
+            raise KlartextError(Wording("NC212", "written_twice", word=name))
         block.axes[name] = value, how
     elif name in ("PR", "PA"):
         block.polar[name] = value, how
@@ -131,7 +132,7 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
         block.vectors[name] = value
     elif name == "F":
         if not 0.0 <= value <= MAX_FEED:
-            raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}", code="NC215")
+            raise KlartextError(Wording("NC215", "feed_out_of_range", most=MAX_FEED))
         block.feed = value
     elif name == "R":
         # R0 switches cutter compensation off; other values are the radius of a circle.
@@ -141,10 +142,10 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
             block.radius = value
     elif name == "M":
         if value != int(value) or not 0 <= value < 10000:
-            raise KlartextError(f"M{value:g} is not a function")
+            raise KlartextError(Wording("NC210", "m_not_function", value=value))
         block.m.append((int(value), {}))
     else:
-        raise KlartextError(f"unknown word {name}{value:g}", code="NC211")
+        raise KlartextError(Wording("NC211", "unknown_word_with_value", word=name, value=value))
 
 
 # Polar coordinates
@@ -165,19 +166,19 @@ def polar_end(control: HeidenhainControl, block: Block, *, circle: bool) -> dict
         value, how = block.polar["PA"]
         angle = angle + value if how is PositionMode.INCREMENTAL else value
     if abs(angle) > 360.0 * MAX_TURNS or not abs(radius) < MAX_POSITION:
-        raise KlartextError("polar coordinates that no machine has", code="NC215")
+        raise KlartextError(Wording("NC215", "polar_coordinates_no_machine"))
     end = {
         "XYZ"[first]: (pole[first] + radius * math.cos(math.radians(angle))) / control.length_unit,
         "XYZ"[second]: (pole[second] + radius * math.sin(math.radians(angle))) / control.length_unit,
     }
     if end.keys() & block.axes.keys():
-        raise KlartextError("polar coordinates and axes of the plane in one block")
+        raise KlartextError(Wording("NC210", "polar_coordinates_axes_plane_block"))
     return {**block.axes, **{name: (value, PositionMode.ABSOLUTE) for name, value in end.items()}}
 
 
 def _pole(control: HeidenhainControl) -> Floats:
     if control.pole is None:
-        raise KlartextError("there is no CC before it")
+        raise KlartextError(Wording("NC210", "no_cc_before"))
     return control.pole
 
 
@@ -189,21 +190,21 @@ def circle_of(control: HeidenhainControl, head: str, block: Block) -> Circle:
     if head in ("CT", "CTP"):
         return partial(_tangential, control)
     if not block.direction:
-        raise KlartextError(f"{head} needs DR+ or DR-")
+        raise KlartextError(Wording("NC210", "needs_dr_dr", head=head))
     clockwise = block.direction < 0
     if head == "CR":
         if block.radius is None:
-            raise KlartextError("CR needs a radius")
+            raise KlartextError(Wording("NC210", "cr_needs_radius"))
         radius = block.radius * control.length_unit
         if abs(radius) > MAX_POSITION:
-            raise KlartextError("a radius that no machine has", code="NC215")
+            raise KlartextError(Wording("NC215", "radius_no_machine"))
         return lambda start, end: arcs.by_radius(start, end, radius, control.plane_axis, clockwise, 0)
     pole = _pole(control).copy()
     turns = 0
     angle, how = block.polar.get("PA", (0.0, PositionMode.ABSOLUTE))
     if head == "CP" and how is PositionMode.INCREMENTAL:
         if angle and (angle > 0.0) != (block.direction > 0):
-            raise KlartextError("IPA and DR have different signs")
+            raise KlartextError(Wording("NC210", "ipa_dr_different_signs"))
         turns = max(math.ceil(round(abs(angle) / 360.0, 9)) - 1, 0)
     return lambda start, end: arcs.by_centre(start, end, pole, control.plane_axis, clockwise, turns)
 
@@ -215,16 +216,16 @@ def _tangential(control: HeidenhainControl, start: Floats, end: Floats) -> arcs.
     chord = end - start
     chord[plane] = 0.0
     if heading is None:
-        raise arcs.ArcError("there is no direction that the circle could go on in")
+        raise arcs.ArcError(Wording("NC320", "no_direction_circle_could_go"))
     heading[plane] = 0.0
     length = float(np.linalg.norm(heading))
     if length < arcs.SAME_POINT or float(np.linalg.norm(chord)) < arcs.SAME_POINT:
-        raise arcs.ArcError("there is no direction that the circle could go on in")
+        raise arcs.ArcError(Wording("NC320", "no_direction_circle_could_go"))
     left = np.cross(arcs.normal_of(plane, False), heading / length)
     across = float(left @ chord)
     if abs(across) < arcs.SAME_POINT * float(chord @ chord):
-        raise arcs.ArcError("the end lies straight ahead")
+        raise arcs.ArcError(Wording("NC320", "end_lies_straight_ahead"))
     centre = start + left * (float(chord @ chord) / (2.0 * across))
     if float(np.abs(centre).max()) > arcs.MAX_RADIUS:
-        raise arcs.ArcError("the end lies straight ahead")
+        raise arcs.ArcError(Wording("NC320", "end_lies_straight_ahead"))
     return arcs.by_centre(start, end, centre, plane, across < 0.0, 0)

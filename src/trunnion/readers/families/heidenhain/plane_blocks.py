@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import rotation_matrix
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
@@ -27,7 +28,7 @@ _SEQUENCES: Final = {"SEQ+": 1, "SEQ-": -1, "SYM+": 1, "SYM-": -1}
 def plane_block(control: HeidenhainControl, block_words: Sequence[Word], parameters: Parameters, note: Note) -> None:
     """Execute a PLANE block; ``block_words`` without PLANE."""
     if not block_words or block_words[0].operand is not None:
-        raise KlartextError("PLANE needs its kind")
+        raise KlartextError(Wording("NC210", "plane_needs_kind"))
     kind = block_words[0].name
     positioning, values = _positioning(control, block_words[1:], parameters, note)
     if kind == "RESET":
@@ -36,7 +37,7 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
         _axial(control, values, positioning, parameters)
     elif kind == "RELATIV":
         if len(values) != 1 or not values.keys() <= {"SPA", "SPB", "SPC"}:
-            raise KlartextError("PLANE RELATIV takes one of SPA, SPB and SPC")
+            raise KlartextError(Wording("NC210", "plane_relativ_takes_spa_spb"))
         ((name, angle),) = values.items()
         store_rotary_angles(
             parameters, control, control.tilt(rotation_matrix("ABC".index(name[2]), angle), positioning, relative=True)
@@ -44,7 +45,7 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
     elif kind in _KINDS:
         store_rotary_angles(parameters, control, control.tilt(plane(kind, values), positioning))
     else:
-        note(f"PLANE {kind} is known but not simulated", Severity.ERROR, "NC220")
+        note(Wording("NC220", "plane_known_but_not_simulated", kind=kind), Severity.ERROR)
 
 
 def _axial(
@@ -52,7 +53,7 @@ def _axial(
 ) -> None:
     unknown = values.keys() - set(control.rotary_names)
     if unknown or not values:
-        raise KlartextError(f"PLANE AXIAL takes {' and '.join(control.rotary_names)}")
+        raise KlartextError(Wording("NC210", "plane_axial_takes", axes=tuple(control.rotary_names)))
     control.resolve_rows()
     current = [float(control.current_joints[column]) for column in control.machine.rotary]
     first, second = (values.get(name, now) for name, now in zip(control.rotary_names, current, strict=True))
@@ -91,13 +92,13 @@ def _positioning(
                 positioning = replace(positioning, retract=value * control.length_unit)
             case _, float():
                 if word.name in values:
-                    raise KlartextError(f"{word.name} is written twice", code="NC212")
+                    raise KlartextError(Wording("NC212", "written_twice", word=word.name))
                 values[word.name] = value
             case _:
-                raise KlartextError(f"unknown word {word.name or word.text}", code="NC211")
+                raise KlartextError(Wording("NC211", "unknown_word", word=word.name or word.text))
     if not positioning.mode:
         if block_words:
-            note("PLANE without TURN, MOVE or STAY: taken as STAY", Severity.WARNING, "NC351")
+            note(Wording("NC351", "plane_without_turn_move_stay"), Severity.WARNING)
         positioning = replace(positioning, mode="STAY")
     return positioning, values
 
@@ -113,17 +114,15 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
             case ("F", "TCP") | ("AXIS", "POS"):
                 pass
             case "F", "CONT":
-                note(
-                    "FUNCTION TCPM with F CONT: feeds of the machine's axes are not simulated", Severity.ERROR, "NC220"
-                )
+                note(Wording("NC220", "function_tcpm_f_cont_feeds"), Severity.ERROR)
             case "AXIS", "SPAT":
                 spatial_angles = True
             case "PATHCTRL", ("AXIS" | "VECTOR"):
                 orientation = Orientation.GREAT_CIRCLE if pair[1] == "VECTOR" else Orientation.ANGLES
             case _:
-                note(f"FUNCTION TCPM: {' '.join(pair)} is not simulated", Severity.ERROR, "NC220")
+                note(Wording("NC220", "tcpm_word_not_simulated", words=tuple(pair)), Severity.ERROR)
     if len(names) % 2:
-        note(f"FUNCTION TCPM: unexpected {names[-1]}", Severity.ERROR, "NC215")
+        note(Wording("NC215", "tcpm_unexpected", found=names[-1]), Severity.ERROR)
     control.set_tcp(True)
     control.spatial_angles_active = spatial_angles
     control.angles = [0.0, 0.0, 0.0]

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, forward
+from trunnion.messages import Wording, phrase
 from trunnion.model import axis_positions
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import tool_orientation
@@ -76,12 +77,12 @@ class PlaneControl(VirtualControl):
             self._datums.set_base(datum, frozenset() if incremental else parts)
         self._require_settled_datum()
 
-    def left_on(self) -> str:
-        """Return a plane or a datum without use that the end of the program leaves on."""
+    def left_on(self) -> Wording | None:
+        """Return a plane or a datum without use that the end of the program leaves on; None if nothing."""
         if self.in_unused_plane and self._is_turned:
-            return "a tilted plane"
+            return phrase("left_plane")
         unused = self.unused_shift and not self.datum.frame(self.plane_axis).is_identity
-        return "a datum of cycles 7, 8, 10, 11 or 26" if unused else ""
+        return phrase("left_datum") if unused else None
 
     @property
     def _is_turned(self) -> bool:
@@ -94,12 +95,8 @@ class PlaneControl(VirtualControl):
         if not parts:
             self.preconditions.meet("datum")
             return
-        what = f"which {parts} counts here is unconfirmed: set before the tilted plane and again in it"
-        if not self.tilted:
-            what = f"whether the {parts} of the tilted plane ends with it is unconfirmed"
-        self.preconditions.require(
-            "datum", f"{what}; reset in the plane what is set in it, before the plane ends", "NC351"
-        )
+        variant = "datum_in_plane_unconfirmed" if self.tilted else "datum_behind_plane_unconfirmed"
+        self.preconditions.require("datum", Wording("NC351", variant, parts=parts))
 
     # Planes
 
@@ -155,15 +152,19 @@ class PlaneControl(VirtualControl):
         solutions = tool_orientation.solutions(self.machine, normal, self.current_joints)
         pairs = [self._in_nearest_turn(pair) for pair in solutions]
         if not pairs:
-            self.note("PLANE: no rotary position stands the tool on this plane", Severity.ERROR, "NC350")
+            self.note(Wording("NC350", "plane_no_rotary_position_stands"), Severity.ERROR)
             return None
         inside = [pair for pair in pairs if tool_orientation.is_in_travel(self.machine, pair)]
         sequence = positioning.sequence
         if sequence:
             inside = [pair for pair in inside if pair[1] * sequence > 0.0 or abs(pair[1]) < _ZERO]
         if not inside:
-            text = "inside the travel" if not sequence else f"with SEQ{'-' if sequence < 0 else '+'}"
-            self.note(f"PLANE: no rotary position {text} stands the tool on this plane", Severity.ERROR, "NC350")
+            self.note(
+                Wording("NC350", "plane_outside_sequence", sign="-" if sequence < 0 else "+")
+                if sequence
+                else Wording("NC350", "plane_outside_travel"),
+                Severity.ERROR,
+            )
             return None
         current = [float(self.current_joints[column]) for column in self.machine.rotary]
         return min(inside, key=lambda pair: sum(abs(value - now) for value, now in zip(pair, current, strict=True)))
@@ -200,7 +201,7 @@ class PlaneControl(VirtualControl):
             tip_after = tip[0] + positioning.distance * (axis_after - axis[0])
             following = self._slides_for(tip_after, joints)
             if following is None:
-                self.note("PLANE MOVE: the slides cannot follow", Severity.ERROR, "NC310")
+                self.note(Wording("NC310", "slides_cannot_follow"), Severity.ERROR)
             else:
                 slides = following
         self.move_axes(Kind.RAPID if positioning.rapid else Kind.LINEAR, slides, target)
@@ -234,7 +235,7 @@ class PlaneControl(VirtualControl):
         slides = self.current_joints[self._slides].copy()
         one_mm_on = self._slides_for(tip[0] + axis[0], self.current_joints)
         if one_mm_on is None:
-            self.note("M140: the slides cannot go along the tool axis", Severity.ERROR, "NC310")
+            self.note(Wording("NC310", "slides_cannot_go_along_tool"), Severity.ERROR)
             return
         per_mm = one_mm_on - slides
         # The end of the travel is a position of the machine, wherever the workpiece is.
@@ -242,9 +243,7 @@ class PlaneControl(VirtualControl):
         if to_the_end:
             distance = self._free_travel(slides, per_mm)
             if math.isinf(distance):
-                self.note(
-                    "M140 MB MAX: the travel of the slides is not known, the tool stays", Severity.WARNING, "NC224"
-                )
+                self.note(Wording("NC224", "m140_mb_max_travel_slides"), Severity.WARNING)
                 return
         feed_before = self.programmed_feed
         if feed is not None:

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.messages import Wording
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.heidenhain.parameters import KlartextError
 
@@ -72,7 +73,7 @@ def through_points(first: Floats, second: Floats, third: Floats) -> Floats:
 def _unit(vector: Floats) -> Floats:
     length = float(np.linalg.norm(vector))
     if not _FLAT < length < np.inf:
-        raise KlartextError("the vectors or points make no plane")
+        raise KlartextError(Wording("NC210", "vectors_points_make_no_plane"))
     return np.asarray(vector / length)
 
 
@@ -88,7 +89,7 @@ def plane(kind: str, values: Mapping[str, float]) -> Floats:
     def need(*names: str) -> list[float]:
         missing = [name for name in names if name not in values]
         if missing:
-            raise KlartextError(f"PLANE {kind} needs {', '.join(missing)}")
+            raise KlartextError(Wording("NC210", "plane_needs", kind=kind, missing=tuple(missing)))
         return [values[name] for name in names]
 
     match kind:
@@ -102,4 +103,4 @@ def plane(kind: str, values: Mapping[str, float]) -> Floats:
             points = [np.array(need(f"P{k}X", f"P{k}Y", f"P{k}Z")) for k in (1, 2, 3)]
             return through_points(*points)
         case _:
-            raise KlartextError(f"PLANE {kind} is not simulated", code="NC220")
+            raise KlartextError(Wording("NC220", "plane_not_simulated", kind=kind))

@@ -4,6 +4,7 @@ import re
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.heidenhain.flow import ActiveProgram
 from trunnion.readers.families.heidenhain.lexer import split_line
@@ -19,9 +20,9 @@ _END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+PGM(?![A-Z])", re.IGN
 def begin(active: ActiveProgram, words: list[str], row: int, note: Note) -> None:
     """Begin a program; ``words`` are those behind BEGIN."""
     if active.name is not None:
-        note("a second program begins: it needs a file of its own", Severity.ERROR, "NC160")
+        note(Wording("NC160", "second_program_begins_needs_file"), Severity.ERROR)
     elif active.has_blocks or row > active.source.first_row:
-        note("BEGIN PGM is not the first block: no control loads the program", Severity.ERROR, "NC160")
+        note(Wording("NC160", "begin_pgm_not_first_block"), Severity.ERROR)
     active.name = _name(words)
 
 
@@ -30,20 +31,19 @@ def end(active: ActiveProgram, words: list[str], note: Note) -> None:
     active.ended = True
     name = _name(words)
     if active.name is None:
-        note("the program has no BEGIN PGM: no control loads it", Severity.ERROR, "NC160")
+        note(Wording("NC160", "program_no_begin_pgm_no"), Severity.ERROR)
     elif name != active.name:
-        note(f"END PGM {name} ends the program that began as {active.name}", Severity.ERROR, "NC160")
+        note(Wording("NC160", "end_pgm_ends_program_began", name=name, active=active.name), Severity.ERROR)
 
 
 def check_end_of_file(active: ActiveProgram, note: Note) -> None:
     """Report a program whose file has no BEGIN PGM, or ends before END PGM."""
     if active.name is None and not active.ended:
         active.ended = True
-        what = "the program has neither BEGIN PGM nor END PGM: no control loads it"
-        note(what, Severity.ERROR, "NC160")
+        note(Wording("NC160", "program_neither_begin_pgm_nor"), Severity.ERROR)
     elif active.name is not None and not active.ended:
         active.ended = True
-        note("the program has no END PGM: no control loads it", Severity.ERROR, "NC160")
+        note(Wording("NC160", "program_no_end_pgm_no"), Severity.ERROR)
 
 
 def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) -> None:
@@ -57,14 +57,14 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) 
             active.source.pass_label(raw, source.line - 1)
             active.ended = _END.match(raw) is not None
             if active.ended and active.name is None:
-                note("the program has no BEGIN PGM: no control loads it", Severity.ERROR, "NC160")
+                note(Wording("NC160", "program_no_begin_pgm_no"), Severity.ERROR)
             if active.ended or reachable or not split_line(raw).statement:
                 continue
             reachable = True
             if not _LABEL.match(raw):
-                note("stands behind the end of the program: it never runs", Severity.ERROR, "NC161")
+                note(Wording("NC161", "behind_end"), Severity.ERROR)
         elif active.ended and split_line(raw).statement:
-            note("stands behind END PGM: another program needs a file of its own", Severity.ERROR, "NC161")
+            note(Wording("NC161", "stands_behind_end_pgm_another"), Severity.ERROR)
             return
 
 

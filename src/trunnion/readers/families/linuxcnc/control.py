@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, forward
+from trunnion.messages import Wording, phrase
 from trunnion.model import axis_positions
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
@@ -76,13 +77,13 @@ class LinuxcncControl(Rs274Control):
         unit, self.own_words = settings_of(machine)
         self.count_in(unit)
 
-    def left_on(self) -> str:
-        """Return an offset or a rotation without use that the end of the program leaves on."""
+    def left_on(self) -> Wording | None:
+        """Return an offset or a rotation without use that the end of the program leaves on; None if nothing."""
         if not self.unused_shift:
-            return ""
+            return None
         if self.axis_offset_active and self.axis_offset.any():
-            return "an offset of G92 or G52"
-        return "a rotation of G10" if self.offset_of(self.system).rotation else ""
+            return phrase("left_offset")
+        return phrase("left_rotation") if self.offset_of(self.system).rotation else None
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """Never: rotary axes take the number as it is."""
@@ -98,7 +99,7 @@ class LinuxcncControl(Rs274Control):
         r1, r2 = (float(np.hypot(p[first] - centre[first], p[second] - centre[second])) for p in (start, end))
         difference = abs(r1 - r2)
         if difference > _COARSE or (difference > _FINE and difference > _RATIO * max(r1, r2)):
-            raise arcs.ArcError(f"the radius is {r1:.4f} at the start and {r2:.4f} at the end")
+            raise arcs.ArcError(Wording("NC320", "radii_differ", start=r1, end=r2))
 
     # Offsets
 
@@ -138,9 +139,8 @@ class LinuxcncControl(Rs274Control):
             return
         turned = self._turned_off_spindle()
         if turned:
-            text = f"{word} changes the tool length with TCP on and {' and '.join(turned)} turned: the slides jump"
-            cure = "after TCP is off" if word == "G49" else "before TCP is switched on"
-            self.note(f"{text}; write it {cure}", Severity.ERROR, "NC364")
+            variant = "length_ends_under_tcp" if word == "G49" else "length_changes_under_tcp"
+            self.note(Wording("NC364", variant, word=word, axes=tuple(turned)), Severity.ERROR)
 
     def _turned_off_spindle(self) -> list[str]:
         """Names of the rotary axes that stand turned, except those about the tool at zero, which carry no length."""
@@ -199,8 +199,7 @@ class LinuxcncControl(Rs274Control):
             self.move(axes, None, machine_frame=True, feed_written=feed_written)
             return
         if axes.keys() & {"X", "Y", "Z"}:
-            text = "G53 with TCP on goes to a position of the tip, and not of the slides: switch TCP off before it"
-            self.note(text, Severity.WARNING, "NC341")
+            self.note(Wording("NC341", "g53_tcp_goes_position_tip"), Severity.WARNING)
         goal = self.machine_position()[:3]
         for axis, name in enumerate("XYZ"):
             if name in axes:

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.axis_word import AxisWord
@@ -36,12 +37,12 @@ class CycleInterpreter(OffsetInterpreter):
         control = self.control
         pitch, factor = block.take("K"), block.take("I")
         if pitch is None:
-            raise BlockError("G33.1 has no K")
+            raise BlockError(Wording("NC210", "g33_1_no_k"))
         if "F" in block.words:
-            raise BlockError("G33.1 takes no F")
+            raise BlockError(Wording("NC210", "g33_1_takes_no_f"))
         if not control.modal.spindle.current or not control.modal.rpm.current > 0.0:
-            raise BlockError("the spindle does not turn, and G33.1 follows it")
-        self._report_rotary_words(axes, "a thread")
+            raise BlockError(Wording("NC210", "spindle_does_not_turn_g33"))
+        self._report_rotary_words(axes, of_thread=True)
         start = control.programmed_position / control.length_unit
         end = start.copy()
         for axis, name in enumerate("XYZ"):
@@ -86,9 +87,9 @@ class CycleInterpreter(OffsetInterpreter):
         clearance = block.take("D")
         holes = 1 if repeats is None else int(repeats)
         if not 1 <= holes <= _MAX_HOLES:
-            raise BlockError("L of a cycle is how often it drills")
+            raise BlockError(Wording("NC210", "repeats_l"))
         if self._inverse_time:
-            raise BlockError("a cycle cannot be in inverse time")
+            raise BlockError(Wording("NC210", "cycle_cannot_inverse_time"))
         self._check_cycle_feed()
         own = {} if clearance is None else {"D": clearance}
         hole, height = self._hole(dict(self._modal_words) | own)
@@ -108,7 +109,7 @@ class CycleInterpreter(OffsetInterpreter):
             if "K" in words:
                 words["K"] += bottom
         if retract < bottom:
-            raise BlockError("R of the cycle lies below its depth")
+            raise BlockError(Wording("NC210", "r_cycle_lies_below_depth"))
         if initial < retract:
             self._counter.count_motions(1)
             control.drill([HoleMotion(True, retract)])

@@ -6,6 +6,7 @@ Heights are positions along the axis normal to the working plane, in the units o
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent
 
@@ -89,7 +90,7 @@ def _back_bore(hole: Hole) -> list[HoleMotion]:
     """Return the motions of G87: beside the hole down, over it, up to K and back, and out beside it."""
     missing = [letter for letter in "IJK" if letter not in hole.words]
     if missing:
-        raise CycleExecutionError(f"has no {missing[0]}")
+        raise CycleExecutionError(Wording("NC380", "has_no", word=missing[0]))
     lateral = hole.words["I"], hole.words["J"]
     return [
         HoleMotion(True, hole.retract, lateral=lateral),

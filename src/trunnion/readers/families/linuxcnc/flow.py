@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL_COUNT, Parameters
 from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText, Structure
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -91,7 +92,7 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
         label = self._label(reader)
         if _KEYWORD.match(reader.text, reader.at) is None:
             if not reader.ended:
-                raise BlockError(f"no O word: {reader.rest!r}")
+                raise BlockError(Wording("NC210", "no_o_word", found=repr(reader.rest)))
             return
         # All letters belong to the keyword: what follows it is in brackets.
         keyword = re.match("[A-Z]+", reader.text[reader.at :])
@@ -100,10 +101,10 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
         reader.at += len(name)
         handler = self._handlers.get(name)
         if handler is None:
-            raise BlockError(f"no O word: {name[:40]}")
+            raise BlockError(Wording("NC210", "no_o_word", found=name[:40]))
         handler(OWord(active, line, label, reader))
         if not reader.ended:
-            self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR, "NC210")
+            self._note(Wording("NC210", "not_understood_behind", name=name, rest=repr(reader.rest)), Severity.ERROR)
 
     @staticmethod
     def _label(reader: ExpressionReader) -> str:
@@ -111,12 +112,12 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
         if reader.accept("<"):
             end = reader.text.find(">", begin)
             if end < 0:
-                raise BlockError("the name of an O word does not end")
+                raise BlockError(Wording("NC210", "name_o_word_does_not"))
             reader.at = end + 1
             return reader.text[begin : end + 1]
         value, _ = reader.signed_value()
         if value is None or value != int(value) or not 0 <= value < 1e9:
-            raise BlockError("an O word needs a whole number or a name")
+            raise BlockError(Wording("NC210", "o_word_needs_whole_number"))
         return str(int(value))
 
     @staticmethod
@@ -128,7 +129,7 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
 
     def _return(self, word: OWord) -> None:
         if len(self._stack) < 2:
-            raise BlockError("the end of a subprogram outside one")
+            raise BlockError(Wording("NC210", "end_subprogram_outside"))
         self._returned = None
         if not word.reader.ended:
             self._returned = word.reader.bracket_value()
@@ -168,13 +169,13 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
             return ActiveProgram(active.source.restarted(), active.file), here.begin
         path = self._subprograms.find(label.strip("<>"))
         if path is None:
-            raise BlockError(f"missing subprogram O{label[:80]}; name its file", code="NC132")
+            raise BlockError(Wording("NC132", "missing_subprogram", label=label[:80]))
         source, file = self._open_subprogram(path)
         assert isinstance(source, LinuxcncText)
         found = source.subprogram(label)
         if found is None:
             file_of_rows.set(self.control.row, active.file)
-            raise BlockError(f"{path.name} holds no O{label[:80]} SUB", code="NC132")
+            raise BlockError(Wording("NC132", "file_without_subprogram", path=path.name, label=label[:80]))
         return ActiveProgram(source, file), found.begin
 
     # Branches and loops
@@ -206,7 +207,7 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
         try:
             return bool(reader.bracket_value())
         except BlockError as error:
-            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR, "NC143")
+            self._note(Wording("NC143", "condition", reason=error.wording), Severity.ERROR)
             reader.at = len(reader.text)
             return False
 
@@ -232,7 +233,7 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
         try:
             repeats = int(min(max(word.reader.bracket_value(), 0.0), 1e12))
         except BlockError as error:
-            self._note(f"not understood: {error}: not repeated", Severity.ERROR, "NC143")
+            self._note(Wording("NC143", "repeat", reason=error.wording), Severity.ERROR)
             word.reader.at = len(word.reader.text)
         if repeats < 1:
             word.jump(structure.end + 1)

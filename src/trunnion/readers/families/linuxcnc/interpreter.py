@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.families.linuxcnc import words
 from trunnion.readers.families.linuxcnc.control import ORDER
@@ -85,12 +86,11 @@ class LinuxcncInterpreter(CycleInterpreter):
     # Blocks
 
     def _report_repeated_word(self, letter: str) -> None:
-        raise BlockError(f"{letter} is written twice", code="NC212")
+        raise BlockError(Wording("NC212", "written_twice", word=letter))
 
     def _handle_comment(self, comment: str) -> None:
         if (program := _PROGRAM.match(comment)) is not None:
-            what = f"the comment {program.group(1).lower()}, is executed, and what it does is not simulated"
-            self._note(what, Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "active_comment", program=program.group(1).lower()), Severity.ERROR)
         match = _MESSAGE.match(comment)
         if match is not None:
             self.control.add_event("message", match.group(1))
@@ -111,12 +111,11 @@ class LinuxcncInterpreter(CycleInterpreter):
             for group in self.table.groups[letter]:
                 found = [word.text for word in self.table.words(letter, codes) if word.code in group]
                 if len(found) > 1:
-                    what = f"{' and '.join(found[:2])} are of one group, of which a block has one"
-                    raise BlockError(what, code="NC212")
+                    raise BlockError(Wording("NC212", "same_group", words=tuple(found[:2])))
 
     def _execute_behind_modes(self, word: Word, codes: Sequence[Word], block: Block) -> None:
         if not word.moves and any(code.is_motion for code in codes):
-            raise BlockError("two G words want the axis words")
+            raise BlockError(Wording("NC210", "two_g_words_want_axis"))
         super()._execute_behind_modes(word, codes, block)
 
     def _pass_motion(self, codes: Sequence[Word]) -> None:
@@ -161,7 +160,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         control = self.control
         tolerance, naive = block.take("P"), block.take("Q")
         if (tolerance or 0.0) < 0.0 or (naive or 0.0) < 0.0:
-            self._note("G64 with a tolerance below zero", Severity.ERROR, "NC215")
+            self._note(Wording("NC215", "g64_tolerance_below_zero"), Severity.ERROR)
         # P0 is no tolerance: the control keeps its speed, as without P.
         control.add_tolerance(tolerance * control.length_unit if tolerance else np.inf)
         control.add_exact_stop("off")
@@ -189,7 +188,7 @@ class LinuxcncInterpreter(CycleInterpreter):
             if value := block.take(letter):
                 self.control.add_tool_delta(f"{word.text} {letter}", value * self.control.length_unit)
         if block.take("H"):
-            self._note(f"{word.text} H: the length of another tool is not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "length_of_other_tool", word=word.text), Severity.ERROR)
 
     def _length_number(self, block: Block) -> int:
         """Return which length G43 takes: that of H; with H0 or none of the tool in the spindle, 0 if it is unknown."""
@@ -202,23 +201,24 @@ class LinuxcncInterpreter(CycleInterpreter):
         """M66: read an input; with L other than 0 wait for it, up to Q seconds."""
         if block.words.get("L") is not None and block.words["L"].value:
             seconds = block.words["Q"].value if "Q" in block.words else 0.0
-            self.control.note_wait(f"M66 waits for an input, up to {format_duration(max(seconds, 0.0))}")
+            self.control.note_wait(Wording("NC226", "waits_for_input", duration=format_duration(max(seconds, 0.0))))
         self._signal(word, block)
 
     def _signal(self, word: Word, block: Block) -> None:
         if fault := words.fault_of_signal(word, block):
-            self._note(f"{fault}: LinuxCNC refuses it", Severity.ERROR, "NC218")
+            self._note(fault, Severity.ERROR)
 
     def _analog_output(self, word: Word, block: Block) -> None:
         self._signal(word, block)
         if block.take("E") == words.KINEMATICS_OUTPUT:
-            what = f"{word.text} E{words.KINEMATICS_OUTPUT} switches the kinematics"
-            self._note(f"{what}: not simulated; M428 and M429 are", Severity.ERROR, "NC220")
+            self._note(
+                Wording("NC220", "output_switches_kinematics", word=word.text, output=words.KINEMATICS_OUTPUT),
+                Severity.ERROR,
+            )
 
     def _adaptive_feed(self, word: Word, block: Block) -> None:
         if block.take("P") != 0.0:
-            what = "M52 lets a signal scale the feed: not simulated; M52 P0 does not"
-            self._note(what, Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "m52_lets_signal_scale_feed"), Severity.ERROR)
 
     def _set_tool(self, word: Word, block: Block) -> None:
         self.control.select_tool(f"{block.take('Q') or 0:g}")
@@ -230,8 +230,7 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _builders_program(self, word: Word, block: Block) -> None:
         self.control.add_builders_word("M", float(word.code))
         if word.text in words.USERS_TCP:
-            text = f"{word.text} switches TCP in some configurations: M428 and M429 do, or declare what it does"
-            self._note(text, Severity.ERROR, "NC224")
+            self._note(Wording("NC224", "switches_tcp_some_configurations_m428", word=word.text), Severity.ERROR)
 
     # Motion
 
@@ -246,13 +245,11 @@ class LinuxcncInterpreter(CycleInterpreter):
         circle = code in (20, 30) and (explicit or any(letter in block.words for letter in "IJKR"))
         if not axes and not circle:
             if explicit and code in self.table.cycles:
-                self._note("a cycle without a position", Severity.ERROR, "NC218")
+                self._note(Wording("NC218", "cycle_without_position"), Severity.ERROR)
                 self.motion_code = code
         elif code == CANCEL:
             self._initial = None
-            self._note(
-                "a position without a G word that goes there: the block is not executed", Severity.ERROR, "NC218"
-            )
+            self._note(Wording("NC218", "position_without_g_word_goes"), Severity.ERROR)
         elif code in self.table.cycles:
             self._drill_block(code, block, axes)
         elif code == words.RIGID_TAP:
@@ -264,7 +261,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         else:
             turns = block.take("P") if code in (20, 30) else None
             if turns is not None and not 1 <= turns == int(turns):
-                raise BlockError("P of a circle is the number of its turns")
+                raise BlockError(Wording("NC210", "p_circle_number_turns"))
             here, self.motion_code = self.motion_code, code if code in MOTIONS else 10
             self._move(block, self._with_rotary_offsets(axes), turns=int(turns) - 1 if turns else 0)
             self.motion_code = here
@@ -273,7 +270,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         if code in (20, 30):
             block.take("P")
         if code not in (0, 10) or not self.control.absolute:
-            raise BlockError("G53 needs G0 or G1, and G90")
+            raise BlockError(Wording("NC210", "g53_needs_g0_g1_g90"))
         self.control.motion = MOTIONS[code]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.control.affine_map import rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
@@ -42,7 +43,7 @@ class OffsetInterpreter(OWordInterpreter):
             control.axis_offset = np.zeros(6)
             control.axis_offset_known = True
         if word.text == "G92.3" and not control.axis_offset_known:
-            self._note("G92.3 brings back an offset that is not in the program", Severity.ERROR, "NC222")
+            self._note(Wording("NC222", "g92_3_brings_back_offset"), Severity.ERROR)
         control.axis_offset_active = word.text == "G92.3"
         control.update_frame()
 
@@ -54,14 +55,14 @@ class OffsetInterpreter(OWordInterpreter):
         offset = control.axis_offset.copy()
         values = self._axis_values(block)
         if all(value is None for value in values):
-            raise BlockError("G52 and G92 need the axes that they shift")
+            raise BlockError(Wording("NC210", "shift_needs_axes"))
         for axis, value in enumerate(values):
             if value is not None:
                 offset[axis] = value if word.text == "G52" else offset[axis] * active + position[axis] - value
             elif not active:
                 offset[axis] = 0.0
         if float(np.abs(offset).max()) > MAX_POSITION:
-            raise BlockError("an offset is larger than any machine", code="NC215")
+            raise BlockError(Wording("NC215", "offset_larger_than_any_machine"))
         control.axis_offset, control.axis_offset_active = offset, True
         control.axis_offset_known = True
         control.note_shift()
@@ -76,14 +77,14 @@ class OffsetInterpreter(OWordInterpreter):
             for letter in "XYZABCUVWRIJQ":
                 block.take(letter)
             if kind in words.TOOL_DATA:
-                self._note(f"G10 L{kind:g} writes length and radius of a tool: not simulated", Severity.ERROR, "NC220")
+                self._note(Wording("NC220", "g10_l_writes_length_radius", kind=kind), Severity.ERROR)
             return
         if kind not in (2.0, 20.0) or system is None or system != int(system) or not 0 <= system <= 9:
-            raise BlockError("G10 needs L2 or L20, and P from 0 to 9")
+            raise BlockError(Wording("NC210", "g10_needs_l2_l20_p"))
         number = int(system) or control.system
         rotation = block.take("R")
         if rotation is not None and kind == 20.0:
-            raise BlockError("G10 L20 takes no R")
+            raise BlockError(Wording("NC210", "g10_l20_takes_no_r"))
         old = control.offset_of(number)
         offset = Offset(old.values.copy(), old.rotation if rotation is None else rotation)
         if kind == 2.0:
@@ -93,7 +94,7 @@ class OffsetInterpreter(OWordInterpreter):
         else:
             offset.values += self._offset_change(offset, block)
         if float(np.abs(offset.values).max()) > MAX_POSITION or abs(offset.rotation) > MAX_POSITION:
-            raise BlockError("an offset is larger than any machine", code="NC215")
+            raise BlockError(Wording("NC215", "offset_larger_than_any_machine"))
         control.note_shift()
         clears = not offset.values.any() and not offset.rotation
         if not clears:
@@ -124,7 +125,7 @@ class OffsetInterpreter(OWordInterpreter):
                 value *= self.control.length_unit
             elif value is not None and name not in self.control.rotary_names:
                 if value:
-                    self._note(f"{name}: the machine has no such axis", Severity.ERROR, "NC230")
+                    self._note(Wording("NC230", "no_such_axis", axis=name), Severity.ERROR)
                 value = None
             values.append(value)
         return values

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.rs274.expressions import COMMON_FUNCTIONS, COMMON_OPERATORS, Arithmetic, BlockError, Value
 
 #: The highest parameter.
@@ -67,11 +68,11 @@ class Parameters:
         if found is not None:
             return found
         if isinstance(key, str):
-            raise BlockError(f"#<{key}> has no value", code="NC223")
+            raise BlockError(Wording("NC223", "parameter_without_value", key=key))
         if not 1 <= key <= MAX_NUMBER:
-            raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}", code="NC215")
+            raise BlockError(Wording("NC215", "number_out_of_range", key=key, most=MAX_NUMBER))
         if key > 5000:
-            raise BlockError(f"#{key} is a value that only the control knows", code="NC222")
+            raise BlockError(Wording("NC222", "only_control_knows", key=key))
         return 0.0
 
     def is_set(self, key: int | str) -> bool:
@@ -88,15 +89,15 @@ class Parameters:
         """Set a parameter."""
         if isinstance(key, int):
             if not 1 <= key <= MAX_NUMBER:
-                raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}", code="NC215")
+                raise BlockError(Wording("NC215", "number_out_of_range", key=key, most=MAX_NUMBER))
             if key > 5000:
-                raise BlockError(f"#{key} is set by the control, not by programs", code="NC223")
+                raise BlockError(Wording("NC223", "set_by_control", key=key))
             self._numbers[key] = value
             return
         table = self._global if key.startswith("_") else self._local[-1]
         table[key] = value
         if len(table) > MAX_VARIABLES:
-            raise BlockError(f"a program has more than {MAX_VARIABLES} names")
+            raise BlockError(Wording("NC210", "too_many_names", most=MAX_VARIABLES))
 
     def enter(self, arguments: list[float]) -> None:
         """Start a subprogram, which has #1 to #30 and names without an underscore for itself."""

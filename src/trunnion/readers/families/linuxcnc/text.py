@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.program.source_text import SourceText
 
 #: Endings of program names.
@@ -72,7 +73,7 @@ class LinuxcncText(SourceText):
         try:
             return self._structures()[1][line]
         except KeyError:
-            raise self.problem(line, "has an O word that begins or ends nothing", code="NC142") from None
+            raise self.problem(line, Wording("NC142", "stray_o_word")) from None
 
     def _structures(self) -> tuple[dict[str, Structure], dict[int, Structure]]:
         if self._jump_targets.found is None:
@@ -91,17 +92,17 @@ class LinuxcncText(SourceText):
             if word in ("BREAK", "CONTINUE"):
                 inside = [kept for name, kept in open_ if name == label and kept.word in _LOOPS]
                 if not inside:
-                    raise self.problem(line, f"has {word} outside a loop of its label", code="NC142")
+                    raise self.problem(line, Wording("NC142", "outside_loop", word=word))
                 by_line[line] = inside[-1]
             elif word in ("ELSEIF", "ELSE"):
                 if top is None or top[1].word != "IF":
-                    raise self.problem(line, f"has {word} without its IF", code="NC142")
+                    raise self.problem(line, Wording("NC142", "without_if", word=word))
                 top[1].branches.append(line)
                 by_line[line] = top[1]
             elif word.startswith("END") or (word == "WHILE" and top is not None and top[1].word == "DO"):
                 opening = word.removeprefix("END") if word.startswith("END") else "DO"
                 if top is None or top[1].word != opening:
-                    raise self.problem(line, f"has {word} without its beginning", code="NC142")
+                    raise self.problem(line, Wording("NC142", "without_beginning", word=word))
                 structure = open_.pop()[1]
                 structure.end = line
                 structure.branches.append(line)
@@ -109,13 +110,12 @@ class LinuxcncText(SourceText):
             else:
                 structure = Structure(word, line)
                 if word == "SUB" and (other := subprograms.setdefault(label, structure)) is not structure:
-                    what = f"defines O{label[:60]} SUB, which line {other.begin} has defined"
-                    raise self.problem(line, what, "give each subprogram a number or name of its own", code="NC163")
+                    raise self.problem(line, Wording("NC163", "doubled_subprogram", label=label[:60], line=other.begin))
                 by_line[line] = structure
                 open_.append((label, structure))
                 if len(open_) > MAX_NESTING:
-                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels", code="NC141")
+                    raise self.problem(line, Wording("NC141", "structures_too_deep", most=MAX_NESTING))
         if open_:
             structure = open_[-1][1]
-            raise self.problem(structure.begin, f"begins {structure.word}, which never ends", code="NC142")
+            raise self.problem(structure.begin, Wording("NC142", "never_ends", word=structure.word))
         return subprograms, by_line

@@ -3,6 +3,7 @@
 import re
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.program.word_values import one_of, whole
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.iso_words import COMMON_WORDS, COMPENSATION
@@ -148,16 +149,16 @@ def is_own_word(word: str) -> bool:
     return _CALL.fullmatch(word) is None and TABLE.is_own(word)
 
 
-def fault_of_signal(word: Word, block: Block) -> str:
-    """Return why LinuxCNC refuses a block with M62 to M68; empty if it does not."""
+def fault_of_signal(word: Word, block: Block) -> Wording | None:
+    """Return why LinuxCNC refuses a block with M62 to M68; None if it does not."""
     digital, analog = (letter in block.words for letter in "PE")
     if "P" not in word.letters:
-        return "" if analog else f"{word.text} without the output E"
+        return None if analog else Wording("NC218", "signal_without_output", word=word.text, letter="E")
     if "E" not in word.letters:
-        return "" if digital else f"{word.text} without the output P"
+        return None if digital else Wording("NC218", "signal_without_output", word=word.text, letter="P")
     if digital == analog:
-        return "M66 with a digital and an analog input" if digital else "M66 without the input, P or E"
+        return Wording("NC218", "two_inputs" if digital else "no_input")
     mode, seconds = (block.words[letter].value if letter in block.words else 0.0 for letter in "LQ")
     if mode and analog:
-        return f"M66 E waits for no analog input: L{mode:g}"
-    return f"M66 L{mode:g} without the seconds Q that it waits" if mode and seconds <= 0.0 else ""
+        return Wording("NC218", "waits_for_analog_input", mode=mode)
+    return Wording("NC218", "wait_without_seconds", mode=mode) if mode and seconds <= 0.0 else None

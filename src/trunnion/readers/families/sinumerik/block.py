@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
@@ -121,9 +122,9 @@ class BlockReader:
                 elif token.kind is TokenKind.NAME:
                     self._name(reader, block, variables)
                 else:
-                    raise ExpressionError(f"unexpected {token.text}")
+                    raise ExpressionError(Wording("NC210", "unexpected", token=token.text))
             except ExpressionError as error:
-                self._note(f"not understood: {_text(tokens, before)}: {error}", Severity.ERROR, error.code)
+                self._note(error.wording.within("not_understood", text=_text(tokens, before)), Severity.ERROR)
                 break
         return block
 
@@ -143,7 +144,7 @@ class BlockReader:
         if name in self._axes:
             self._axis(block, name, _number(value), mode)
         elif isinstance(value, str) and name != "T":
-            raise ExpressionError(f"{name} takes a number, not a text")
+            raise ExpressionError(Wording("NC210", "takes_number_not_text", name=name))
         else:
             self._address(reader, block, (letter, extension), (value, mode))
 
@@ -165,7 +166,7 @@ class BlockReader:
         if reader.peek() == "[":
             index = reader.index()
             if len(index) != 1:
-                raise ExpressionError("R needs a number")
+                raise ExpressionError(Wording("NC210", "r_needs_number"))
             number = index[0]
         else:
             token = reader.token
@@ -191,13 +192,13 @@ class BlockReader:
             reader.at += 1
         token = reader.token
         if token is None or token.kind is not TokenKind.NUMBER:
-            raise ExpressionError("a number is missing")
+            raise ExpressionError(Wording("NC210", "number_missing"))
         reader.at += 1
         return sign * token.value, PositionMode.MODAL
 
     def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
         if name in block.axes:
-            self._note(f"{name} is written twice: the last one counts", Severity.WARNING, "NC212")
+            self._note(Wording("NC212", "last_counts", word=name), Severity.WARNING)
         block.axes[name] = value, mode
 
     def _address(self, reader: ExpressionReader, block: Block, address: tuple[str, str], word: _Word) -> None:
@@ -213,7 +214,7 @@ class BlockReader:
             case (("M" | "S"), _) if not master_spindle:
                 # M2=3 and S2=100 address spindle 2; only the master spindle is simulated.
                 text = f"M{extension}={_code(number, 'M')}" if letter == "M" else f"S{extension}="
-                self._note(f"{text} speaks to another spindle: not followed", Severity.WARNING, "NC221")
+                self._note(Wording("NC221", "speaks_another_spindle_not_followed", text=text), Severity.WARNING)
             case "G", "":
                 block.g.append(_code(number, "G"))
             case "M", _:
@@ -222,7 +223,7 @@ class BlockReader:
                 block.speed = number
             case "F", "":
                 if not 0.0 <= number <= MAX_FEED:
-                    raise ExpressionError(f"a feed is not from 0 to {MAX_FEED:g}", code="NC215")
+                    raise ExpressionError(Wording("NC215", "feed_out_of_range", most=MAX_FEED))
                 block.feed = number
             case "D", "":
                 block.edge = _code(number, "D")
@@ -237,11 +238,12 @@ class BlockReader:
             case (("L" | "P"), ""):
                 self._subprogram_word(reader, block, letter, number)
             case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), ""):
-                self._note(
-                    f"the machine has no axis {letter}: {letter}{number:g} is not executed", Severity.ERROR, "NC230"
-                )
+                self._note(Wording("NC230", "axis_value_not_executed", axis=letter, value=number), Severity.ERROR)
             case _:
-                self._note(f"unknown word {letter}{extension}={number:g}", Severity.ERROR, "NC211")
+                self._note(
+                    Wording("NC211", "unknown_extended_word", letter=letter, extension=extension, number=number),
+                    Severity.ERROR,
+                )
 
     @staticmethod
     def _subprogram_word(reader: ExpressionReader, block: Block, letter: str, number: float) -> None:
@@ -249,11 +251,11 @@ class BlockReader:
         if letter == "L":
             digits = reader.tokens[reader.at - 1].text
             if not digits.isdigit():
-                raise ExpressionError("a subprogram has a whole number")
+                raise ExpressionError(Wording("NC210", "subprogram_whole_number"))
             block.calls.append(Call(f"L{digits}"))
             return
         if not block.calls:
-            raise ExpressionError("P counts nothing here")
+            raise ExpressionError(Wording("NC210", "p_counts_nothing_here"))
         block.calls[-1].repeats = _code(number, "P")
 
     # Names
@@ -301,9 +303,9 @@ class BlockReader:
         elif name in _MODES:
             block.words.append(name)
         elif name in FLOW or name in TYPES or name in OPERATORS or name in POSITION_MODES:
-            raise ExpressionError(f"{name} cannot stand here")
+            raise ExpressionError(Wording("NC210", "cannot_stand_here", name=name))
         elif name in ACTIVE and name not in ("MSG", "SETAL"):
-            raise ExpressionError(f"{name} needs a value")
+            raise ExpressionError(Wording("NC210", "word_needs_value", word=name))
         else:
             block.calls.append(read_call(reader, name))
 
@@ -317,10 +319,10 @@ class BlockReader:
             axes.add(reader.peek())
             reader.at += 1
             if not reader.accept(",") and reader.peek() != ")":
-                raise ExpressionError("FGROUP takes names of axes")
+                raise ExpressionError(Wording("NC210", "fgroup_takes_names_axes"))
         if axes and axes != {"X", "Y", "Z"}:
             axis_names = _text(reader.tokens, start, reader.at - 1)
-            raise ExpressionError(f"F that counts for {axis_names} is not simulated; FGROUP(X,Y,Z) is", code="NC220")
+            raise ExpressionError(Wording("NC220", "feed_group_not_simulated", axes=axis_names))
 
     @staticmethod
     def _polynomial(reader: ExpressionReader, block: Block) -> None:
@@ -331,10 +333,10 @@ class BlockReader:
         reader.expect("]")
         reader.expect("=")
         if reader.peek() != "(":
-            raise ExpressionError("PO[] takes its values in parentheses")
+            raise ExpressionError(Wording("NC210", "po_takes_values_parentheses"))
         values = reader.arguments()
         if axis in block.polynomials or not values or any(value is None for value in values):
-            raise ExpressionError(f"PO[{axis}] takes an end and coefficients, once")
+            raise ExpressionError(Wording("NC210", "po_takes_end_coefficients_once", axis=axis))
         block.polynomials[axis] = [_number(value) for value in values if value is not None]
 
     @staticmethod
@@ -347,11 +349,9 @@ class BlockReader:
         elif name == FEED_RADIUS:
             block.feed_radius = _number(value)
         elif name in OTHER_FEEDS and value != OTHER_FEEDS[name]:
-            raise ExpressionError(f"{name} changes the feed: not simulated", code="NC220")
+            raise ExpressionError(Wording("NC220", "changes_feed_not_simulated", name=name))
         elif name in GREATEST and not 0.0 <= _number(value) <= GREATEST[name]:
-            raise ExpressionError(
-                f"{name} is not from 0 to {GREATEST[name]:g}: farther off than the checks allow for", code="NC215"
-            )
+            raise ExpressionError(Wording("NC215", "tolerance_too_great", name=name, most=GREATEST[name]))
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""
@@ -363,15 +363,17 @@ class BlockReader:
         value = self._value(reader)[0] if reader.peek() == "=" else None
         if name == "TCARR" and value == 0.0:
             return
-        self._note(f"{_text(reader.tokens, start, reader.at)} is known but not simulated", Severity.ERROR, "NC220")
+        self._note(
+            Wording("NC220", "known_not_simulated", words=_text(reader.tokens, start, reader.at)), Severity.ERROR
+        )
 
     def _assignment(self, reader: ExpressionReader, name: str, variables: Variables) -> None:
         if name.startswith("$"):
-            raise ExpressionError(f"{name} is a system variable, which is not simulated", code="NC220")
+            raise ExpressionError(Wording("NC220", "system_variable_not_simulated", name=name))
         index = reader.index()
         reader.expect("=")
         if not variables.assign(name, index, reader.value()):
-            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR, "NC223")
+            self._note(Wording("NC223", "no_definition", name=name), Severity.ERROR)
 
 
 def read_call(reader: ExpressionReader, name: str) -> Call:
@@ -400,20 +402,20 @@ def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
     depth = 1
     while depth:
         if reader.token is None:
-            raise ExpressionError(f"{closing} is missing")
+            raise ExpressionError(Wording("NC210", "closing_missing", closing=closing))
         depth += {opening: 1, closing: -1}.get(reader.peek(), 0)
         reader.at += 1
 
 
 def _number(value: Value) -> float:
     if isinstance(value, str):
-        raise ExpressionError(f'"{value[:40]}" is a text where a number must stand')
+        raise ExpressionError(Wording("NC210", "text_for_number", value=value[:40]))
     return value
 
 
 def _code(number: float, letter: str) -> int:
     if number != int(number) or not 0 <= number < 1e9:
-        raise ExpressionError(f"{letter} takes a whole number")
+        raise ExpressionError(Wording("NC210", "takes_whole_number", letter=letter))
     return int(number)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.families.sinumerik.block import Call, read_call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
@@ -43,7 +44,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
     def _call_one(self, calls: Sequence[Call]) -> None:
         """Call the subprogram of a block, after everything else in the block is executed."""
         if len(calls) > 1:
-            self._note("several subprograms in one block: only the first is executed", Severity.ERROR, "NC212")
+            self._note(Wording("NC212", "several_subprograms_block_only_first"), Severity.ERROR)
         for call in calls[:1]:
             self._enter_subprogram(call)
 
@@ -51,11 +52,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         """Start a subprogram, one of the files given by the user."""
         path = self._subprograms.find(call.name)
         if path is None:
-            self._note(
-                f"unknown word or missing subprogram {call.name[:80]}: it is not executed; name its file, if it is one",
-                Severity.ERROR,
-                "NC132",
-            )
+            self._note(Wording("NC132", "unknown_or_missing", call=call.name[:80]), Severity.ERROR)
             return
         if call.repeats < 1:
             return
@@ -80,11 +77,11 @@ class CallInterpreter(Interpreter[ActiveProgram]):
             reader.at += 1
             number = reader.token
             if number is None or not number.text.isdigit():
-                raise ExpressionError("a subprogram has a number")
+                raise ExpressionError(Wording("NC210", "subprogram_number"))
             active.modal = Call(f"L{number.text}")
             return
         if token.kind is not TokenKind.NAME:
-            raise ExpressionError("a name must follow")
+            raise ExpressionError(Wording("NC210", "name_must_follow"))
         reader.at += 1
         active.modal = read_call(reader, token.text)
 
@@ -94,5 +91,5 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         if in_parentheses:
             reader.expect(")")
         if not isinstance(value, str):
-            raise ExpressionError("takes the name of a program")
+            raise ExpressionError(Wording("NC210", "takes_program_name"))
         self._enter_subprogram(Call(value))

@@ -13,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
+from trunnion.messages import Wording
 from trunnion.model.run import NO_OFFSET, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs, tool_orientation
@@ -115,7 +116,9 @@ class SinumerikControl(VirtualControl):
 
     def _report_compensation_mode(self, word: str) -> None:
         if effect := WITHIN_COMPENSATION[word][1]:
-            self.note(f"{word} within radius compensation: {effect}, which is not simulated", Severity.ERROR, "NC220")
+            self.note(
+                Wording("NC220", "within_radius_compensation_not_simulated", word=word, effect=effect), Severity.ERROR
+            )
 
     def set_working_plane(self, plane: int) -> None:
         """Select the working plane (G17, G18, G19) by its normal axis."""
@@ -139,8 +142,7 @@ class SinumerikControl(VirtualControl):
         if along in axes and edge > 0:
             value, mode = axes[along]
             if not self._settings.machine_positions:
-                text = f"{along} in machine positions with D{edge}: MD10760 says whether the length of the tool counts"
-                self.note(f"{text}; write D0 in this block", Severity.ERROR, "NC224")
+                self.note(Wording("NC224", "machine_position_with_length", axis=along, edge=edge), Severity.ERROR)
             elif self._settings.machine_positions == WITH_LENGTH and not self._is_incremental(mode):
                 value += float(self._length_offset[self.plane_axis]) / self.length_unit
                 axes = {**axes, along: (value, mode)}
@@ -162,9 +164,9 @@ class SinumerikControl(VirtualControl):
     def _arc(self, params: Mapping[str, AxisWord], in_plane: bool, start: Floats, end: Floats) -> arcs.Arc:
         turns = int(params.get("TURN", (0.0, PositionMode.MODAL))[0])
         if not 0 <= turns < 1000:
-            raise arcs.ArcError(f"TURN={turns} is not from 0 to 999")
+            raise arcs.ArcError(Wording("NC320", "bad_turns", turns=turns))
         if any(abs(value) * self.length_unit > MAX_POSITION for value, _ in params.values()):
-            raise arcs.ArcError("a circle with numbers that no machine has")
+            raise arcs.ArcError(Wording("NC320", "circle_numbers_no_machine"))
         if self.motion != THROUGH:
             return self._plane_arc(params, in_plane, turns, start, end)
         through = end.copy()
@@ -183,7 +185,7 @@ class SinumerikControl(VirtualControl):
             if name not in params:
                 continue
             if axis == self.plane_axis:
-                self.note(f"{name} has no meaning for a circle in this plane", Severity.WARNING, "NC213")
+                self.note(Wording("NC213", "no_word_of_circle", word=name), Severity.WARNING)
                 continue
             centre = start.copy() if centre is None else centre
             value, how = params[name]
@@ -192,7 +194,7 @@ class SinumerikControl(VirtualControl):
         if "CR" in params:
             radius = params["CR"][0] * self.length_unit
             if centre is not None:
-                self.note("CR= and a centre in one block: CR= counts", Severity.ERROR, "NC216")
+                self.note(Wording("NC216", "cr_centre_block_cr_counts"), Severity.ERROR)
             return arcs.by_radius(start, end, radius, self.plane_axis, clockwise, turns)
         if "AR" in params:
             angle = params["AR"][0]
@@ -202,7 +204,9 @@ class SinumerikControl(VirtualControl):
             arc.end[self.plane_axis] = end[self.plane_axis]
             return arc
         if centre is None:
-            raise arcs.ArcError("the circle has no centre" if in_plane else "the circle has neither end nor centre")
+            raise arcs.ArcError(
+                Wording("NC320", "circle_no_centre") if in_plane else Wording("NC320", "circle_neither_end_nor_centre")
+            )
         return arcs.by_centre(start, end, centre, self.plane_axis, clockwise, turns)
 
     # Frames along the tool
@@ -221,7 +225,7 @@ class SinumerikControl(VirtualControl):
             self.tool_frame = False
             return
         if not self.tcp or self.tilted or (not self.tool_frame and not np.array_equal(program.linear, np.eye(3))):
-            self.note(f"{word} without TRAORI, or on top of a turned frame, is not simulated", Severity.ERROR, "NC340")
+            self.note(Wording("NC340", "without_traori_top_turned_frame", word=word), Severity.ERROR)
             return
         self.set_program_frame(
             self._along_tool(program.shift if word.startswith("TOROT") else np.zeros(3)), keep_base=False
@@ -245,9 +249,7 @@ class SinumerikControl(VirtualControl):
         if turns:
             self.set_program_frame(self._along_tool(program.shift), keep_base=False)
         if (turns or self.tool_frame) and any(any(motion.lateral) for motion in motions):
-            self.note(
-                "the cycle lifts off along X and Y of a frame that the control's settings turn", Severity.ERROR, "NC224"
-            )
+            self.note(Wording("NC224", "cycle_lifts_off_along_x"), Severity.ERROR)
         super().drill(motions, work)
         if turns:
             self.set_program_frame(program, keep_base=False)
@@ -285,21 +287,17 @@ class SinumerikControl(VirtualControl):
         """Return rotary values whose tool axis is ``normal``, with the second axis on the side of ``direction``."""
         pairs = tool_orientation.solutions(self.machine, normal, self.current_joints)
         if not pairs:
-            self.note("CYCLE800: no rotary position stands the tool on this plane", Severity.ERROR, "NC350")
+            self.note(Wording("NC350", "cycle800_no_rotary_position_stands"), Severity.ERROR)
             return None
         inside = [pair for pair in pairs if tool_orientation.is_in_travel(self.machine, pair)]
         if not inside:
-            self.note(
-                "CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR, "NC350"
-            )
+            self.note(Wording("NC350", "cycle800_no_rotary_position_inside"), Severity.ERROR)
             return None
         chosen = sorted(pairs, key=lambda pair: pair[1], reverse=direction > 0)[0]
         if chosen not in inside:
-            self.note("CYCLE800: the solution that _DIR asks for is outside the travel", Severity.ERROR, "NC350")
+            self.note(Wording("NC350", "cycle800_solution_dir_asks_outside"), Severity.ERROR)
             chosen = inside[0]
         target = tool_orientation.nearest_in_travel(self.machine, chosen, self.current_joints)
         if tool_orientation.is_other_solution(self.machine, target, self.current_joints, normal):
-            self.note(
-                "CYCLE800 turns the tool, which stands on the plane, to the other solution", Severity.ERROR, "NC350"
-            )
+            self.note(Wording("NC350", "cycle800_turns_tool_stands_plane"), Severity.ERROR)
         return target

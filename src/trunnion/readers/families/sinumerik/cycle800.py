@@ -3,6 +3,7 @@
 import numpy as np
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
@@ -33,14 +34,14 @@ def swivel(control: SinumerikControl, call: Call) -> None:
         control.set_plane(None)
         return
     if len(call.arguments) > 16:
-        note(f"CYCLE800 takes 16 values, not {len(call.arguments)}", Severity.ERROR, "NC215")
+        note(Wording("NC215", "cycle800_arguments", given=len(call.arguments)), Severity.ERROR)
         return
     numbers = [value if isinstance(value, float) else 0.0 for value in call.arguments]
     numbers += [0.0] * (16 - len(numbers))
     retract, _, style, mode = numbers[:4]
     before, angles, after, direction = numbers[4:7], numbers[7:10], numbers[10:13], numbers[13]
     if any(abs(value) > MAX_ARGUMENT for value in numbers):
-        note("CYCLE800 with numbers that no machine has: it is not executed", Severity.ERROR, "NC215")
+        note(Wording("NC215", "cycle800_numbers_no_machine_not"), Severity.ERROR)
         return
     wanted = (
         ("_FR", retract, SWIVEL_RETRACTS),
@@ -49,11 +50,11 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     )
     for name, value, known in wanted:
         if value not in known:
-            note(f"CYCLE800 with {name} {value:g}: the control knows {known} there", Severity.ERROR, "NC215")
+            note(Wording("NC215", "cycle800_control_knows", name=name, value=value, known=known), Severity.ERROR)
     if control.modal.edge.current == 0:
-        note("CYCLE800 works with the tool length, and D0 is in force: write D1 before it", Severity.ERROR, "NC340")
+        note(Wording("NC340", "cycle800_works_tool_length_d0"), Severity.ERROR)
     if retract:
-        note(f"CYCLE800 retracts first (_FR {retract:g}): where to is not simulated", Severity.WARNING, "NC224")
+        note(Wording("NC224", "cycle800_retracts_first_fr_not", retract=retract), Severity.WARNING)
     origin = control.length_unit * np.array(before)
     offset = control.length_unit * np.array(after)
     linear = np.eye(3)
@@ -63,7 +64,7 @@ def swivel(control: SinumerikControl, call: Call) -> None:
         # The values are those of the first and the second rotary axis of the swivel data.
         direct = angles[0], angles[1]
     elif axes is None:
-        note(f"CYCLE800 with _MODE {mode:g} is not simulated", Severity.ERROR, "NC220")
+        note(Wording("NC220", "cycle800_mode_not_simulated", mode=mode), Severity.ERROR)
         return
     else:
         for axis, angle in zip(axes, angles, strict=True):
@@ -73,4 +74,4 @@ def swivel(control: SinumerikControl, call: Call) -> None:
         frame = frame.compose(AffineMap(np.eye(3), offset))
     control.swivel(frame, add=int(style) % 10 == 1, direction=direction, direct=direct)
     if direct is not None and offset.any():
-        note("CYCLE800 with direct angles: the offset after turning is not simulated", Severity.ERROR, "NC220")
+        note(Wording("NC220", "cycle800_direct_angles_offset_after"), Severity.ERROR)

@@ -8,6 +8,7 @@ is not known here.
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 from trunnion.readers.families.sinumerik.words import (
@@ -27,14 +28,12 @@ def smooth(control: SinumerikControl, call: Call) -> None:
     control.add_event("cycle832", tuple(text if text in CONSTANTS else value for text, value in values))
     tolerance, mode, orientation = (*call.arguments, None, None, None)[:3]
     if len(call.arguments) > _MOST_ARGUMENTS or (isinstance(orientation, float) and orientation < 0.0):
-        text = "CYCLE832 takes a tolerance, a mode, and a tolerance of the orientation that is not below zero"
-        control.note(text, Severity.ERROR, "NC215")
+        control.note(Wording("NC215", "cycle832_takes_tolerance_mode_tolerance"), Severity.ERROR)
     if isinstance(mode, float) and not _is_mode(mode):
-        control.note(f"CYCLE832 with the mode {mode:g}, which the control does not have", Severity.ERROR, "NC215")
+        control.note(Wording("NC215", "cycle832_mode_control_does_not", mode=mode), Severity.ERROR)
     given = tolerance if isinstance(tolerance, float) else 0.0
     if given < 0.0 or (given == 0.0 and isinstance(mode, float) and int(mode) % 10):
-        text = f"CYCLE832 smooths within {given:g}: give its first value, such as 0.02, or _OFF"
-        control.note(text, Severity.ERROR, "NC215")
+        control.note(Wording("NC215", "cycle832_smooths_within_give_first", given=given), Severity.ERROR)
     control.add_tolerance(given * control.length_unit)
     control.smooth(isinstance(mode, float) and _is_mode(mode) and int(mode) % 10 > 0)
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import (
     MAX_FEED,
@@ -85,7 +86,7 @@ def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotio
     heights = _heights(arguments)
     motions = CYCLES[name](arguments, heights, rpm)
     if any(step.feed is not None and abs(step.feed) > MAX_FEED for step in motions):
-        raise CycleExecutionError("has a feed that no machine has")
+        raise CycleExecutionError(Wording("NC380", "feed_no_machine"))
     return [HoleMotion(True, heights.start), *motions, HoleMotion(True, heights.retract)]
 
 
@@ -144,7 +145,7 @@ def _sense(arguments: Arguments, name: str) -> int | None:
     """Return the sense in which a cycle leaves the spindle; None: as it was."""
     code = _or(arguments, _SENSE_PLACES[name])
     if code not in _SENSES:
-        raise CycleExecutionError(f"has {code:g} for the sense of the spindle, which is 3, 4 or 5")
+        raise CycleExecutionError(Wording("NC380", "bad_spindle_sense", code=code))
     return _SENSES[code]
 
 
@@ -155,34 +156,32 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
     """
     for place, known in CYCLE_VALUES.get(name, {}).items():
         if (value := _or(arguments, place)) not in known:
-            raise CycleExecutionError(
-                f"has {value:g} as its value {place}: the control knows {known} there", code="NC215"
-            )
+            raise CycleExecutionError(Wording("NC215", "value_control_knows", value=value, place=place, known=known))
     place = _AXIS_PLACES.get(name, 0)
     axis = _or(arguments, place) if place else 0.0
     if axis and axis != plane_axis + 1:
-        raise CycleExecutionError(f"has _AXN {axis:g}, and the working plane wants {plane_axis + 1}")
+        raise CycleExecutionError(Wording("NC380", "wrong_axis", axis=axis, wanted=plane_axis + 1))
     if name == "CYCLE840" and _or(arguments, 7) not in (0.0, 3.0, 4.0):
-        raise CycleExecutionError("has an SDR that is not 0, 3 or 4")
+        raise CycleExecutionError(Wording("NC380", "bad_sdr"))
     if name == "CYCLE840" and (back := _or(arguments, 7)):
         pitch = _get(arguments, 11) or _get(arguments, 10)
         if not pitch or (back == 3.0) is (pitch > 0.0):
-            raise CycleExecutionError("would leave the thread in the sense of SDR, which is not the other one: write 0")
+            raise CycleExecutionError(Wording("NC380", "would_leave_thread_sense_sdr"))
     first = _MODE_PLACES[name]
     geometry, plane, alternatives = (_or(arguments, first + k) for k in range(3))
     if geometry:
-        raise CycleExecutionError(f"has _GMODE {geometry:g}, which is not simulated", code="NC220")
+        raise CycleExecutionError(Wording("NC220", "gmode_not_simulated", geometry=geometry))
     if plane and plane != 3 - plane_axis:
-        raise CycleExecutionError(f"has _DMODE {plane:g}, which is not the working plane")
+        raise CycleExecutionError(Wording("NC380", "dmode_not_working_plane", plane=plane))
     if not alternatives:
         return
     if name not in ("CYCLE81", "CYCLE82") or alternatives not in _ALTERNATIVES:
-        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which is not simulated", code="NC220")
+        raise CycleExecutionError(Wording("NC220", "amode_not_simulated", alternatives=alternatives))
     depth, dwell = alternatives % 10, alternatives // 10
     if (depth == 1 and not _or(arguments, 5)) or (depth == 2 and _or(arguments, 5)):
-        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which does not fit DP and DPR")
+        raise CycleExecutionError(Wording("NC380", "amode_does_not_fit_dp", alternatives=alternatives))
     if (dwell == 1 and _or(arguments, 6) < 0.0) or (dwell == 2 and _or(arguments, 6) > 0.0):
-        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which does not fit the dwell DTB")
+        raise CycleExecutionError(Wording("NC380", "amode_does_not_fit_dwell", alternatives=alternatives))
 
 
 def _get(arguments: Arguments, place: int) -> float | None:
@@ -199,18 +198,18 @@ def _heights(arguments: Arguments) -> Heights:
     retract, depth, deep = _get(arguments, 1), _get(arguments, 4), _get(arguments, 5)
     reference = _or(arguments, 2)
     if retract is None:
-        raise CycleExecutionError("has no retract plane")
+        raise CycleExecutionError(Wording("NC380", "no_retract_plane"))
     if depth is None and deep is None:
-        raise CycleExecutionError("has no depth")
+        raise CycleExecutionError(Wording("NC380", "no_depth"))
     down = -1.0 if retract >= reference else 1.0
     # If both are given, the depth relative to the reference plane counts.
     if deep:
         depth = reference + down * abs(deep)
     elif depth is None:
-        raise CycleExecutionError("has no depth")
+        raise CycleExecutionError(Wording("NC380", "no_depth"))
     sign = -1.0 if depth < reference else 1.0
     if depth == reference or sign * (retract - reference) > 0.0:
-        raise CycleExecutionError("has a retract plane below the reference plane")
+        raise CycleExecutionError(Wording("NC380", "retract_plane_below_reference_plane"))
     return Heights(retract, reference, reference - sign * abs(_or(arguments, 3)), depth)
 
 
@@ -254,7 +253,7 @@ def peck_depths(total: float, first: float, less: float, least: float) -> list[f
     pecks are of equal length if the last one would be short.
     """
     if first <= 0.0:
-        raise CycleExecutionError("has a first depth above the reference plane")
+        raise CycleExecutionError(Wording("NC380", "first_depth_above_reference_plane"))
     depths = [min(first, total)]
     peck = first
     floor = max(abs(least), less if less > 0.0 else 0.0)
@@ -265,7 +264,7 @@ def peck_depths(total: float, first: float, less: float, least: float) -> list[f
         elif less > 0.0:
             peck = max(peck - less, floor)
         if peck <= 0.0 or len(depths) >= MAX_PECKS:
-            raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+            raise CycleExecutionError(Wording("NC380", "too_many_pecks", most=MAX_PECKS))
         if left <= peck:
             step = left
         elif left < 2.0 * floor:
@@ -299,7 +298,7 @@ def _pitch(size: float | None, pitch: float | None, unit: float) -> float:
         return 25.4 * value if unit == 3.0 else value
     if size and abs(size) in PITCHES:
         return PITCHES[int(abs(size))]
-    raise CycleExecutionError("has no pitch")
+    raise CycleExecutionError(Wording("NC380", "no_pitch"))
 
 
 def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:

@@ -8,6 +8,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Final, Protocol
 
+from trunnion.messages import Wording
+from trunnion.readers.control.worded_error import WordedError
 from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
 
 Value = float | str
@@ -22,12 +24,8 @@ MAX_TEXT_LENGTH: Final = 1000
 MAX_VALUE: Final = 1e300
 
 
-class ExpressionError(Exception):
+class ExpressionError(WordedError):
     """The reason why an expression has no value."""
-
-    def __init__(self, text: str, *, code: str = "NC210") -> None:
-        super().__init__(text)
-        self.code = code
 
 
 class Names(Protocol):
@@ -123,13 +121,15 @@ class ExpressionReader:
         """Read a sign that must come next."""
         if not self.accept(text):
             found = self.token
-            raise ExpressionError(f"expected {text}, found {found.text if found else 'the end of the block'}")
+            raise ExpressionError(
+                Wording("NC210", "expected_found", expected=text, found=found.text if found else "the end of the block")
+            )
 
     def number(self) -> float:
         """Read an expression whose value must be a number."""
         value = self.value()
         if isinstance(value, str):
-            raise ExpressionError(f'"{value[:40]}" is a text where a number must stand')
+            raise ExpressionError(Wording("NC210", "text_for_number", value=value[:40]))
         return value
 
     def integer(self) -> int:
@@ -175,7 +175,7 @@ class ExpressionReader:
     def _unary(self) -> Value:
         self._depth += 1
         if self._depth > MAX_NESTING:
-            raise ExpressionError(f"nests deeper than {MAX_NESTING} levels")
+            raise ExpressionError(Wording("NC210", "nests_too_deep", most=MAX_NESTING))
         try:
             return self._primary()
         finally:
@@ -184,7 +184,7 @@ class ExpressionReader:
     def _primary(self) -> Value:
         token = self.token
         if token is None:
-            raise ExpressionError("a value is missing at the end of the block")
+            raise ExpressionError(Wording("NC210", "value_missing_end_block"))
         self.at += 1
         match token.kind, token.text:
             case TokenKind.NUMBER, _:
@@ -209,7 +209,7 @@ class ExpressionReader:
                 if name in FUNCTIONS and self.peek() == "(":
                     return self._function(name)
                 return self.names.variable(name, self.index())
-        raise ExpressionError(f"{token.text} is not a value")
+        raise ExpressionError(Wording("NC210", "not_a_value", found=token.text))
 
     def _parameter(self) -> float:
         token = self.token
@@ -218,36 +218,38 @@ class ExpressionReader:
             return self.names.parameter(whole(token.value))
         index = self.index()
         if len(index) != 1:
-            raise ExpressionError("R needs a number")
+            raise ExpressionError(Wording("NC210", "r_needs_number"))
         return self.names.parameter(index[0])
 
     def _function(self, name: str) -> float:
         count, function = FUNCTIONS[name]
         arguments = [_numeric(value) for value in self.arguments() if value is not None]
         if len(arguments) != count:
-            raise ExpressionError(f"{name} takes {count} numbers, not {len(arguments)}")
+            raise ExpressionError(
+                Wording("NC210", "wrong_number_of_arguments", name=name, count=count, given=len(arguments))
+            )
         try:
             return _sound(float(function(*arguments)))
         except (ValueError, OverflowError, ZeroDivisionError):
-            raise ExpressionError(f"{name} has no value here", code="NC215") from None
+            raise ExpressionError(Wording("NC215", "no_value_here", name=name)) from None
 
 
 def whole(value: float) -> int:
     """Return a number without its decimals, for indices and counters."""
     if not abs(value) < 1e15:
-        raise ExpressionError(f"{value:g} is not a usable whole number")
+        raise ExpressionError(Wording("NC210", "not_usable_whole_number", value=value))
     return int(value)
 
 
 def _numeric(value: Value) -> float:
     if isinstance(value, str):
-        raise ExpressionError(f'"{value[:40]}" is a text where a number must stand')
+        raise ExpressionError(Wording("NC210", "text_for_number", value=value[:40]))
     return value
 
 
 def _sound(value: float) -> float:
     if not abs(value) < MAX_VALUE:
-        raise ExpressionError("has no finite value")
+        raise ExpressionError(Wording("NC210", "no_finite_value"))
     return value
 
 
@@ -255,7 +257,7 @@ def _apply(operator: str, left: Value, right: Value) -> Value:
     if operator == "<<":
         text = _text(left) + _text(right)
         if len(text) > MAX_TEXT_LENGTH:
-            raise ExpressionError("makes too long a text")
+            raise ExpressionError(Wording("NC210", "text_too_long"))
         return text
     if operator in ("==", "<>") and isinstance(left, str) and isinstance(right, str):
         return float((left == right) == (operator == "=="))
@@ -304,7 +306,7 @@ def _arithmetic(operator: str, a: float, b: float) -> float:
 
 def _divide(operator: str, a: float, b: float) -> float:
     if b == 0.0:
-        raise ExpressionError("divides by zero")
+        raise ExpressionError(Wording("NC210", "divides_zero"))
     if operator == "/":
         return a / b
     return float(math.trunc(_sound(a / b))) if operator == "DIV" else math.fmod(a, b)

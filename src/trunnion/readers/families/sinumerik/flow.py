@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
@@ -72,14 +73,14 @@ class Flow:
         try:
             holds = bool(reader.number())
         except ExpressionError as error:
-            self._note(f"not understood: IF: {error}: taken as not fulfilled", Severity.ERROR, "NC143")
+            self._note(Wording("NC143", "if", reason=error.wording), Severity.ERROR)
             while reader.token is not None and not reader.peek().startswith("GOTO"):
                 reader.at += 1
             holds = False
         if reader.token is not None:
             word = reader.peek()
             if not word.startswith("GOTO"):
-                raise ExpressionError("a jump must follow the condition")
+                raise ExpressionError(Wording("NC210", "jump_must_follow_condition"))
             if holds:
                 self._goto_from(reader, active, line)
             return
@@ -112,7 +113,7 @@ class Flow:
 
     def _repeat(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         if reader.token is not None:
-            raise ExpressionError("repeating a part of the program by its labels is not simulated", code="NC220")
+            raise ExpressionError(Wording("NC220", "repeating_part_program_labels_not"))
         active.source.partner(line)
 
     def _until(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
@@ -162,7 +163,7 @@ class Flow:
     def _loop_variable(self, reader: ExpressionReader) -> tuple[str, tuple[int, ...]]:
         name = reader.peek()
         if not name or name == "=":
-            raise ExpressionError("FOR needs a variable")
+            raise ExpressionError(Wording("NC210", "needs_variable"))
         reader.at += 1
         token = reader.token
         if name == "R" and token is not None and token.kind is TokenKind.NUMBER:
@@ -170,7 +171,7 @@ class Flow:
             return name, (int(min(token.value, 1e6)),)
         index = reader.index()
         if name == "R" and len(index) != 1:
-            raise ExpressionError("R needs a number")
+            raise ExpressionError(Wording("NC210", "r_needs_number"))
         return name, index
 
     def _get(self, active: ActiveProgram, name: str, index: tuple[int, ...]) -> float:
@@ -178,14 +179,14 @@ class Flow:
             return active.variables.parameter(index[0])
         value = active.variables.variable(name, index)
         if isinstance(value, str):
-            raise ExpressionError(f"{name} is a text")
+            raise ExpressionError(Wording("NC210", "is_text", name=name))
         return value
 
     def _set(self, active: ActiveProgram, name: str, index: tuple[int, ...], value: float) -> None:
         if name == "R":
             active.variables.set_parameter(index[0], value)
         elif not active.variables.assign(name, index, value):
-            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR, "NC223")
+            self._note(Wording("NC223", "no_definition", name=name), Severity.ERROR)
 
     def _goto(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         reader.at -= 1
@@ -204,7 +205,7 @@ class Flow:
         if found is not None:
             active.source.jump_without_choice(found)
         elif word != "GOTOC":
-            self._note(f"the target {target} of {word} is missing: the program ends here", Severity.ERROR, "NC133")
+            self._note(Wording("NC133", "missing_target", target=target, word=word), Severity.ERROR)
             raise ProgramEnd
 
     def _target(
@@ -237,7 +238,7 @@ class Flow:
         while reader.token is not None:
             taken = reader.accept("DEFAULT") or reader.number() == value
             if not reader.peek().startswith("GOTO"):
-                raise ExpressionError("a jump must follow the value")
+                raise ExpressionError(Wording("NC210", "jump_must_follow_value"))
             if taken:
                 self._goto_from(reader, active, line)
                 return
@@ -251,7 +252,7 @@ class Flow:
             reader.at += 1
             kind = reader.peek()
         if not kind:
-            raise ExpressionError("DEF needs a type")
+            raise ExpressionError(Wording("NC210", "def_needs_type"))
         reader.at += 1
         if kind == "STRING":
             reader.index()
@@ -265,7 +266,7 @@ class Flow:
         name = reader.peek()
         token = reader.token
         if token is None or token.kind not in (TokenKind.NAME, TokenKind.LETTER):
-            raise ExpressionError("DEF needs a name")
+            raise ExpressionError(Wording("NC210", "def_needs_name"))
         reader.at += 1
         number = reader.token
         if name == "R" and number is not None and number.kind is TokenKind.NUMBER:
@@ -275,7 +276,7 @@ class Flow:
             active.variables.set_parameter(int(min(number.value, 1e6)), value)
             return
         if token.kind is not TokenKind.NAME:
-            raise ExpressionError(f"{name} is not a name for a variable")
+            raise ExpressionError(Wording("NC210", "not_name_variable", name=name))
         size = reader.index()
         active.variables.define(kind, name, place=(line, reader.at))
         if not reader.accept("="):
@@ -287,7 +288,7 @@ class Flow:
         else:
             given = reader.value()
             if size:
-                self._note(f"{name}: a field takes SET(...)", Severity.ERROR, "NC215")
+                self._note(Wording("NC215", "field_takes_set", name=name), Severity.ERROR)
             else:
                 active.variables.assign(name, (), given)
 
@@ -295,9 +296,7 @@ class Flow:
         """Define the parameters of the PROC line with the arguments of the call."""
         handed = active.variables.arguments
         if any(token.text == "SAVE" for token in reader.tokens[reader.at :]):
-            self._note(
-                "SAVE: G words come back at the end of the subprogram, which is not simulated", Severity.ERROR, "NC220"
-            )
+            self._note(Wording("NC220", "save_g_words_come_back"), Severity.ERROR)
         reader.at += 1
         if not reader.accept("("):
             return
@@ -310,7 +309,7 @@ class Flow:
                 reader.index()
             name = reader.peek()
             if kind not in TYPES or not name:
-                raise ExpressionError("a parameter has a type and a name")
+                raise ExpressionError(Wording("NC210", "parameter_type_name"))
             reader.at += 1
             reader.index()
             default = reader.value() if reader.accept("=") else None

@@ -6,6 +6,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
 from trunnion.readers.control.iso_m_codes import EVENTS, PROGRAM_ENDS, TOOL_CHANGE
@@ -124,7 +125,7 @@ class SinumerikInterpreter(CallInterpreter):
             self._record_comment(line, comment)
             return
         if len(words) > MAX_LENGTH:
-            self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR, "NC214")
+            self._note(Wording("NC214", "long_block_not_executed", most=MAX_LENGTH), Severity.ERROR)
             return
         tokens = tokenize(words)
         at = self._read_line_start(tokens)
@@ -171,20 +172,20 @@ class SinumerikInterpreter(CallInterpreter):
         try:
             flow(reader, active, line)
         except ExpressionError as error:
-            self._note(f"not understood: {first.text}: {error}", Severity.ERROR, error.code)
+            self._note(error.wording.within("not_understood", text=first.text), Severity.ERROR)
 
     # Blocks
 
     def _execute_block(self, active: ActiveProgram, block: Block) -> None:
         """Execute the words of a block in the order of the control."""
         for fault in same_group(block.g, G_GROUPS, "G{}".format):
-            self._note(fault, Severity.ERROR, "NC212")
+            self._note(fault, Severity.ERROR)
         for code in block.g:
             self._g_code(code)
         for word in block.words:
             self._word(word, block)
         for word in block.waits:
-            self.control.note_wait(f"{word} waits for another channel of the control, for as long as that takes")
+            self.control.note_wait(Wording("NC226", "waits_for_channel", word=word))
         if _DWELL in block.g:
             self._dwell(block)
             return
@@ -238,14 +239,13 @@ class SinumerikInterpreter(CallInterpreter):
         if not has_motion or G_NO_MOTION.intersection(block.g):
             return False
         if {"I", "J", "K"} & block.params.keys() and control.motion <= LINEAR:
-            self._note("I, J and K have no meaning for a straight line", Severity.WARNING, "NC213")
+            self._note(Wording("NC213", "centre_of_line"), Severity.WARNING)
         if block.vector and not control.tip_programmed:
-            self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.ERROR, "NC340")
+            self._note(Wording("NC340", "a3_b3_c3_need_traori"), Severity.ERROR)
         if control.tool_frame and {"X", "Y"} & block.axes.keys():
-            text = "X and Y before TOROTOF point where the control's settings have them: not known"
-            self._note(text, Severity.ERROR, "NC224")
+            self._note(Wording("NC224", "x_y_before_torotof_point"), Severity.ERROR)
         if self._other_feed_radius and control.motion != RAPID and self._only_turns(block):
-            self._note("FGREF changes the feed of the rotary axes: not simulated", Severity.ERROR, "NC220")
+            self._note(Wording("NC220", "fgref_changes_feed_rotary_axes"), Severity.ERROR)
         control.move(
             block.axes,
             block.tool_axis,
@@ -278,16 +278,15 @@ class SinumerikInterpreter(CallInterpreter):
         elif code in G_FEEDS:
             control.modal.feed_mode.set(control.row, G_FEEDS[code])
             if code in G_SURFACE:
-                self._note(f"G{code}: constant surface speed is not simulated", Severity.ERROR, "NC220")
+                self._note(Wording("NC220", "g_constant_surface_speed_not", code=code), Severity.ERROR)
         elif code in G_OFFSETS:
             control.set_offset(code, f"G{code}")
             control.regain_offset(code)
         elif code in G_NOT_SIMULATED:
             text, changes_path = G_NOT_SIMULATED[code]
             self._note(
-                f"G{code}: {text}",
+                Wording("NC220" if changes_path else "NC221", "not_simulated", word=f"G{code}", does=text),
                 Severity.ERROR if changes_path else Severity.WARNING,
-                "NC220" if changes_path else "NC221",
             )
             if code in _THREADS:
                 control.motion = LINEAR
@@ -297,20 +296,18 @@ class SinumerikInterpreter(CallInterpreter):
             control.modify_compensation(f"G{code}")
         elif code in G_RESERVED:
             text = "belongs to the machine's builder: what it does is not known; a definition can declare it"
-            self._note(f"G{code} {text}", Severity.ERROR, "NC224")
+            self._note(Wording("NC224", "g_unknown_here", code=code, does=text), Severity.ERROR)
         elif not (
             code in G_WITHOUT_PATH_EFFECT or code in G_RADIUS_COMPENSATION or code in G_MACHINE or code == _DWELL
         ):
-            self._note(f"unknown word G{code}", Severity.ERROR, "NC211")
+            self._note(Wording("NC211", "unknown_g_word", code=code), Severity.ERROR)
 
     def _word(self, word: str, block: Block) -> None:
         control = self.control
         match word:
             case "TRAORI":
                 if block.traori not in (1.0, 2.0):
-                    self._note(
-                        f"TRAORI({block.traori:g}): only the machine knows what it transforms", Severity.ERROR, "NC224"
-                    )
+                    self._note(Wording("NC224", "traori_only_machine_knows_what", traori=block.traori), Severity.ERROR)
                 control.set_tcp(True)
                 control.lose_offset()
             case "TRAFOOF":
@@ -343,9 +340,9 @@ class SinumerikInterpreter(CallInterpreter):
         elif block.speed is not None:
             self.control.add_event("dwell", -block.speed)
         else:
-            self._note("G4 without a time", Severity.ERROR, "NC218")
+            self._note(Wording("NC218", "g4_without_time"), Severity.ERROR)
         if block.axes:
-            self._note("axis words beside G4 are not executed", Severity.ERROR, "NC213")
+            self._note(Wording("NC213", "axis_words_beside_g4_not"), Severity.ERROR)
 
     def _m_code(self, code: int) -> None:
         control = self.control
@@ -363,28 +360,28 @@ class SinumerikInterpreter(CallInterpreter):
             raise ProgramEnd
         elif code in M_GEARS:
             text = "chooses a gear, whose speeds only the machine knows; a definition can declare it"
-            self._note(f"M{code} {text}", Severity.ERROR, "NC224")
+            self._note(Wording("NC224", "m_unknown_here", code=code, does=text), Severity.ERROR)
         else:
             control.add_builders_word("M", float(code))
 
     def _frame(self, words: list[str], block: Block) -> None:
         control = self.control
         if len(words) > 1:
-            self._note("several frame words in one block: the last one counts", Severity.ERROR, "NC212")
+            self._note(Wording("NC212", "several_frame_words_block_last"), Severity.ERROR)
         word = words[-1]
         additive = word.startswith("A")
         statement = word.removeprefix("A")
         values: dict[str, float] = {}
         for name, (value, _) in {**block.axes, **block.params}.items():
             if abs(value) * control.length_unit > MAX_POSITION:
-                self._note(f"{word}: {name} is larger than any machine: the frame is not used", Severity.ERROR, "NC330")
+                self._note(Wording("NC330", "frame_value_too_large", word=word, name=name), Severity.ERROR)
                 return
             if name in ("X", "Y", "Z"):
                 values[name] = value * control.length_unit if statement == "TRANS" else value
             elif name == "RPL":
                 values[name] = value
             else:
-                self._note(f"{word}: {name} is not simulated", Severity.ERROR, "NC220")
+                self._note(Wording("NC220", "frame_word_not_simulated", word=word, name=name), Severity.ERROR)
         frame = frame_of_statement(statement, values, control.plane_axis)
         result = control.program_frame.compose(frame) if additive else frame
         control.set_program_frame(result)
@@ -409,7 +406,7 @@ class SinumerikInterpreter(CallInterpreter):
             assert name == "SETAL"
             alarm = f"SETAL({', '.join(call.argument_texts)})"
             control.add_event("message", alarm)
-            control.note_wait(f"{alarm} raises an alarm: its number says whether the program stops there")
+            control.note_wait(Wording("NC226", "alarm", word=alarm))
 
     def _drill(self, call: Call) -> None:
         try:
@@ -419,7 +416,7 @@ class SinumerikInterpreter(CallInterpreter):
             numbers = cycles.in_millimetres(call.name, numbers, control.length_unit, control.feed_unit)
             motions, work = cycles.cycle_motions(call.name, numbers, rpm), cycles.spindle_work(call.name, numbers)
         except CycleExecutionError as error:
-            self._note(f"{call.name} {error}: it is not executed", Severity.ERROR, error.code)
+            self._note(error.wording.within("call_not_executed", name=call.name), Severity.ERROR)
             return
         self._counter.count_motions(len(motions))
         control.drill([motion.with_lengths_in(control.length_unit) for motion in motions], work)
@@ -429,5 +426,5 @@ class SinumerikInterpreter(CallInterpreter):
 
 def _number(value: Value | None) -> float | None:
     if isinstance(value, str):
-        raise CycleExecutionError("has a text where a number must stand")
+        raise CycleExecutionError(Wording("NC380", "text_number_must_stand"))
     return value

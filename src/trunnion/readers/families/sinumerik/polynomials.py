@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
@@ -33,7 +34,7 @@ def move_along_polynomials(control: SinumerikControl, block: Block, count: Calla
     """
     fault = _fault(control, block)
     if fault:
-        control.note(f"{fault}: the block is not executed", Severity.ERROR, "NC322")
+        control.note(fault.within("block_not_executed"), Severity.ERROR)
         return
     interval, unit = block.interval or 1.0, control.length_unit
     start = control.programmed_position / unit
@@ -55,40 +56,42 @@ def move_along_polynomials(control: SinumerikControl, block: Block, count: Calla
     try:
         points = points_of_polynomial(coefficients, interval, unit)
     except SplineError as error:
-        control.note(f"{error}: the block is not executed", Severity.ERROR, "NC322")
+        control.note(error.wording.within("block_not_executed"), Severity.ERROR)
         return
     count(len(points))
     control.move_along_spline(polynomial_spline(coefficients * unit, interval), points * unit, bits)
 
 
-def _fault(control: SinumerikControl, block: Block) -> str:
-    """Why a block with PO[], PL or circle words under POLY is not executed; empty if it is."""
+def _fault(control: SinumerikControl, block: Block) -> Wording | None:
+    """Why a block with PO[], PL or circle words under POLY is not executed; None if it is."""
     values = [value for each in block.polynomials.values() for value in each]
     words = {word for word, (_, mode) in block.axes.items() if mode is not PositionMode.MODAL}
     if control.motion != POLYNOMIAL:
-        return "PO[] and PL= without POLY"
+        return Wording("NC322", "polynomial_without_poly")
     if block.params:
-        return f"{next(iter(block.params))} in a block of POLY"
+        return Wording("NC322", "circle_word_in_poly", word=next(iter(block.params)))
     if not block.polynomials:
-        return "PL= in a block without PO[]"
+        return Wording("NC322", "interval_without_polynomial")
     if "" in block.polynomials:
-        return "PO[]: how the end of a denominator counts is not known for certain"
+        return Wording("NC322", "denominator")
     if other := next((name for name in (*block.polynomials, *block.axes) if name not in ("X", "Y", "Z")), ""):
-        return f"{other} in a block of POLY: only X, Y and Z are followed there"
+        return Wording("NC322", "other_axis_in_poly", axis=other)
     if double := block.polynomials.keys() & block.axes.keys():
-        return f"{min(double)} and PO[{min(double)}] in one block"
+        return Wording("NC322", "axis_twice_in_poly", axis=min(double))
     if any(len(each) > _MOST_VALUES for each in block.polynomials.values()):
-        return f"PO[] with more than {_MOST_VALUES} values"
+        return Wording("NC322", "too_many_values", most=_MOST_VALUES)
     if block.vector or control.tcp:
-        return "POLY with TRAORI"
+        return Wording("NC322", "poly_with_traori")
     if "SUPA" in block.words or G_MACHINE.intersection(block.g):
-        return "POLY in machine positions"
+        return Wording("NC322", "poly_in_machine_positions")
     if not control.absolute or words:
-        return "POLY with positions other than absolute ones"
+        return Wording("NC322", "poly_not_absolute")
     if control.modal.compensation.current:
-        return "POLY with radius compensation"
+        return Wording("NC322", "poly_with_compensation")
     if block.interval is not None and not _LEAST_INTERVAL <= block.interval <= _GREATEST_INTERVAL:
-        return f"PL={block.interval:g} is not from {_LEAST_INTERVAL:g} to {_GREATEST_INTERVAL:g}"
+        return Wording(
+            "NC322", "bad_interval", value=block.interval, least=_LEAST_INTERVAL, greatest=_GREATEST_INTERVAL
+        )
     if any(not abs(value) * control.length_unit <= MAX_POSITION for value in values):
-        return "a number of PO[] that no machine has"
-    return ""
+        return Wording("NC322", "number_of_no_machine")
+    return None

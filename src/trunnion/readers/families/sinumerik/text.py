@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.program.source_text import SourceText
 
 # No two runs of blanks follow each other: matching a line of blanks would take quadratic time.
@@ -72,7 +73,7 @@ class SinumerikText(SourceText):
         try:
             return self._jump_targets.partners[line]
         except KeyError:
-            raise self.problem(line, "has a control word that begins or ends nothing", code="NC142") from None
+            raise self.problem(line, Wording("NC142", "stray_control_word")) from None
 
     def _match_structures(self) -> dict[int, tuple[int, int]]:
         partners: dict[int, tuple[int, int]] = {}
@@ -85,11 +86,11 @@ class SinumerikText(SourceText):
                 continue
             if word == "ELSE":
                 if not open_ or open_[-1][0] != "IF" or open_[-1][2]:
-                    raise self.problem(line, "has an ELSE without its IF", code="NC142")
+                    raise self.problem(line, Wording("NC142", "without_if", word="ELSE"))
                 open_[-1] = ("IF", open_[-1][1], line)
             elif word in _ENDS:
                 if not open_ or open_[-1][0] != _ENDS[word]:
-                    raise self.problem(line, f"has {word} without its {_ENDS[word]}", code="NC142")
+                    raise self.problem(line, Wording("NC142", "without_word", word=word, beginning=_ENDS[word]))
                 _, begin, middle = open_.pop()
                 partners[begin] = (middle, line)
                 partners[line] = (0, begin)
@@ -98,9 +99,9 @@ class SinumerikText(SourceText):
             else:
                 open_.append((word, line, 0))
                 if len(open_) > MAX_NESTING:
-                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels", code="NC141")
+                    raise self.problem(line, Wording("NC141", "structures_too_deep", most=MAX_NESTING))
         if open_:
-            raise self.problem(open_[-1][1], f"begins {open_[-1][0]}, which never ends", code="NC142")
+            raise self.problem(open_[-1][1], Wording("NC142", "never_ends", word=open_[-1][0]))
         return partners
 
 

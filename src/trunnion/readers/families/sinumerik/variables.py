@@ -3,6 +3,7 @@
 import math
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, Value, whole
 from trunnion.readers.families.sinumerik.words import CONSTANTS
 
@@ -48,7 +49,7 @@ class Variables:
     def define(self, kind: str, name: str, value: Value | None = None, *, place: tuple[int, int] = (0, 0)) -> None:
         """DEF: define a variable of this program, once; a jump may lead to the same place, line and word, again."""
         if self._places.setdefault(name, place) != place:
-            raise ExpressionError(f"{name} is defined twice", code="NC223")
+            raise ExpressionError(Wording("NC223", "defined_twice", name=name))
         self._types[name] = kind
         self._local[name] = {}
         self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
@@ -68,7 +69,7 @@ class Variables:
             self._check_index(number)
         kind = self._types.get(name)
         if kind in ("INT", "BOOL", "CHAR", "REAL") and isinstance(value, str) and kind != "CHAR":
-            raise ExpressionError(f"{name} takes a number, not a text")
+            raise ExpressionError(Wording("NC210", "takes_number_not_text", name=name))
         if kind == "INT" and isinstance(value, float):
             value = float(whole(math.copysign(math.floor(abs(value) + 0.5), value)))
         if kind == "BOOL" and isinstance(value, float):
@@ -87,7 +88,7 @@ class Variables:
         """Count variables exactly; called only when there may be too many."""
         count = sum(map(len, self._local.values())) + sum(map(len, self._global.values()))
         if count > MAX_VARIABLES // 2:
-            raise ExpressionError(f"the program has more than {MAX_VARIABLES // 2} variables")
+            raise ExpressionError(Wording("NC210", "too_many_variables", most=MAX_VARIABLES // 2))
         self._assignment_count[0] = count
 
     def variable(self, name: str, index: tuple[int, ...]) -> Value:
@@ -101,10 +102,10 @@ class Variables:
         if name in CONSTANTS and not index:
             return float(CONSTANTS[name])
         if name.startswith("$"):
-            raise ExpressionError(f"{name} is a system variable, which only the control knows", code="NC222")
-        raise ExpressionError(f"{name} has no value", code="NC223")
+            raise ExpressionError(Wording("NC222", "system_variable", name=name))
+        raise ExpressionError(Wording("NC223", "no_value", name=name))
 
     @staticmethod
     def _check_index(number: int) -> None:
         if not 0 <= number <= MAX_NUMBER:
-            raise ExpressionError(f"{number} is not from 0 to {MAX_NUMBER}", code="NC215")
+            raise ExpressionError(Wording("NC215", "index_out_of_range", number=number, most=MAX_NUMBER))

@@ -1,0 +1,282 @@
+"""Arguments of the library's functions by their names, as the commands declare them; and what is taken of them.
+
+A test holds names and types to the declarations in ``jobs.registry``: a new option is one line here, beside its
+declaration. Functions say in their docstrings what each means; here it stands under the names of groups.
+"""
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, TypeVar, cast
+
+from trunnion.errors import InputError, argument_problem
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.registry import JOBS
+from trunnion.jobs.result_output import OutputLike
+from trunnion.messages import Wording
+from trunnion.options.kinds import Setting
+from trunnion.wording import nearest_word
+
+if TYPE_CHECKING:  # modules that few of the functions need
+    from trunnion.model.recording import Recording
+    from trunnion.simulation.meshes import TriangleMesh
+    from trunnion.simulation.tools.profile import ToolShape
+
+_Given = TypeVar("_Given")
+
+
+class ReadingArguments(TypedDict, total=False):
+    """How CL files are read."""
+
+    units: Literal["mm", "inch"] | None
+    dialect: str | None
+    strict: bool
+
+
+class SetUpArguments(TypedDict, total=False):
+    """Where the part sits, and how long the tool is."""
+
+    zero: str | Iterable[float] | None
+    tool_length: str | float | None
+
+
+class ClampingArguments(TypedDict, total=False):
+    """How the part is clamped, degrees."""
+
+    turn: float | None
+    tilt: float | None
+
+
+class BodyArguments(TypedDict, total=False):
+    """Stock, part, fixtures and tools."""
+
+    stock: "str | Path | TriangleMesh | None"
+    part: "str | Path | TriangleMesh | None"
+    fixtures: "str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh]"
+    tools: "str | ToolShape | Iterable[str | ToolShape]"
+    libraries: Sequence[FilePath]
+    unit: Literal["mm", "inch"] | None
+
+
+class CuttingArguments(TypedDict, total=False):
+    """How fine a simulation is, mm."""
+
+    near: float | None
+    cell: float | None
+    accuracy: float | None
+
+
+class PostArguments(ReadingArguments, SetUpArguments, ClampingArguments, total=False):
+    """Arguments of ``trunnion.post``."""
+
+    output: OutputLike
+    settings: Settings | None
+    subprograms: Sequence[FilePath]
+    hooks: Sequence[FilePath]
+    feed: Literal["programmed", "fastest"] | None
+    max_tilt: float | None
+    force: bool
+    explain: bool
+    report: FilePath | None
+    sheet: FilePath | None
+    listing: FilePath | None
+    manifest: FilePath | None
+    columns: bool
+    simulation: Mapping[str, Any] | FilePath | None
+
+
+class ConvertArguments(ReadingArguments, SetUpArguments, total=False):
+    """Arguments of ``trunnion.convert``."""
+
+    machine: MachineLike | None
+    to_machine: MachineLike | None
+    to_cl: bool
+    to_dialect: str | None
+    output: OutputLike
+    subprograms: Sequence[FilePath]
+    settings: Settings | None
+    force: bool
+
+
+class VerifyArguments(ClampingArguments, SetUpArguments, total=False):
+    """Arguments of ``trunnion.verify``."""
+
+    cl: ToolpathLike | Iterable[ToolpathLike]
+    subprograms: Sequence[FilePath]
+    hooks: Sequence[FilePath]
+    tolerance: float
+    span: float | None
+    span_tip: float | None
+    tool: str | int
+    work_offset: str | None
+    edge: int | str | None
+    units: Literal["mm", "inch"] | None
+    dialect: str | None
+    frame: Literal["first", "absolute"]
+    feed: Literal["programmed", "fastest"]
+    feed_limit: float | None
+    recorded: "FilePath | Recording | None"
+    recorded_tolerance: float
+    columns: bool
+
+
+class DiffArguments(TypedDict, total=False):
+    """Arguments of ``trunnion.diff``."""
+
+    to_machine: MachineLike | None
+    subprograms: Sequence[FilePath]
+    to_subprograms: Sequence[FilePath]
+    tolerance: float
+    path: bool
+
+
+class SimulateArguments(BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, total=False):
+    """Arguments of ``trunnion.simulate``."""
+
+    machine: MachineLike | None
+    cl: ToolpathLike | Iterable[ToolpathLike]
+    subprograms: Sequence[FilePath]
+    stop_at: Literal["none", "first"] | None
+    until: str | int | None
+    threads: int | None
+
+
+class PlaceArguments(BodyArguments, SetUpArguments, total=False):
+    """Arguments of ``trunnion.place``."""
+
+    units: Literal["mm", "inch"] | None
+    dialect: str | None
+    goal: str
+    turns: float | Sequence[float] | None
+    tilts: float | Sequence[float]
+    settings: Settings | None
+    subprograms: Sequence[FilePath]
+
+
+class ReachArguments(SetUpArguments, total=False):
+    """Arguments of ``trunnion.reach``."""
+
+    cl: ToolpathLike | Iterable[ToolpathLike]
+    part: FilePath | None
+    lean: float
+    step: float
+
+
+class FitArguments(SetUpArguments, total=False):
+    """Arguments of ``trunnion.fit``."""
+
+    machines: str | Iterable[MachineLike]
+    machine: MachineLike | None
+    subprograms: Sequence[FilePath]
+    turns: float | Sequence[float] | None
+
+
+class SensitivityArguments(SetUpArguments, total=False):
+    """Arguments of ``trunnion.sensitivity``."""
+
+    subprograms: Sequence[FilePath]
+    length: float
+    angle: float
+    zero_at: str | Mapping[str, float] | None
+
+
+class ViewArguments(BodyArguments, CuttingArguments, SetUpArguments, total=False):
+    """Arguments of ``trunnion.write_view``."""
+
+    machine: MachineLike | None
+    against: FilePath | Sequence[FilePath] | None
+    against_machine: MachineLike | None
+    setup: str | None
+    units: Literal["mm", "inch"] | None
+    dialect: str | None
+    settings: Settings | None
+    cl: ToolpathLike | Iterable[ToolpathLike]
+    subprograms: Sequence[FilePath]
+
+
+class LiveArguments(TypedDict, total=False):
+    """How a machine is connected to."""
+
+    nodes: FilePath
+    rate: float
+    secure: bool
+    trust: str
+    user: str
+    password: str
+
+
+class RecordArguments(LiveArguments, total=False):
+    """Arguments of ``record``."""
+
+    seconds: float | None
+    ready: Callable[[tuple[str, ...]], None] | None
+
+
+class ImpellerArguments(TypedDict, total=False):
+    """Arguments of ``trunnion.cut_impeller``."""
+
+    operations: Sequence[str]
+    settings: Settings | None
+    cell: float | None
+
+
+#: What only the library has, and what it is where it is not given.
+LIBRARY: Final[Mapping[str, Any]] = MappingProxyType(
+    {
+        "columns": True, "simulation": None, "threads": None, "ready": None, "password": "", "weights": None,
+        "tls": None, "tiles": None, "recorded": None,
+    }
+)  # fmt: skip
+
+#: Names of earlier versions, which are still taken with a warning: name -> the present one.
+EARLIER: Final[Mapping[str, str]] = MappingProxyType({})
+
+
+def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
+    """Return all arguments of a function: those that are given, and of the others what the command has by default.
+
+    Options that stand for settings are among the settings.
+
+    Raises
+    ------
+    TypeError
+        For a name that the function does not have.
+    InputError
+        If something is given as an argument and as a setting.
+    """
+    known = kind.__annotations__
+    stated = _present_names(cast(Mapping[str, Any], given), known, command)
+    options = {each.name: each for each in JOBS[command].options if each.name in known}
+    found = {name: LIBRARY.get(name) for name in known} | {name: each.empty for name, each in options.items()}
+    found |= {name: None for name, each in options.items() if isinstance(each.kind, Setting) or each.setting}
+    found |= stated
+    for name, option in options.items():
+        if option.setting and found[name] is not None:
+            found["settings"] = _with_setting(found["settings"], option.setting, name, found[name])
+    return cast(_Given, found)
+
+
+def _present_names(given: Mapping[str, Any], known: Iterable[str], command: str) -> dict[str, Any]:
+    """Return arguments under their present names."""
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        present = name if name in known else EARLIER.get(name, name)
+        if present not in known:
+            near = nearest_word(name, known)
+            raise TypeError(f"{command} has no argument {name!r}{f'; did you mean {near!r}?' if near else ''}")
+        if present in given and present != name:
+            raise TypeError(f"{name!r} is now called {present!r}, and both are given")
+        if present != name:
+            what = f"the argument {name!r} is now called {present!r}; the next version no longer knows {name!r}"
+            warnings.warn(what, FutureWarning, stacklevel=4)
+        found[present] = value
+    return found
+
+
+def _with_setting(settings: Settings | None, key: str, name: str, value: Any) -> Settings:
+    """Return settings with one that is given as an argument."""
+    if settings is not None and key in settings:
+        raise InputError(argument_problem(name, Wording("ARG130", "setting_too", name=key)))
+    return {**(settings or {}), key: value}
