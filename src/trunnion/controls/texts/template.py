@@ -16,6 +16,7 @@ from trunnion.controls.texts.value_faults import value_fault
 from trunnion.controls.texts.values import ABSENT, MOST_CHARACTERS, Fault, Length, Rendering, as_number
 from trunnion.controls.words import WordRangeError
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 #: What Python says of an expression whose values do not fit.
 _FAULTS: Final = (jinja2.TemplateError, TypeError, ValueError, ArithmeticError, RecursionError, LookupError)
@@ -24,8 +25,6 @@ _OPTIONAL: Final = re.compile(f"{tree.OPENING}([^{tree.OPENING}{tree.CLOSING}]*)
 _TAG: Final = re.compile(r"\{%.*?%\}|\{#.*?#\}|\{\{.*?\}\}", re.DOTALL)
 _STATEMENT_LINE: Final = re.compile(r"\{[%#]")
 _PRINTED: Final = re.compile(r"\{\{-?\s*([A-Za-z_]\w*)\s*(?:\|\s*([A-Za-z_]\w*)\s*)?-?\}\}")
-
-_NOT_UNDERSTOOD: Final = "docs/templates.md has the language"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,7 +119,7 @@ class TextTemplate(Template):
                 pieces.append(piece)
                 left -= len(piece)
                 if left < 0:
-                    raise Fault("writes too much", f"write at most {MOST_CHARACTERS} letters")
+                    raise Fault("writes_too_much", most=MOST_CHARACTERS)
         except (Fault, WordRangeError, *_FAULTS) as error:
             self._refuse(error)
         text = "".join(pieces)
@@ -136,10 +135,10 @@ class TextTemplate(Template):
         file, at = self.place_of(max(line, 1) - 1)
         fault = error if isinstance(error, Fault) else value_fault(error)
         if isinstance(error, WordRangeError):
-            fault = Fault(
-                f"prints a {error.what}", "correct the value; the control's definition has the limits of formats"
-            )
-        raise InputError(Problem(file, at, f"template {self.name} {fault.what}", fault.cure, code="DEF580")) from None
+            fault = Fault("prints_beyond_format", fault=error.wording)
+        raise InputError(
+            Problem(file, at, Wording("DEF580", "template_fails", template=self.name, fault=fault.wording))
+        ) from None
 
 
 def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTemplate, Fault | None]:
@@ -161,8 +160,7 @@ def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTempl
     except jinja2.TemplateSyntaxError as error:
         return TextTemplate(name, lines, file, line), syntax_fault("\n".join(lines), error.lineno)
     except (RecursionError, SyntaxError, ValueError, ArithmeticError, MemoryError):
-        what = "has too much within each other, or a number that is none"
-        return TextTemplate(name, lines, file, line), Fault(what, _NOT_UNDERSTOOD)
+        return TextTemplate(name, lines, file, line), Fault("not_compiled")
     return TextTemplate(name, lines, file, line, found, attributes, code, cost), None
 
 

@@ -57,5 +57,5 @@ def _of_kind(run: Run, code: str, noted: Sequence[Diagnostic]) -> list[Problem]:
     ]
     if more := len(noted) - len(told):
         line = noted[_MOST_TOLD].line
-        told.append(Problem(run.files[0], line, Wording(code, "more", count=more), severity=Severity.WARNING))
+        told.append(Problem(run.files[0], line, Wording(code, "more_noted", count=more), severity=Severity.WARNING))
     return told
