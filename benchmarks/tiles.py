@@ -11,7 +11,7 @@ import json
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -75,7 +75,7 @@ def same(one: SimulationResult, other: SimulationResult) -> bool:
     )
 
 
-def divided(program: Path, given: Mapping[str, Any], count: int, whole: SimulationResult, seconds: float) -> bool:
+def divided(program: Path, given: Any, count: int, whole: SimulationResult, seconds: float) -> bool:
     """Simulate in shares, and print what it took; whether the result is that of the whole."""
     shares = [measured(partial(simulate_share, program, Share(k, count), given, SILENT)) for k in range(count)]
     contents, used = [content for content, _ in shares], [own for _, own in shares]

@@ -79,7 +79,7 @@ if TYPE_CHECKING:
     from trunnion.jobs.impeller.curves import fit_curve as fit_curve
     from trunnion.jobs.impeller.curves import read_points as read_points
     from trunnion.jobs.impeller.curves import write_curve_picture as write_curve_picture
-    from trunnion.jobs.impeller.cutting import ImpellerCut as ImpellerCut
+    from trunnion.jobs.impeller.cut import ImpellerCut as ImpellerCut
     from trunnion.jobs.impeller.cutting import cut_impeller as cut_impeller
     from trunnion.jobs.impeller.models import load_impeller as load_impeller
     from trunnion.jobs.impeller.models import model_impeller as model_impeller
@@ -132,7 +132,7 @@ _MODULES: Final = {
     "Decision": "model.motion",
     "Explanation": "explanations",
     "Impeller": "impeller.impeller",
-    "ImpellerCut": "jobs.impeller.cutting",
+    "ImpellerCut": "jobs.impeller.cut",
     "ImpellerModel": "impeller.model",
     "ImpellerSolid": "impeller.solid.making",
     "InputError": "errors",

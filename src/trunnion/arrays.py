@@ -1,9 +1,9 @@
-"""Names of the array types in signatures.
+"""Names of the array types in signatures, and arrays that stay as they are.
 
 Lines are line numbers, codes are members of an ``IntEnum``.
 """
 
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,3 +22,10 @@ Ints2: TypeAlias = Annotated[Ints, 2]
 Ints3: TypeAlias = Annotated[Ints, 3]
 Codes2: TypeAlias = Annotated[Codes, 2]
 Bytes2: TypeAlias = Annotated[Bytes, 2]
+
+
+def make_read_only(*arrays: NDArray[Any] | None) -> None:
+    """Let nothing write into arrays; None stands for one that is not there."""
+    for array in arrays:
+        if array is not None:
+            array.setflags(write=False)

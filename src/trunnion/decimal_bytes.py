@@ -35,27 +35,15 @@ def parse_decimal(text: Bytes, at: int, comma: bool = False) -> tuple[int, int, 
 
     No bounds are checked: the text must end in a byte that is neither digit nor point, such as a line feed.
 
-    Parameters
-    ----------
-    text : (m,) uint8
-        The bytes.
-    at : uint64
-        Where the number begins (see ``trunnion.jit.unsigned``).
-    comma
-        Whether a comma may stand in place of the point.
+    text   (m,) uint8: the bytes
+    at     uint64: where the number begins (see ``trunnion.jit.unsigned``)
+    comma  whether a comma may stand in place of the point
 
-    Returns
-    -------
-    mantissa : int64
-        All digits as one whole number; meaningless if there are more than ``MAX_DIGITS``.
-    digits : int64
-        Number of digits; 0 if there is no number.
-    decimals : int64
-        Number of digits after the point; the value is ``mantissa / POWERS_OF_TEN[decimals]``.
-    point : bool
-        Whether there is a point.
-    at : uint64
-        The byte after the number.
+    mantissa  int64: All digits as one whole number; meaningless if there are more than ``MAX_DIGITS``
+    digits    int64: Number of digits; 0 if there is no number
+    decimals  int64: Number of digits after the point; the value is ``mantissa / POWERS_OF_TEN[decimals]``
+    point     bool: Whether there is a point
+    at        uint64: The byte after the number
     """
     mantissa = 0
     first = at

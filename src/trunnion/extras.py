@@ -10,10 +10,7 @@ from trunnion.messages import Wording
 def import_extra(module: str, extra: str) -> Any:
     """Import a module of an optional extra.
 
-    Raises
-    ------
-    InputError
-        If it is not installed, with the command that installs it.
+    Raises ``InputError`` if it is not installed, with the command that installs it.
     """
     try:
         return importlib.import_module(module)

@@ -262,7 +262,8 @@ def test_where_folders_are_on_other_disks_files_are_copied_beside_their_places(
     replace = Path.replace
 
     def spy(self: Path, target: Path) -> Path:
-        moved.append((self, Path(target)))
+        if ".trunnion" not in Path(target).name:
+            moved.append((self, Path(target)))
         return replace(self, target)
 
     monkeypatch.setattr(Path, "replace", spy)
@@ -272,7 +273,7 @@ def test_where_folders_are_on_other_disks_files_are_copied_beside_their_places(
         with atomic_output(str(tmp_path / "p.mpf"), papers=[report]) as files:
             fill(files, b"new", "A.SPF")
             files.add_paper(report).write(b"new")
-    assert len(moved) == 7
+    assert len(moved) == 6
     for source, target in moved:
         assert source.parent in target.parents or target.parent in source.parents
 
@@ -309,7 +310,7 @@ def write_interrupted(line: int, folder: Path) -> bool:
     for name in NAMES[1:]:
         (folder / name).write_bytes(b"old")
     report = resolve_output(folder / "reports" / "r.html")
-    modules = ("output", "hidden_folders", "interrupts", "streams")
+    modules = ("output", "hidden_folders", "interrupts", "journal", "locks", "moves", "streams")
     here = Path(trunnion.files.output.__file__)
     interrupting = Interrupting(line, tuple(str(here.with_name(f"{name}.py")) for name in modules))
     tracer = sys.gettrace()

@@ -5,7 +5,9 @@ import inspect
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
@@ -36,11 +38,21 @@ def test_every_public_name_is_there_and_documented() -> None:
     ]  # fmt: skip
 
 
+def arguments_of(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
+    """The arguments of a function, those of its ``TypedDict`` among them."""
+    for each in signature.parameters.values():
+        if each.kind is not inspect.Parameter.VAR_KEYWORD:
+            yield each
+            continue
+        for name, kind in get_args(each.annotation)[0].__annotations__.items():
+            yield inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind)
+
+
 def undocumented(name: str) -> list[str]:
     """What of a function has no type or is not in its docstring."""
     function = getattr(trunnion, name)
     doc, signature = inspect.getdoc(function) or "", inspect.signature(function)
-    arguments, returned = signature.parameters.values(), signature.return_annotation
+    arguments, returned = list(arguments_of(signature)), signature.return_annotation
     sections = doc.partition("Parameters\n----------\n")[2].partition("\n\n")[0]
     described = {
         word.strip()

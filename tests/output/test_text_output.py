@@ -9,7 +9,7 @@ import trunnion
 from tests.support.posting import FOOT, HEAD
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.model.toolpath import Tool
-from trunnion.output.template_values import tool_text
+from trunnion.output.tool_calls import tool_text
 from trunnion.transliteration import spelled
 
 MACHINES = ["yl569", "dmu65", "matsuura_mx330", "xyzac_trt", "hs664rt"]

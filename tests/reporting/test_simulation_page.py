@@ -3,24 +3,25 @@
 import re
 from dataclasses import replace
 
-from trunnion.reporting.simulation_content import (
-    DeviationBin,
-    FindingRow,
-    OperationRow,
-    SimulationContent,
-    StockState,
-)
+import numpy as np
+
+from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
 from trunnion.reporting.simulation_page import render_simulation_page
+from trunnion.simulation.setup_findings import BlockRemoval, NearMiss, SimulatedOperation, SimulationFinding
 
 EVIL = '<script>alert("&")</script>'
-FINDING = FindingRow("gouge", EVIL, EVIL, EVIL, 12.0, (1.0, -2.0, 3.0), 0.25)
+FINDING = SimulationFinding(
+    "gouge", (EVIL, EVIL), EVIL, 3, 30, 4, 40, 5, 12.0, 0.25, (1.0, -2.0, 3.0), cl_file=EVIL, setup=EVIL
+)
+NEAR = NearMiss((EVIL, EVIL), EVIL, 3, 30, 3, 30, 12.0, 0.25, (1.0, -2.0, 3.0), EVIL)
+REMOVAL = BlockRemoval(np.zeros(0, np.int32), np.zeros(0), np.zeros(0))
 CONTENT = SimulationContent(
     title=EVIL,
     passed=False,
     facts=(("Machine", EVIL),),
     findings=(FINDING,) * 250,
-    near=(replace(FINDING, what="near"),),
-    operations=(OperationRow(EVIL, EVIL, 60.0, 0.5, 30.0, 4.0, 1),),
+    near=(NEAR,),
+    operations=(SimulatedOperation(EVIL, EVIL, 3, 4, 60.0, 0.5, 30.0, 4.0, 1, REMOVAL),),
     states=(
         StockState(
             EVIL, 60.0, (0.5, 2.0), (0.25, 1.0),

@@ -13,7 +13,7 @@ from trunnion.geometry.fitting import CurveFit
 from trunnion.jobs.capability.fitting import MachineFit
 from trunnion.jobs.convert.converting import ConvertResult
 from trunnion.jobs.describe.cl_files import ClDescription
-from trunnion.jobs.impeller.cutting import ImpellerCut
+from trunnion.jobs.impeller.cut import ImpellerCut
 from trunnion.jobs.post.papers.manifests import ManifestCheck
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.simulate.result import SimulationResult

@@ -67,12 +67,14 @@ def write_divided(folder: Path) -> tuple[Path, dict[str, Any]]:
 
 def shares_of(nc: Path, given: dict[str, Any], count: int) -> list[bytes]:
     """All shares of a simulation."""
-    return [simulate_share(nc, Share(k, count), {**given, "threads": 1}, SILENT) for k in range(count)]
+    own: Any = {**given, "threads": 1}
+    return [simulate_share(nc, Share(k, count), own, SILENT) for k in range(count)]
 
 
 def joined(nc: Path, given: dict[str, Any], shares: Sequence[bytes]) -> trunnion.SimulationResult:
     """The simulation of its shares."""
-    return join_shares(nc, shares, {**given, "threads": 1}, SILENT)
+    own: Any = {**given, "threads": 1}
+    return join_shares(nc, shares, own, SILENT)
 
 
 def facts(found: trunnion.SimulationResult) -> dict[str, object]:

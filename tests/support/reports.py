@@ -11,7 +11,8 @@ from tests.support.locations import YL569
 from trunnion.arrays import Floats, Lines
 from trunnion.machines import Machine, load_machine
 from trunnion.model.columns import RampColumn, StepColumn
-from trunnion.model.run import ModalState, Run
+from trunnion.model.run import Run
+from trunnion.model.run_columns import ModalState
 from trunnion.model.toolpath import Arcs
 from trunnion.readers import run_program
 from trunnion.verification.results import Check, Place, Verification

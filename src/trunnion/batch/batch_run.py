@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, TypedDict, Unpack
 
 from trunnion.batch.cluster import DaskWorkers, Tls
 from trunnion.batch.jobs import Batch, folder_batch
@@ -15,39 +15,44 @@ from trunnion.batch.summary import check_summary, write_summary
 from trunnion.batch.worker_task import Action
 from trunnion.batch.workers import Workers
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.jobs.arguments import taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.messages import Wording
 
+#: Arguments about the run as a whole; files of jobs state all others.
+_OF_RUN: Final = ("results", "workers", "timeout", "scheduler", "wait", "tls", "summary")
+
 #: Workers of one computer.
 _MOST_WORKERS: Final = 1024
 
 
-def run_batch(
-    jobs: FilePath,
-    *,
-    results: FilePath | None = None,
-    action: Literal["post", "convert", "verify", "simulate"] | None = None,
-    machine: FilePath | None = None,
-    files: Sequence[str] = (),
-    settings: Settings | None = None,
-    to_machine: FilePath | None = None,
-    to_cl: bool = False,
-    cl: Sequence[str] = (),
-    stock: FilePath | None = None,
-    tools: Sequence[str] = (),
-    report: Literal["html", "json"] | None = None,
-    tiles: int | None = None,
-    workers: int | None = None,
-    timeout: float | None = None,
-    scheduler: str | None = None,
-    wait: float | None = None,
-    tls: Tls | None = None,
-    summary: FilePath | None = None,
-    observer: Observer = SILENT,
-) -> BatchResult:
+class BatchArguments(TypedDict, total=False):
+    """Arguments of ``trunnion.batch.run_batch``."""
+
+    results: FilePath | None
+    action: Literal["post", "convert", "verify", "simulate"] | None
+    machine: FilePath | None
+    files: Sequence[str]
+    settings: Settings | None
+    to_machine: FilePath | None
+    to_cl: bool
+    cl: Sequence[str]
+    stock: FilePath | None
+    tools: Sequence[str]
+    report: Literal["html", "json"] | None
+    tiles: int | None
+    workers: int | None
+    timeout: float | None
+    scheduler: str | None
+    wait: float | None
+    tls: Tls | None
+    summary: FilePath | None
+
+
+def run_batch(jobs: FilePath, *, observer: Observer = SILENT, **given: Unpack[BatchArguments]) -> BatchResult:
     """Post, convert, verify or simulate many files; what is done already is not done again.
 
     Parameters
@@ -117,14 +122,13 @@ def run_batch(
     """
     check_observer(observer)
     path = check_path("jobs", jobs)
-    given: dict[str, Any] = {
-        "action": action, "machine": machine, "files": files, "settings": settings, "to_machine": to_machine,
-        "to_cl": to_cl, "cl": cl, "stock": stock, "tools": tools, "report": report, "tiles": tiles,
-    }  # fmt: skip
+    found = taken(BatchArguments, "batch", given)
+    stated = {name: value for name, value in found.items() if name not in _OF_RUN}
+    results, summary = found["results"], found["summary"]
     if summary is not None:
         check_summary(summary)
-    team = _team(workers, timeout, scheduler, wait, tls, observer)
-    batch = _batch(path, given, results)
+    team = _team(found, observer)
+    batch = _batch(path, stated, results)
     place = results if results is not None else batch.results
     if place is None:
         raise InputError(argument_problem("results", Wording("ARG130", "missing")))
@@ -153,17 +157,14 @@ def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Ba
 
 
 def _team(
-    workers: int | None,
-    timeout: float | None,
-    scheduler: str | None,
-    wait: float | None,
-    tls: Tls | None,
-    observer: Observer,
+    given: BatchArguments, observer: Observer
 ) -> Callable[[Store], Callable[[int], AbstractContextManager[Workers]]]:
     """Return what makes the workers once the place of results is known."""
+    workers, timeout, scheduler = given["workers"], given["timeout"], given["scheduler"]
+    wait, tls = given["wait"], given["tls"]
     if scheduler is None:
-        for name, given in (("tls", tls), ("wait", wait)):
-            if given is not None:
+        for name, value in (("tls", tls), ("wait", wait)):
+            if value is not None:
                 raise InputError(argument_problem(name, Wording("ARG130", "scheduler")))
         if workers is not None and not 1 <= workers <= _MOST_WORKERS:
             raise InputError(
@@ -174,8 +175,8 @@ def _team(
         if timeout is not None and not timeout > 0.0:
             raise InputError(argument_problem("timeout", Wording("ARG140", "is_or_give_seconds", timeout=timeout)))
         return lambda _: local_workers(workers, timeout)
-    for name, value in (("workers", workers), ("timeout", timeout)):
-        if value is not None:
+    for name, local in (("workers", workers), ("timeout", timeout)):
+        if local is not None:
             raise InputError(argument_problem(name, Wording("ARG130", "processes_computer_workers")))
     if wait is not None and not wait > 0.0:
         raise InputError(argument_problem("wait", Wording("ARG140", "is_or_give", wait=wait)))

@@ -28,6 +28,8 @@ from trunnion.jobs.post.post_job import prepare
 from trunnion.jobs.project.paths import is_file
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.options.groups import BODIES
+from trunnion.options.kinds import FileIn
 
 #: Files that a folder may have, all and those of a batch: a record of each is held while it runs.
 MOST_FILES: Final = 1_000_000
@@ -235,7 +237,7 @@ def judged(
         if not said.get("stock"):
             raise InputError(argument_problem("stock", Wording("ARG130", "missing_or_state")))
         check_simulation(said)
-    for name in ("stock", "part", "fixtures", "libraries"):
+    for name in (each.name for each in BODIES if isinstance(each.kind, FileIn)):
         if value := said.get(name):
             several = [_add_file(each, folder, shared) for each in ([value] if isinstance(value, str) else value)]
             said[name] = several[0] if isinstance(value, str) else several

@@ -33,9 +33,9 @@ from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import output_group
 from trunnion.jobs.convert.converting import convert_beside
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import ProofFailedError
-from trunnion.jobs.result_output import paper_files
+from trunnion.jobs.registry import JOBS
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.jobs.simulate.simulating import simulate
@@ -43,11 +43,14 @@ from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
 from trunnion.messages import Wording, foreign
+from trunnion.options.kinds import FileIn
 from trunnion.simulation.cutting.shares import DamagedShareError, Share
 from trunnion.verification import Check, Verification
 
 #: Arguments that may name files.
-_NAMING: Final = ("machine", "to_machine", "cl", "subprograms", "stock", "part", "fixtures", "libraries")
+_NAMING: Final = frozenset(
+    option.name for action in Action for option in JOBS[action].flags if isinstance(option.kind, FileIn)
+)
 
 
 #: The folder of what comes of a task, within its own.
@@ -184,15 +187,12 @@ def _post(
     task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
 ) -> _Done:
     output = result / task.result
-    report = result / task.report if task.report else None
+    given: Any = {
+        **arguments, "output": output, "report": result / task.report if task.report else None, "columns": True,
+    }  # fmt: skip
+    machine = _machine(given.pop("machine"))
     with output_group(remembers=False) as group:
-        found = post_beside(
-            str(file), (), machine=_machine(arguments["machine"]), output=output,
-            settings=arguments.get("settings"), strict=arguments.get("strict", False), force=False, explain=False,
-            papers=paper_files(report, None, None, None, output), columns=True,
-            subprograms=arguments.get("subprograms", ()), turn=arguments.get("turn"), tilt=arguments.get("tilt"),
-            observer=observer, group=group,
-        )  # fmt: skip
+        found = post_beside(str(file), machine, given, Work(group=group), observer)
     if found.verification is not None:
         _add_proof(figures, found.verification, found.toolpaths)
     return Status.PASSED if found.passed else Status.FAILED, found.problems
@@ -242,7 +242,7 @@ def _failure(file: str, check: Check) -> Problem:
 def _simulate(
     task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
 ) -> _Done:
-    given = {**arguments, "machine": _machine(arguments["machine"]), "threads": 1}
+    given: Any = {**arguments, "machine": _machine(arguments["machine"]), "threads": 1}
     if task.share is not None:
         (result / SHARE_FILE).write_bytes(simulate_share(file, Share(*task.share), given, observer))
         return Status.PASSED, ()

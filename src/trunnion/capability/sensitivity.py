@@ -6,7 +6,7 @@ Units:  mm, seconds of arc, degrees; workpiece frame.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, ClassVar
@@ -108,19 +108,30 @@ class Sensitivity:
 
 
 def program_sensitivity(
-    run: Run, zero_at: Mapping[str, float] | None, length: float, angle: float, remarks: tuple[Problem, ...] = ()
+    run: Run,
+    zero_at: Mapping[str, float] | None,
+    length: float,
+    angle: float,
+    remarks: tuple[Problem, ...] = (),
+    advance: Callable[[int], None] = lambda motions: None,
 ) -> Sensitivity:
-    """Judge a program; ``zero_at`` as in ``Sensitivity``. There are no numbers where nothing moves at feed."""
+    """Judge a program; ``zero_at`` as in ``Sensitivity``. There are no numbers where nothing moves at feed.
+
+    ``advance`` is called now and then with how many further motions are judged.
+    """
     machine = run.machine
     amounts = in_radians(length, angle)
     joints = None if zero_at is None else joints_at_zero(machine, zero_at)
     totals: dict[GeometryNumber, _Total] = {}
-    count = motions = 0
+    count = motions = done = 0
     for samples in feed_samples(run):
         count += len(samples.row)
         motions += int(np.count_nonzero(np.diff(samples.row, prepend=-1)))
         for found in tip_errors(machine, samples.joints, joints, amounts):
             totals.setdefault(found.number, _Total(found.number)).add(found, samples.row)
+        if len(samples.row):
+            advance(int(samples.row[-1]) + 1 - done)
+            done = int(samples.row[-1]) + 1
     numbers = [total.result(run, count, (length, angle)) for total in totals.values()] if count else []
     ranked = tuple(sorted(numbers, key=lambda each: -each.worst.largest))
     return Sensitivity(run, motions, ranked, idle_numbers(machine), zero_at, remarks, length, angle)

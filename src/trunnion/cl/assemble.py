@@ -35,18 +35,11 @@ def assemble_operation(
 ) -> Operation:
     """Return the operation, in mm.
 
-    Parameters
-    ----------
-    builder
-        What its statements said.
-    columns
-        Columns of the file; rows ``builder.first:builder.stop`` belong to the operation, tip in mm.
-    unit
-        Length unit of the file, mm.
-    modal_axis : (3,) float64
-        The last tool axis of the operation before; on return that of this one.
-    diagnostics
-        Takes the errors and remarks.
+    builder      what its statements said
+    columns      columns of the file; rows ``builder.first:builder.stop`` belong to the operation, tip in mm
+    unit         length unit of the file, mm
+    modal_axis   (3,) float64: the last tool axis of the operation before; on return that of this one
+    diagnostics  takes the errors and remarks
     """
     rows = slice(builder.first, builder.stop)
     n = builder.stop - builder.first

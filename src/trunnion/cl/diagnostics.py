@@ -50,10 +50,7 @@ class Diagnostics:
     def raise_errors(self) -> None:
         """Raise the errors, if there are any.
 
-        Raises
-        ------
-        InputError
-            With all of them.
+        Raises ``InputError`` with all of them.
         """
         if self._lists[Severity.ERROR]:
             raise InputError(self._listed(Severity.ERROR))

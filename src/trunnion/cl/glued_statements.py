@@ -48,10 +48,7 @@ class GluedStatements:
     def refuse(self, statement: Statement, comments: Iterable[str]) -> None:
         """Refuse a statement in which another one stands, also in one of its ``comments``.
 
-        Raises
-        ------
-        StatementError
-            If one does, or if a comment has a control character.
+        Raises ``StatementError`` if one does, or if a comment has a control character.
         """
         for comment in comments:
             if self._has_commands and comment.lstrip().startswith("->"):

@@ -93,30 +93,17 @@ def read_cl_files(
 ) -> list[Toolpath]:
     """Read a CL file, or all those of an archive in the order of their names.
 
-    Parameters
-    ----------
-    path
-        A plain file, one packed by gzip or bzip2, a ZIP archive, or a binary stream.
-    units
-        Length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says.
-    dialect
-        A key of ``trunnion.cl.dialects.DIALECTS``; None: the content of the file decides.
-    strict
-        Make an unknown statement an error instead of a remark.
-    spline_tolerance
-        How far the points that splines become may leave them between each other, mm; None: as INTOL and OUTTOL say.
-    progress
-        Called from time to time with the number of bytes read.
+    path              A plain file, one packed by gzip or bzip2, a ZIP archive, or a binary stream
+    units             length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says
+    dialect           A key of ``trunnion.cl.dialects.DIALECTS``; None: the content of the file decides
+    strict            make an unknown statement an error instead of a remark
+    spline_tolerance  how far the points that splines become may leave them between each other, mm; None: as INTOL and
+                      OUTTOL say
+    progress          called from time to time with the number of bytes read
 
-    Returns
-    -------
-    list of Toolpath
-        All lengths in mm, in the frame of each operation.
+    list of Toolpath  all lengths in mm, in the frame of each operation
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used, with every problem found.
+    Raises ``InputError`` if a file cannot be used, with every problem found.
     """
     return [
         read_source(

@@ -45,14 +45,9 @@ _SAME_NUMBER: Final = 1e-5
 def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Problem]:
     """Return what reads back otherwise.
 
-    Parameters
-    ----------
-    expected
-        What was written, as its writer prepared it.
-    path
-        The file.
-    dialect
-        In which it is written, and as which it must be recognized.
+    expected  what was written, as its writer prepared it
+    path      the file
+    dialect   in which it is written, and as which it must be recognized
     """
     title = WRITERS[dialect].title
     try:

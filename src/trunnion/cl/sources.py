@@ -108,17 +108,10 @@ def is_cl_file(path: Path) -> bool:
 def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
     """Return the CL files in a file or a stream: several in a ZIP archive, in the order of their names.
 
-    Parameters
-    ----------
-    file
-        A path, or a binary stream, which is read to its end.
-    name
-        What a stream is called in messages.
+    file  A path, or a binary stream, which is read to its end
+    name  what a stream is called in messages
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, is damaged, has no CL file, or is an archive in an archive.
+    Raises ``InputError`` if it cannot be read, is damaged, has no CL file, or is an archive in an archive.
     """
     if isinstance(file, Path):
         unusable = unusable_file(file, "a CL file")

@@ -46,20 +46,12 @@ def with_spline_points(
     """Return the columns with points in place of control points; ``builders`` get their rows, and the splines as
     curves.
 
-    Parameters
-    ----------
-    builders
-        The operations.
-    columns
-        Tip in mm, axis and line of each row.
-    rows
-        How many there are.
-    unit
-        Length unit of the file, mm.
-    tolerance
-        Greatest distance of a spline from the chords of its points, mm; None: by INTOL and OUTTOL.
-    diagnostics
-        Takes splines that cannot be evaluated, and a remark on how many points come of the others.
+    builders     the operations
+    columns      tip in mm, axis and line of each row
+    rows         how many there are
+    unit         length unit of the file, mm
+    tolerance    greatest distance of a spline from the chords of its points, mm; None: by INTOL and OUTTOL
+    diagnostics  takes splines that cannot be evaluated, and a remark on how many points come of the others
     """
     blocks: list[_Block] = []
     finest, poles, total, line = math.inf, 0, 0, 0

@@ -167,10 +167,7 @@ class ReaderState:
     def state_once(self, what: str, value: object) -> None:
         """Note what holds for the whole operation, also for its rows before this line.
 
-        Raises
-        ------
-        StatementError
-            If the operation has stated another value: which of them is meant is unknown.
+        Raises ``StatementError`` if the operation has stated another value: which of them is meant is unknown.
         """
         line, before = self.builder.stated.setdefault(what, (self.line, value))
         if before != value:

@@ -58,10 +58,7 @@ class Statement(NamedTuple):
     def refuse_contradictions(self, *choices: Iterable[str]) -> None:
         """Refuse two different words of one of the ``choices``: which of them is meant is unknown.
 
-        Raises
-        ------
-        StatementError
-            If there are two.
+        Raises ``StatementError`` if there are two.
         """
         given = dict.fromkeys(self.words())
         for choice in map(frozenset, choices):
@@ -75,10 +72,7 @@ class Statement(NamedTuple):
 def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[float, ...]:
     """Return ``values`` if all are finite numbers and, with ``counts``, as many as one of these.
 
-    Raises
-    ------
-    StatementError
-        If they are not.
+    Raises ``StatementError`` if they are not.
     """
     for value in values:
         if isinstance(value, str):
@@ -95,10 +89,7 @@ def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[
 def whole_number(major: str, values: tuple[str | float, ...]) -> int:
     """Return the only one of ``values``, which must be 0, 1, 2, ...
 
-    Raises
-    ------
-    StatementError
-        If it is not.
+    Raises ``StatementError`` if it is not.
     """
     (number,) = numbers(major, values, 1)
     if not is_whole(number, 0) or number > _MAX_WHOLE_NUMBER:
@@ -114,10 +105,7 @@ def is_whole(value: float, least: int) -> bool:
 def parse(raw: bytes, encoding: str) -> Statement:
     """Take the bytes of a statement apart, continuation lines included.
 
-    Raises
-    ------
-    StatementError
-        If it is not text, or a sign stands where it means nothing.
+    Raises ``StatementError`` if it is not text, or a sign stands where it means nothing.
     """
     raw = raw.rstrip(b" \t\r\n\x1a")
     if control := _CONTROL_CHARACTER.search(raw):

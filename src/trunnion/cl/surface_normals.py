@@ -41,10 +41,7 @@ _TOOL_PATH = np.frombuffer(b"TOOL PATH", np.uint8)
 def with_normals(toolpath: Toolpath) -> Toolpath:
     """Return the toolpath with surface normals; remarks name the operations that have none.
 
-    Raises
-    ------
-    InputError
-        If the file can no longer be read.
+    Raises ``InputError`` if the file can no longer be read.
     """
     moving = [operation for operation in toolpath.operations if len(operation.moves)]
     if not moving:
@@ -99,14 +96,9 @@ def _remark(file: str, operation: Operation, why: str) -> Problem:
 def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
     """Return unit vectors out of the surface, (n, 3) float64, NaN where no contact point gives one.
 
-    Parameters
-    ----------
-    moves
-        Of one operation, mm.
-    contact : (n, 3) float64
-        Contact points, mm, NaN where there is none.
-    tool
-        A ball or toroidal mill.
+    moves    of one operation, mm
+    contact  (n, 3) float64: contact points, mm, NaN where there is none
+    tool     A ball or toroidal mill
     """
     to_contact = contact - moves.tip
     axial = np.einsum("ij,ij->i", to_contact, moves.axis)

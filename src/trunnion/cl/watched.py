@@ -24,10 +24,7 @@ def read_watched(
 ) -> list[Toolpath]:
     """Read as ``read_cl_files`` does, and let ``watch`` accompany it.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used, with every problem found.
+    Raises ``InputError`` if a file cannot be used, with every problem found.
     """
     is_plain = isinstance(file, Path) and unusable_file(file, "a CL file") is None
     size = file.stat().st_size if isinstance(file, Path) and is_plain else 0

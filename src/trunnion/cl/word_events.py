@@ -18,10 +18,7 @@ _ABOUT_ROWS = (CycleOn, CycleOff, SurfaceSpeed, UnknownStatement)
 def events_of(text: str) -> tuple[Event, ...]:
     """Return the events of one statement; none for an empty text.
 
-    Raises
-    ------
-    StatementError
-        If it is no known statement, or one about motion, tools' forms, feeds or coordinates.
+    Raises ``StatementError`` if it is no known statement, or one about motion, tools' forms, feeds or coordinates.
     """
     if not text.strip():
         return ()

@@ -16,6 +16,7 @@ from trunnion.cli.process import Ended, end_cleanly, let_messages_go
 from trunnion.errors import Problem, RefusedError, TrunnionError
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording
+from trunnion.options.kinds import FileIn, FileOut
 from trunnion.options.option import outputs
 
 
@@ -76,16 +77,21 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1 if isinstance(error, RefusedError) else 2
     except BrokenPipeError:  # whatever reads the output has closed the pipe
         return 2
-    except Ended as ended:
-        return 128 + ended.signal
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        return 2
+    except KeyboardInterrupt as stop:
+        ended = stop.signal if isinstance(stop, Ended) else 0
+        notes = getattr(stop, "__notes__", [])
+        if notes or not ended:
+            print(": ".join(["stopped", *notes]), file=sys.stderr)
+        return 128 + ended if ended else 2
     return code
 
 
 def _carry_out(given: Given) -> int:
     """Run a command, once it is known that it writes over nothing that it reads."""
+    if any(given.values[each.name] for each in given.job.options if isinstance(each.kind, FileIn | FileOut)):
+        from trunnion.cli.stopped_jobs import settle_stopped_jobs
+
+        settle_stopped_jobs(given)
     if not given.job.guards and any(given.values[each.name] is not None for each in outputs(given.job.options)):
         from trunnion.jobs.guard import guard
 

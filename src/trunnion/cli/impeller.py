@@ -11,7 +11,8 @@ from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.model import ImpellerModel
 from trunnion.impeller.solid.making import ImpellerSolid
-from trunnion.jobs.impeller.cutting import CutStep, ImpellerCut, cut_impeller
+from trunnion.jobs.impeller.cut import CutStep, ImpellerCut
+from trunnion.jobs.impeller.cutting import cut_impeller
 from trunnion.jobs.impeller.models import load_impeller, model_impeller, write_impeller_step
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording

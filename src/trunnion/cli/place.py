@@ -67,7 +67,7 @@ def run(given: Given) -> int:
         part=given.part or stated.part,
         stock=given.stock or stated.stock,
         tools=given.tools or stated.tools,
-        libraries=given.libraries or stated.libraries,
+        tool_libraries=given.tool_libraries or stated.tool_libraries,
         unit=given.unit or stated.unit,
         observer=Terminal(),
     )

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
+from typing import Final, cast
 
 from trunnion.cli.cl_files import result_stem
 from trunnion.cli.results import show, tell
@@ -11,17 +12,22 @@ from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, TrunnionError, argument_problem
 from trunnion.files import OutputGroup, check_outputs
+from trunnion.jobs.arguments import PostArguments
 from trunnion.jobs.guard import files_read
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.result_output import PAPERS, paper_files
+from trunnion.jobs.result_output import PAPERS
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.groups import BODIES, CUTTING
 from trunnion.wording import counted
+
+#: What is said of a simulation.
+_SIMULATED: Final = ("project", *(each.name for each in (*BODIES, *CUTTING)))
 
 
 def post(
@@ -51,6 +57,8 @@ def post(
         for target in targets:
             check_unnamed(target, alone=len(targets) == 1)
     toolpaths = toolpaths if observer is not None else _with_dialects(toolpaths)
+    stated = given.arguments("cl", "machine", "simulate", *_SIMULATED)
+    stated |= {"columns": False, "simulation": simulation_of(given)}
     made: list[Path] = []
     results: list[PostResult] = []
     for target, files in targets.items():
@@ -58,22 +66,10 @@ def post(
         with old_files_told(old if observer is None else []):
             result = post_beside(
                 chain.from_iterable(islice(toolpaths, len(files))),
-                read if group is not None else [*read, *made],  # a group knows what its jobs write
-                machine=machine,
-                output=output_place(target),
-                settings=dict(given.settings),
-                strict=given.strict,
-                force=given.force,
-                explain=given.explain,
-                papers=paper_files(**{name: papers.get(name) for name in PAPERS}, output=output_place(target)),
-                columns=False,
-                subprograms=given.subprograms,
-                simulation=simulation_of(given),
-                hooks=given.hooks,
-                turn=given.turn,
-                tilt=given.tilt,
-                observer=observer or Terminal(explain=given.explain, recorded=given.explain or bool(given.report)),
-                group=group,
+                machine,
+                cast(PostArguments, {**stated, "output": output_place(target)}),
+                Work(read if group is not None else [*read, *made], group),  # a group knows what its jobs write
+                observer or Terminal(explain=given.explain, recorded=given.explain or bool(given.report)),
             )
         made += [*result.subprograms, *([] if result.output is None else [result.output])]
         results.append(result)
@@ -103,8 +99,7 @@ def simulation_of(given: Given) -> dict[str, object] | None:
     InputError
         If something is said about a simulation, and none is asked for.
     """
-    names = ("project", "stock", "part", "fixtures", "near", "tools", "libraries", "unit", "cell", "accuracy")
-    stated = {name: getattr(given, name) for name in names if getattr(given, name)}
+    stated = {name: getattr(given, name) for name in _SIMULATED if getattr(given, name)}
     if given.simulate:
         return stated
     if stated:

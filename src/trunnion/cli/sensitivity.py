@@ -18,8 +18,9 @@ from trunnion.wording import counted
 
 def run(given: Given) -> int:
     """Rank the numbers, print and draw them."""
-    found = sensitivity(**given.arguments())
-    Terminal().problems(found.remarks)
+    terminal = Terminal()
+    found = sensitivity(**given.arguments(), observer=terminal)
+    terminal.problems(found.remarks)
     if given.report is not None:
         write_sensitivity_report(found, given.report, given.read)
     show(given, lambda: found, sensitivity_lines(found))

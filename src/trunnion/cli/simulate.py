@@ -45,12 +45,12 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
     for finding in found.findings:
         shown[finding.kind] = shown.get(finding.kind, 0) + 1
         if shown[finding.kind] <= _MOST:
-            yield _finding_line(finding)
+            yield _line(finding, f" to line {finding.last_line}" if finding.last_line != finding.line else "")
     for kind, count in shown.items():
         if count > _MOST:
             yield f"and {count - _MOST} more: {kind}"
     for miss in found.near[:_MOST]:
-        yield _near_line(miss)
+        yield _line(miss)
     for each in found.setups or (found,):
         if each.left is not None and each.simulation is found.simulation:
             yield _of_setup(each.setup) + _excess_line("left on the part", each.left)
@@ -73,18 +73,9 @@ def _of_setup(name: str) -> str:
     return f"{name}: " if name else ""
 
 
-def _finding_line(finding: SimulationFinding) -> str:
-    last = f" to line {finding.last_line}" if finding.last_line != finding.line else ""
-    block = f" N{finding.block}" if finding.block >= 0 else ""
-    return f"{_of_setup(finding.setup)}{finding.file}:{finding.line}:{block} {finding}{last}"
-
-
-def _near_line(miss: NearMiss) -> str:
-    block = f" N{miss.block}" if miss.block >= 0 else ""
-    return (
-        f"{_of_setup(miss.setup)}{miss.file}:{miss.line}:{block} near: {' and '.join(miss.between)}:"
-        f" {miss.distance:.3f} mm apart at {position(miss.place)}"
-    )
+def _line(each: SimulationFinding | NearMiss, end: str = "") -> str:
+    block = f" N{each.block}" if each.block >= 0 else ""
+    return f"{_of_setup(each.setup)}{each.file}:{each.line}:{block} {each}{end}"
 
 
 def _excess_line(what: str, excess: Excess) -> str:

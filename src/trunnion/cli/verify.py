@@ -2,14 +2,13 @@
 
 from typing import Final
 
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.data import report_data
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
-from trunnion.jobs.job import Given, streams
+from trunnion.jobs.job import Given
 from trunnion.jobs.post.papers.manifests import verify_manifest
 from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
@@ -31,8 +30,7 @@ def run(given: Given) -> int:
             return _run_manifest(given)
         raise InputError(argument_problem("machine", Wording("ARG130", "missing_machine_of_program")))
     verification = verify(
-        **{**given.arguments("cl"), "machine": load_machine(given.machine)},
-        cl=as_read(given, given.cl) if given.strict else streams(given.cl),
+        **{**given.arguments(), "machine": load_machine(given.machine)},
         columns=given.report is not None or given.json is not None,
         observer=Terminal(),
     )

@@ -26,7 +26,7 @@ from trunnion.wording import counted
 
 #: How to connect to a machine, and what is shown of one without a program.
 _LIVE: Final = tuple(option.name for option in LIVE)
-_OF_MACHINE: Final = ("zero", "tool_length", "part", "fixtures", "tools", "libraries", "unit")
+_OF_MACHINE: Final = ("zero", "tool_length", "part", "fixtures", "tools", "tool_libraries", "unit")
 
 
 def run(given: Given) -> int:

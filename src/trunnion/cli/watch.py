@@ -184,7 +184,7 @@ class _FilesWork:
             named |= {str(file) for file in simulation_files(simulation_of(given) or {})}
         except (TrunnionError, OSError):  # a project that is broken; posting will tell
             named |= {given.project, *mentioned_files(Path(given.project))} if given.project else set()
-            named |= {*given.libraries, *given.fixtures, *filter(None, (given.part, given.stock))}
+            named |= {*given.tool_libraries, *given.fixtures, *filter(None, (given.part, given.stock))}
         return named | self._definitions
 
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:

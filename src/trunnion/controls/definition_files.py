@@ -37,9 +37,6 @@ def is_control_file(path: Path) -> bool:
 def load_control_table(name_or_path: str) -> Table:
     """Return the table of a shipped control, or of a file that defines one, with all that it extends.
 
-    Raises
-    ------
-    InputError
-        If there is no such definition, or it cannot be read.
+    Raises ``InputError`` if there is no such definition, or it cannot be read.
     """
     return load_table(name_or_path, control_library(), kind="control")

@@ -99,10 +99,7 @@ class FamilyWriter(Protocol):
     def tool_call(self, number: int, name: str, by_name: bool) -> str:
         """Return the tool as a tool change names it: its number, or its name.
 
-        Raises
-        ------
-        UnsupportedFeatureError
-            If the control cannot call the tool so.
+        Raises ``UnsupportedFeatureError`` if the control cannot call the tool so.
         """
 
     def tool_preselection(self, call: str) -> list[str]:
@@ -111,10 +108,7 @@ class FamilyWriter(Protocol):
     def dwell(self, event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
         """Return the lines of a dwell; ``rpm`` is the spindle speed, None while the spindle is stopped.
 
-        Raises
-        ------
-        UnsupportedFeatureError
-            If the control cannot dwell so.
+        Raises ``UnsupportedFeatureError`` if the control cannot dwell so.
         """
 
     def stop(self, event: Stop, codes: Codes) -> list[str]:
@@ -133,16 +127,10 @@ class FamilyWriter(Protocol):
 
         Where the tool goes to X and Y before Z, they are in the block with Z.
 
-        Parameters
-        ----------
-        motion
-            All rows of one machining mode, in one plane.
-        tool
-            The tool as ``tool_call`` returned it, or as the run's setting gives it.
-        register
-            Of the tool length, as LOAD/TOOL names it; 0 for none.
-        settings
-            Those of the run over those of the definition.
+        motion    all rows of one machining mode, in one plane
+        tool      the tool as ``tool_call`` returned it, or as the run's setting gives it
+        register  of the tool length, as LOAD/TOOL names it; 0 for none
+        settings  those of the run over those of the definition
         """
 
     def validate_operation(
@@ -166,25 +154,15 @@ class FamilyWriter(Protocol):
         A line with ``FIRST_HOLE`` drills the first hole itself, with X and Y in that place and the feed at its end.
         Lines of which one has ``EACH_HOLE`` make a single hole, and are written for each.
 
-        Parameters
-        ----------
-        cycle
-            With a retract height.
-        top
-            Z of the hole points, mm.
-        spindle
-            None while it is stopped.
-        settings
-            Those of the run over those of the definition. ``HOLES_SETTING`` is ``HOLES_IN_PLANES`` unless each hole has
-            its own tool axis: then ``top`` is measured along that axis, and ``EACH_HOLE`` is a line alone, before those
-            of a hole's cycle.
-        formats
-            Of the definition.
+        cycle     with a retract height
+        top       Z of the hole points, mm
+        spindle   None while it is stopped
+        settings  those of the run over those of the definition. ``HOLES_SETTING`` is ``HOLES_IN_PLANES`` unless each
+                  hole has its own tool axis: then ``top`` is measured along that axis, and ``EACH_HOLE`` is a line
+                  alone, before those of a hole's cycle
+        formats   of the definition
 
-        Raises
-        ------
-        CycleError
-            If the control cannot make the cycle.
+        Raises ``CycleError`` if the control cannot make the cycle.
         """
 
     def cycle_cancel(self) -> list[str]:
@@ -198,18 +176,11 @@ class FamilyWriter(Protocol):
     ) -> ArcWords:
         """Return the words that turn rows into arcs.
 
-        Parameters
-        ----------
-        arcs
-            All arcs of the operation, about X, Y or Z.
-        tip : (n, 3) float64
-            End points of the whole operation, mm.
-        rows : (a,) int64
-            Indices into ``arcs`` of the arcs to write.
-        codes, formats
-            Of the definition.
-        by_radius
-            Program circles by their radius where that is safe; only for families with ``RADIUS_ARC_WORDS``.
+        arcs            all arcs of the operation, about X, Y or Z
+        tip             (n, 3) float64: end points of the whole operation, mm
+        rows            (a,) int64: indices into ``arcs`` of the arcs to write
+        codes, formats  of the definition
+        by_radius       program circles by their radius where that is safe; only for families with ``RADIUS_ARC_WORDS``
         """
 
     def takes_spline(self, spline: Spline) -> bool:
@@ -218,20 +189,14 @@ class FamilyWriter(Protocol):
     def spline_lines(self, spline: Spline, formats: Formats) -> list[str]:
         """Return the lines that lead along a spline, a block each, from its start; the feed is said before.
 
-        Raises
-        ------
-        WordRangeError
-            If a number is beyond the limits of its format.
+        Raises ``WordRangeError`` if a number is beyond the limits of its format.
         """
 
     def template_values(self, settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
         """Return the values of ``TEMPLATE_FIELDS`` for one operation.
 
-        Parameters
-        ----------
-        settings
-            Those of the run over those of the definition; and ``PLANES_USED`` and ``TCP_USED`` of the vocabulary,
-            absent or None where no operation of the program uses any.
-        plane : (3, 3) float64
-            X, Y and Z of the operation's tilted plane as columns, in program coordinates; None without one.
+        settings  those of the run over those of the definition; and ``PLANES_USED`` and ``TCP_USED`` of the vocabulary,
+                  absent or None where no operation of the program uses any
+        plane     (3, 3) float64: X, Y and Z of the operation's tilted plane as columns, in program coordinates; None
+                  without one
         """

@@ -50,10 +50,7 @@ _LENGTH_ARGUMENTS: Final[dict[str, frozenset[int]]] = {
 def in_units(control: Control, units: str) -> Control:
     """Return a control whose programs count in a unit: ``mm`` or ``inch``.
 
-    Raises
-    ------
-    InputError
-        If the definition does not say how, or has lengths that would stay in mm; with every place.
+    Raises ``InputError`` if the definition does not say how, or has lengths that would stay in mm; with every place.
     """
     if units != INCH:
         return control

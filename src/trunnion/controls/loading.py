@@ -12,38 +12,26 @@ from trunnion.controls.consistency import check_formats, check_setting_names, ch
 from trunnion.controls.definition import MM_PER_INCH, ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import SettingKind, SettingRule, read_setting_rules
-from trunnion.controls.template import Template
+from trunnion.controls.template_reading import read_templates
 from trunnion.controls.vocabulary import (
     AXIS_WORDS,
     COOLANTS,
-    DRAW_BACK,
-    EVENT_PLACE,
     FEEDS_WITHOUT_TCP,
-    FIVE_AXIS,
     HOLE_APPROACH_HEIGHTS,
     INCH,
     MM,
-    NEW_SPEED_WITH_TCP,
     NO_LIMIT,
     PHASES,
-    PLACES,
     RADIUS_ARC_WORDS,
-    REQUIRED_TEMPLATES,
-    SPINDLE_ON,
-    SUBPROGRAM_TEMPLATES,
     TOOL_TYPES,
-    WITHOUT_TCP,
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
-from trunnion.errors import InputError, Problem, key_subject
+from trunnion.errors import InputError
 from trunnion.families import FAMILIES, load_writer
 from trunnion.messages import Wording, phrase
 from trunnion.model.axis_tolerance import AxisTolerance
-
-#: What only a template with statements or expressions has in it.
-_TEXT_SIGNS: Final = ("{%", "{{", "{#")
 
 #: What may stand for 0: nothing, which is as other numbers, or a text that a control reads as 0.
 _ZERO: Final = r"([+-]?(0{1,2}(\.0{0,4})?|\.0{1,4}))?"
@@ -115,9 +103,7 @@ def load_control(own: Table) -> Control:
         rapid_into_planes=table.flag("rapid_into_planes", False),
         holes_from=table.text("holes_from", "above", one_of=HOLE_APPROACH_HEIGHTS),
         subprograms=_read_subprogram_naming(table.table("subprograms")) if "subprograms" in table else None,
-        templates=_read_templates(
-            templates, _template_names(templates, family, plane_from_pose, "subprograms" in table)
-        ),
+        templates=read_templates(templates, family, plane_from_pose, subprograms="subprograms" in table),
         length_settings=units.texts("settings", ()),
         unit_words=_read_unit_words(units),
     )
@@ -370,56 +356,6 @@ def _read_subprogram_naming(table: Table) -> SubprogramNaming:
     )
     table.report_unread_keys()
     return naming
-
-
-def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, subprograms: bool) -> list[str]:
-    """Return the names of the templates that a definition must have.
-
-    Those of TCP, of operations without it and of each plane command are needed only if one of them is there. The
-    template that leads from home to the next tool axis of an operation with holes is optional, and so is the one that
-    retracts the tool where a tilted plane is taken from the rotary position: without it the tool always goes home.
-    """
-    plane_parts = ("approach", "plane_on", "next_plane", "operation_end")
-    groups: list[tuple[str, ...]] = [(SPINDLE_ON,), (NEW_SPEED_WITH_TCP,)]
-    groups += [
-        tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
-    ]
-    groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
-    groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
-    groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]
-    for name in (name for group in groups for name in group):
-        table.text(name, None)  # known, though no definition needs it
-    used = [name for group in groups if any(name in table for name in group) for name in group]
-    places = [name for name in list(table.keys()) if name in PLACES or name.startswith(EVENT_PLACE)]
-    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used, *places]
-
-
-def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
-    found = {}
-    for name in names:
-        text = table.text(name)
-        file, line = table.text_location(name)
-        if any(sign in text for sign in _TEXT_SIGNS):
-            found[name] = _read_text_template(table, name, text)
-        else:
-            line += bool(line) * (len(text) - len(text.lstrip("\n")))
-            found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
-    table.mark_read(*PLACES)
-    table.report_unread_keys()
-    return found
-
-
-def _read_text_template(table: Table, name: str, text: str) -> Template:
-    """Return a template with statements or expressions; Jinja is imported for the first one."""
-    from trunnion.controls.texts.template import text_template
-
-    template, fault = text_template(name, text, *table.text_location(name))
-    if fault is not None:
-        file, line = template.place_of(max(fault.line, 1) - 1)
-        key = table.key_path(name)
-        wording = Wording("DEF570", "cannot_be_read", fault=fault.wording).of_key(key)
-        table.problems.append(Problem(file, line, wording, subject=key_subject(key)))
-    return template
 
 
 def with_control(table: Table) -> LocatedValue:

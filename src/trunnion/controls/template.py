@@ -125,12 +125,9 @@ class Template:
     def expand(self, values: Mapping[str, Value], printing: Printing) -> list[str]:
         """Return the lines with their values, without the lines and bracketed parts whose values are absent.
 
-        Raises
-        ------
-        InputError
-            If the value of a field with a format is not a number.
-        WordRangeError
-            If it is beyond the limits of its format.
+        Raises ``InputError`` if the value of a field with a format is not a number.
+
+        Raises ``WordRangeError`` if it is beyond the limits of its format.
         """
         formats = printing.formats
 
@@ -162,10 +159,7 @@ class Template:
 def number_text(name: str, number: float, number_format: NumberFormat) -> str:
     """Return a number in a format.
 
-    Raises
-    ------
-    WordRangeError
-        If it is beyond the limits of the format.
+    Raises ``WordRangeError`` if it is beyond the limits of the format.
     """
     if not number_format.least <= number <= number_format.greatest:
         limit = number_format.least if number < number_format.least else number_format.greatest

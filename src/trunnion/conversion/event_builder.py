@@ -62,14 +62,9 @@ class EventBuilder:
     def build(self, events: Sequence[ProgramEvent], rows: Ints, line: int) -> tuple[Event, ...]:
         """Return the events of an operation.
 
-        Parameters
-        ----------
-        events
-            The program events of its section, in order.
-        rows
-            Its (n,) rows of the run.
-        line
-            The line where it begins.
+        events  the program events of its section, in order
+        rows    its (n,) rows of the run
+        line    the line where it begins
         """
         run, found = self._run, list[Event]()
         spindle_ran, self._sense = self._spindle_ran, _SENSE_OF_SIGN[int(run.spindle[rows[0] - 1])] if rows[0] else None

@@ -19,17 +19,10 @@ def carry_machine_words(
 ) -> tuple[Toolpath, tuple[Problem, ...]]:
     """Return the toolpath of a program with the builder's words that mean the same on another machine.
 
-    Parameters
-    ----------
-    toolpath
-        Converted from a program: each ``Insert`` in it is a word of the machine's builder.
-    source, target
-        The machine of the program, and the one it is for; None for a CL file, which keeps all words.
+    toolpath        converted from a program: each ``Insert`` in it is a word of the machine's builder
+    source, target  the machine of the program, and the one it is for; None for a CL file, which keeps all words
 
-    Returns
-    -------
-    tuple
-        The toolpath, and a warning or error for each word.
+    tuple  the toolpath, and a warning or error for each word
     """
     inserts = [event for operation in toolpath.operations for event in operation.events if isinstance(event, Insert)]
     if not inserts:

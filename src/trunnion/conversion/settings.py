@@ -29,14 +29,9 @@ def settings_from_headers(
 ) -> dict[str, str]:
     """Return the settings that give the same headers again, without defaults.
 
-    Parameters
-    ----------
-    control
-        The control of the program.
-    headers
-        Line, name of the operation, and values of each header.
-    warn
-        Takes settings that differ between operations: a program has one value of each.
+    control  the control of the program
+    headers  line, name of the operation, and values of each header
+    warn     takes settings that differ between operations: a program has one value of each
     """
     every = [_Header(line, operation, *_header_settings(control, values)) for line, operation, values in headers]
     names = [header.operation for header in every]

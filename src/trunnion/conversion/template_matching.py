@@ -150,10 +150,7 @@ def match_lines(lines: Sequence[tuple[int, str]], patterns: Sequence[LinePattern
     Both are in the same order, but either may have lines that the other lacks. ``values`` takes the values found;
     values that it already has stay.
 
-    Returns
-    -------
-    set
-        The numbers of the lines found.
+    set  the numbers of the lines found
     """
     at = 0
     known: set[int] = set()

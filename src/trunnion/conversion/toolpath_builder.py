@@ -62,13 +62,10 @@ class Conversion:
 def convert(run: Run, control: Control) -> Conversion:
     """Convert a program that was read without errors into a toolpath.
 
-    Parameters
-    ----------
-    run
-        The result of ``trunnion.readers.run_program``. Its files are read once more for what the columns do not hold.
-    control
-        The control of the machine that the program was written for. If it makes rapids lines at a feed
-        (``rapid_feed``), lines at that feed are rapids.
+    run      the result of ``trunnion.readers.run_program``. Its files are read once more for what the columns do not
+             hold
+    control  the control of the machine that the program was written for. If it makes rapids lines at a feed
+             (``rapid_feed``), lines at that feed are rapids
     """
     default = control.settings.get("rapid_feed", "")
     conversion = _ToolpathBuilder(restore_rapids(run, parse_number(default)), control).build()

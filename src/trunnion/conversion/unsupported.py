@@ -65,14 +65,9 @@ def warn_of_machine_words(
 ) -> None:
     """Warn of words that act on the machine but not on the path.
 
-    Parameters
-    ----------
-    texts
-        The program and its subprograms.
-    machine_words
-        The words of the control's family on which the path does not depend.
-    template_lines
-        Lines of the program that were written from templates.
+    texts           the program and its subprograms
+    machine_words   the words of the control's family on which the path does not depend
+    template_lines  lines of the program that were written from templates
     """
     count = 0
     lost_words = machine_words - _NOT_LOST - _SURFACE_SPEED

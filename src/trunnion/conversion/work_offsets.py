@@ -10,14 +10,9 @@ _SAME_NAMES = COMMON_OFFSETS | {"G58", "G59"}
 def carry_work_offset(text: str, source: WorkOffsetWords, target: WorkOffsetWords, same_family: bool) -> str | None:
     """Return the setting ``work_offset`` for another control; None if it lacks one of the work offsets.
 
-    Parameters
-    ----------
-    text
-        One offset, or several by operation: ``G54,TOP:G54.1 P3``.
-    source, target
-        How both controls select work offsets.
-    same_family
-        The same number selects the same offset, whatever the words are.
+    text            one offset, or several by operation: ``G54,TOP:G54.1 P3``
+    source, target  how both controls select work offsets
+    same_family     the same number selects the same offset, whatever the words are
     """
     carried = []
     for entry in text.split(","):

@@ -35,21 +35,12 @@ def workpiece_stretches(
 ) -> list[Ints]:
     """Rows from ``first`` up to ``end`` that move the tool at the workpiece; none before its first position there.
 
-    Parameters
-    ----------
-    known : (n,) bool
-        ``known_positions`` of the run.
-    first, end
-        Rows of a section.
-    level_approach
-        The control approaches X and Y first, then Z, not only in planes (``Control.level_approach``).
-    warn
-        Receives the places where the rows are divided, and of cuts that would be lost.
+    known           (n,) bool: ``known_positions`` of the run
+    first, end      rows of a section
+    level_approach  the control approaches X and Y first, then Z, not only in planes (``Control.level_approach``)
+    warn            receives the places where the rows are divided, and of cuts that would be lost
 
-    Returns
-    -------
-    list
-        Row numbers of each stretch, in order; empty without a position at the workpiece.
+    list  row numbers of each stretch, in order; empty without a position at the workpiece
     """
     rows = np.arange(first, end)
     in_plane = _in_plane(run, rows)

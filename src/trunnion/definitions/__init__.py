@@ -8,6 +8,7 @@ A definition may come from anyone, so reading one runs nothing, and opens nothin
 that are shipped with Trunnion, or that lie beside or below the file that extends them.
 """
 
+from trunnion.definitions.account import in_order
 from trunnion.definitions.extends import (
     MAX_FILE_BYTES,
     definition_names,
@@ -17,7 +18,7 @@ from trunnion.definitions.extends import (
     resolve_extends,
 )
 from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, key_lines, layout
-from trunnion.definitions.table import Table, in_order
+from trunnion.definitions.table import Table
 from trunnion.definitions.units import unit_of
 
 __all__ = [

@@ -265,21 +265,14 @@ def load_table(
 ) -> Table:
     """Read a definition and everything that it extends.
 
-    Parameters
-    ----------
-    name_or_path
-        The name of a file in the library (without ``.toml``), or a path that ends in ``.toml``.
-    library
-        The folder of shipped definitions.
-    overrides
-        Values in place of those of the file, shaped like it; they merge as if a file with them extended this one.
-    kind
-        What the library holds, for messages: "machine".
+    name_or_path  the name of a file in the library (without ``.toml``), or a path that ends in ``.toml``
+    library       the folder of shipped definitions
+    overrides     values in place of those of the file, shaped like it; they merge as if a file with them extended this
+                  one
+    kind          what the library holds, for messages: "machine"
 
-    Raises
-    ------
-    InputError
-        If a file is not TOML, or ``extends`` cannot be followed. The values of the keys are not checked yet.
+    Raises ``InputError`` if a file is not TOML, or ``extends`` cannot be followed. The values of the keys are not
+    checked yet.
     """
     text = str(name_or_path)
     if text.endswith(".toml"):
@@ -314,19 +307,11 @@ def load_table(
 def load_draft(text: str, path: Path, library: Library) -> Table:
     """Read a definition that is not saved yet, and everything that it extends.
 
-    Parameters
-    ----------
-    text
-        Of the definition.
-    path
-        Where it would be saved: what it extends lies beside or below it. It need not be there, and is not read.
-    library
-        The folder of shipped definitions.
+    text     of the definition
+    path     where it would be saved: what it extends lies beside or below it. It need not be there, and is not read
+    library  the folder of shipped definitions
 
-    Raises
-    ------
-    InputError
-        As ``load_table``.
+    Raises ``InputError`` as ``load_table``.
     """
     source = _DefinitionFile(_Draft(text.encode()), str(path), path.parent)
     problems: list[Problem] = []
@@ -337,10 +322,7 @@ def load_draft(text: str, path: Path, library: Library) -> Table:
 def own_keys(path: Path) -> frozenset[str]:
     """Return the keys at the top of a definition file, without those of what it extends.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read or is not TOML.
+    Raises ``InputError`` if the file cannot be read or is not TOML.
     """
     content = _read(_DefinitionFile(path, str(path), path.parent)).value
     return frozenset(content) if isinstance(content, dict) else frozenset()
@@ -389,10 +371,7 @@ def resolve_extends(table: Table, library: Library) -> Table:
     A machine names its control in this way: ``[control]`` with ``extends = "sinumerik_840d"``. Without ``extends`` the
     result is an unread copy of the table.
 
-    Raises
-    ------
-    InputError
-        If ``extends`` cannot be followed.
+    Raises ``InputError`` if ``extends`` cannot be followed.
     """
     assert isinstance(table.content.value, dict)
     extends = table.content.value.get("extends")

@@ -15,16 +15,11 @@ def merge(
 ) -> LocatedValue:
     """Return the parent with what the child says instead.
 
-    Parameters
-    ----------
-    parent, child
-        Values of the same key.
-    path
-        Path of the key from the root of the definition, for messages.
-    problems
-        Takes mistakes.
-    keep_removals
-        The value is within a table that extends something not loaded yet (``resolve_extends``). Its removals must stay.
+    parent, child  values of the same key
+    path           path of the key from the root of the definition, for messages
+    problems       takes mistakes
+    keep_removals  the value is within a table that extends something not loaded yet (``resolve_extends``). Its removals
+                   must stay
     """
     if isinstance(parent.value, dict) and isinstance(child.value, dict):
         table = dict(parent.value)

@@ -108,10 +108,7 @@ def layout(text: str) -> Layout:
 
     Nothing is checked here: for a text that is not TOML, the places mean nothing.
 
-    Raises
-    ------
-    RecursionError
-        If tables nest too deeply.
+    Raises ``RecursionError`` if tables nest too deeply.
     """
     try:
         return _Scanner(text).scan()
@@ -122,10 +119,7 @@ def layout(text: str) -> Layout:
 def key_lines(text: str) -> dict[KeyPath, int]:
     """Line of every key of a TOML text, as ``layout`` has them.
 
-    Raises
-    ------
-    RecursionError
-        If tables nest too deeply.
+    Raises ``RecursionError`` if tables nest too deeply.
     """
     return layout(text).lines
 

@@ -34,14 +34,9 @@ class TomlFault(NamedTuple):
 def toml_fault(text: str, line: int, message: str) -> TomlFault:
     """Return the mistake for which a parser has refused a text.
 
-    Parameters
-    ----------
-    text
-        Of the file.
-    line
-        At which the parser gave up, from 1; 0 if it does not say.
-    message
-        What it said.
+    text     of the file
+    line     at which the parser gave up, from 1; 0 if it does not say
+    message  what it said
     """
     lines = text.split("\n")
     if found := _unclosed(lines, line, message):

@@ -1,5 +1,6 @@
 """Output files: settled before any work, complete or not there at all, alone or several together."""
 
+from trunnion.files.dead_jobs import settle_and_log, settle_dead_jobs
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.names import name_fault
 from trunnion.files.output import OutputFiles, atomic_file, atomic_output
@@ -23,4 +24,6 @@ __all__ = [
     "name_fault",
     "output_group",
     "resolve_output",
+    "settle_and_log",
+    "settle_dead_jobs",
 ]

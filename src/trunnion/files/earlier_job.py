@@ -11,7 +11,7 @@ program may get another name. Where a record is missing every file is somebody e
 import hashlib
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -78,12 +78,8 @@ class EarlierJob:
     def left_over(self, program: Iterable[Path], written: Iterable[Path]) -> list[Path]:
         """Files that earlier jobs wrote with another program, that are as they wrote them, and that now stay.
 
-        Parameters
-        ----------
-        program
-            The files of the program that is written now, wherever they are.
-        written
-            The places of all files that are written now.
+        program  the files of the program that is written now, wherever they are
+        written  the places of all files that are written now
         """
         again = {self._key(file) for file in written}
         stay = [
@@ -94,22 +90,34 @@ class EarlierJob:
         job = _job(map(_digest, program)) if stay else ""
         return [file for file, known in stay if known.split(":")[2:] != [job]]
 
-    def remember(self, program: Iterable[Path], papers: Iterable[Path] = ()) -> None:
-        """Record a program, and papers about it, that have been written; it does no harm where that is not possible."""
+    def remember(
+        self, program: Iterable[Path], papers: Iterable[Path] = (), known: Mapping[Path, str] | None = None
+    ) -> None:
+        """Record a program, and papers about it, that have been written; it does no harm where that is not possible.
+
+        Parameters
+        ----------
+        program
+            All files of the program.
+        papers
+            Files about it.
+        known
+            Digests of files that need not be read again.
+        """
         if self._record is None:
             return
         of_program, about_it = list(program), list(papers)
         for other in (file for file in of_program if file.parent != self._folder):
-            EarlierJob(other).remember([other])
+            EarlierJob(other).remember([other], (), known)
         digests = {name: known for name, known in self._known_by_name().items() if (self._folder / name).exists()}
-        found = {file: _digest(file) for file in (*of_program, *about_it)}
+        found = {file: (known or {}).get(file) or _digest(file) for file in (*of_program, *about_it)}
         job = _job(found[file] for file in of_program)
         for file, digest in found.items():
-            if digest:
+            if digest and file.exists():
                 digests[self._key(file)] = f"{file.stat().st_size}:{digest}:{job}"
         self._write(digests)
         for paper in about_it:
-            if found[paper]:
+            if found[paper] and paper.exists():
                 own = EarlierJob(paper)
                 own._write({own._key(paper): f"{paper.stat().st_size}:{found[paper]}:{_PAPER}"})
 

@@ -1,19 +1,33 @@
-"""Hidden folders beside files that are being written, from which these are moved into place all together."""
+"""Hidden folders beside files that are being written, from which these are moved into place all together.
+
+Each is locked as long as its job lives. One that nobody holds is of a dead job (``dead_jobs``).
+"""
 
 import os
+import re
 import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.files.interrupts import held_interrupts
+from trunnion.files.locks import LOCK, FolderLock, make_held
 from trunnion.files.places import OutputPlace, cannot_write
 from trunnion.messages import Wording
 
 #: Characters of a file's name that the name of its hidden folder repeats: both have room in 255 bytes.
-_NAME_LENGTH = 32
+_NAME_LENGTH: Final = 32
+
+#: How the names of temporary folders begin.
+_TEMPORARY: Final = "trunnion-"
+
+#: The file in which a folder says which files are on their way to which places.
+JOURNAL: Final = ".trunnion-journal"
+
+_NAME: Final = re.compile(rf"(\..+\.|{_TEMPORARY})[0-9a-f]{{12}}", re.DOTALL)
 
 
 class HiddenFolders:
@@ -21,6 +35,7 @@ class HiddenFolders:
 
     def __init__(self) -> None:
         self._folders: dict[Path, Path] = {}
+        self._locks: list[FolderLock] = []
 
     def beside(self, place: OutputPlace) -> Path:
         """Return the hidden folder beside a file, from which it can be moved and need not be copied."""
@@ -32,7 +47,7 @@ class HiddenFolders:
     def temporary(self) -> Path:
         """Return a folder for files that have no place of their own."""
         try:
-            return self._make(Path(tempfile.gettempdir()), "trunnion-")
+            return self._make(Path(tempfile.gettempdir()), _TEMPORARY)
         except OSError as error:
             raise InputError(
                 Problem("output", 0, Wording("FIL230", "no_temporary_file", strerror=error.strerror or error))
@@ -43,17 +58,25 @@ class HiddenFolders:
             with held_interrupts():
                 self._folders[parent] = folder = parent / f"{prefix}{os.urandom(6).hex()}"
                 try:
-                    folder.mkdir(mode=0o700)
+                    lock = make_held(folder)
                 except OSError:
                     del self._folders[parent]
                     raise
+                self._locks += [] if lock is None else [lock]
         return self._folders[parent]
 
     def remove(self) -> None:
-        """Remove all of them; can be called again if it was interrupted."""
+        """Remove all of them; can be called again if it was interrupted.
+
+        One with a journal stays: its files could not be brought to their places, nor back, and the next command tries
+        it again.
+        """
         with held_interrupts():
+            for lock in self._locks:
+                lock.release()
             for parent, folder in list(self._folders.items()):
-                shutil.rmtree(folder, ignore_errors=True)
+                if not (folder / JOURNAL).exists():
+                    remove_folder(folder)
                 del self._folders[parent]
 
     def bring(self, file: Path, place: OutputPlace) -> Path:
@@ -72,71 +95,39 @@ class HiddenFolders:
         return file
 
 
-def move_all(files: Sequence[tuple[Path, OutputPlace]], withdrawn: Sequence[OutputPlace] = ()) -> None:
-    """Move complete files to their places, all or none: if one of them fails, the earlier files are restored.
-
-    Parameters
-    ----------
-    files
-        Each from a hidden folder beside its place.
-    withdrawn
-        Places of files that must not be seen beside the older ones of others: their older files go away first.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be written.
-    """
-    undone: list[tuple[Path, Path, Path]] = []
-    place = files[0][1]
-    with held_interrupts():
-        try:
-            earlier = [_place_for_earlier(file, k) for k, (file, _) in enumerate(files)]
-            for (file, place), before in zip(files, earlier, strict=True):
-                if place in withdrawn and place.path.exists():
-                    undone.append((file, place.path, before))
-                    place.path.replace(before)
-            gone = {target for _, target, _ in undone}
-            for (file, place), before in zip(files, earlier, strict=True):
-                if place not in withdrawn:
-                    _keep(place.path, before)
-                if place.path not in gone:
-                    undone.append((file, place.path, before))
-                file.replace(place.path)
-        except BaseException as error:
-            if files[-1][0].exists():
-                for each in reversed(undone):
-                    with suppress(OSError):
-                        _restore(*each)
-            if isinstance(error, OSError):
-                raise cannot_write(place.name, error) from None
-            raise
-
-
-def _place_for_earlier(file: Path, number: int) -> Path:
-    """Where a file survives that is replaced by a new one, in the hidden folder of that."""
-    folder = file.parent / ".earlier"
-    folder.mkdir(exist_ok=True)
-    return folder / str(number)
-
-
-def _keep(target: Path, before: Path) -> None:
-    """Give a file, if it exists, a second name under which it survives being replaced."""
-    if not target.exists():
-        return
-    if target.is_dir():
-        raise IsADirectoryError(21, f"{target.name} is a folder")
+def hidden_folders_in(folder: Path) -> Iterator[Path]:
+    """Yield the folders that have names as those of jobs."""
     try:
-        os.link(target, before)
-    except OSError:  # some file systems have no hard links
-        shutil.copy2(target, before)
-
-
-def _restore(new: Path, target: Path, before: Path) -> None:
-    """Undo what was done to a place."""
-    if new.exists() and target.exists():
+        with os.scandir(folder) as entries:
+            names = [entry.name for entry in entries if _NAME.fullmatch(entry.name) and is_folder(entry)]
+    except OSError:
         return
-    if before.exists():
-        before.replace(target)
-    elif not new.exists():
-        target.unlink(missing_ok=True)
+    yield from (folder / name for name in sorted(names))
+
+
+def remove_folder(folder: Path) -> None:
+    """Remove a hidden folder, the file of its lock last: without that it is nobody's, unless it is empty."""
+    with suppress(OSError):
+        for entry in list(os.scandir(folder)):
+            if is_folder(entry):
+                shutil.rmtree(entry.path, ignore_errors=True)
+            elif entry.name != LOCK:
+                with suppress(OSError):
+                    Path(entry.path).unlink()
+    with suppress(OSError):
+        (folder / LOCK).unlink(missing_ok=True)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def is_folder(entry: "os.DirEntry[str]") -> bool:
+    """Whether an entry is a folder itself, and no link to one."""
+    try:
+        return entry.is_dir(follow_symlinks=False)
+    except OSError:
+        return False
+
+
+def is_hidden_folder(folder: Path) -> bool:
+    """Whether a path is that of a folder with a name as those of jobs, and no link."""
+    return bool(_NAME.fullmatch(folder.name)) and folder.is_dir() and not folder.is_symlink()

@@ -9,9 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 from trunnion.errors import InputError, Problem
+from trunnion.files.dead_jobs import remove_temporary_folders, settle_and_log
 from trunnion.files.earlier_job import EarlierJob
-from trunnion.files.hidden_folders import HiddenFolders, move_all
+from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.interrupts import held_interrupts
+from trunnion.files.journal import Record
+from trunnion.files.moves import Moves
 from trunnion.files.places import Claims, OutputPlace, cannot_write, resolve_output
 from trunnion.files.streams import open_stream, send, stream_name
 from trunnion.messages import Wording
@@ -65,18 +68,11 @@ class OutputFiles:
     def add_file(self, name: str, *, is_numbered: bool = False) -> BinaryIO:
         """Begin a further file in the same folder, and return its sink.
 
-        Parameters
-        ----------
-        name
-            Of the file.
-        is_numbered
-            Its name is a number, for the cure where it has that of somebody else's file.
+        name         of the file
+        is_numbered  its name is a number, for the cure where it has that of somebody else's file
 
-        Raises
-        ------
-        InputError
-            If there cannot be a file of this name beside the first, or if it is one that is read or written already, or
-            one that exists and that no earlier job of this first file has written.
+        Raises ``InputError`` if there cannot be a file of this name beside the first, or if it is one that is read or
+        written already, or one that exists and that no earlier job of this first file has written.
         """
         place = self.check_file(name, is_numbered=is_numbered)
         self._claims.write(place)
@@ -116,10 +112,7 @@ class OutputFiles:
     def protect(self, files: Iterable[str | os.PathLike[str]]) -> None:
         """Never write over these files.
 
-        Raises
-        ------
-        InputError
-            If one of them is going to be written.
+        Raises ``InputError`` if one of them is going to be written.
         """
         self._claims.read(files)
 
@@ -174,31 +167,24 @@ class OutputFiles:
 
     def publish(self, hidden: HiddenFolders, stream: BinaryIO | None) -> None:
         """Bring all files to their places, once they are closed; the first one goes to the stream if there is one."""
-        moves = self.bring(hidden, main=stream is None)
+        moves = Moves()
+        self.bring(hidden, moves, main=stream is None)
         if stream is not None:
             _send(self.path, stream, self._place.name if self._place else stream_name(stream))
         for path, place in self.papers:
             if place.is_stream:
                 with open_stream(place) as device:
                     _send(path, device, place.name)
-        if moves:
-            move_all(moves, [place for _, place in self.papers])
-        if stream is None:
-            self.remember()
+        moves.carry_out()
 
-    def bring(self, hidden: HiddenFolders, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
-        """Return the complete files where they can be moved to their places from; ``main``: the first one is among
-        them.
-        """
-        files = self._program_files(main=main)
-        files += [(path, place) for path, place in self.papers if not place.is_stream]
-        return [(hidden.bring(path, place), place) for path, place in files]
-
-    def remember(self) -> None:
-        """Record what has been written, once it is in its places, for later jobs of the same first file."""
-        if self._earlier is not None:
-            papers = [place.path for _, place in self.papers if not place.is_stream]
-            self._earlier.remember([place.path for _, place in self._program_files()], papers)
+    def bring(self, hidden: HiddenFolders, moves: Moves, *, main: bool = True) -> None:
+        """Add the complete files to those that move to their places; ``main``: the first one is among them."""
+        program = [moves.add(hidden, path, place) for path, place in self._program_files(main=main)]
+        to_files = [(path, place) for path, place in self.papers if not place.is_stream]
+        papers = [moves.add(hidden, path, place) for path, place in to_files]
+        moves.withdrawn += [place for _, place in to_files]
+        if self._earlier is not None and main and self._place is not None:
+            moves.records.append(Record(program[-1], tuple(program), tuple(papers)))
 
     def remember_alone(self, paper: Path) -> None:
         """Record a paper that was written although the program is not."""
@@ -256,30 +242,22 @@ def atomic_output(
 ) -> Iterator[OutputFiles]:
     """Files that reach their places together when the block ends, or not at all if it raises.
 
-    Parameters
-    ----------
-    target
-        Of the first file: a path, whose folder takes the others, or a stream, which takes one file only.
-    papers
-        Files that will be written as well (``add_paper``): none of the others may be one of them.
-    inputs
-        Files that are read: none of them is written over.
-    is_job
-        The further files get names that nobody chose: they replace only what earlier jobs of the first file have
-        written, which is remembered.
+    target  of the first file: a path, whose folder takes the others, or a stream, which takes one file only
+    papers  files that will be written as well (``add_paper``): none of the others may be one of them
+    inputs  files that are read: none of them is written over
+    is_job  the further files get names that nobody chose: they replace only what earlier jobs of the first file have
+            written, which is remembered
 
-    Raises
-    ------
-    InputError
-        If a file cannot be written. For the first file this is known when the block begins. Earlier files of the same
-        names stay as they were.
+    Raises ``InputError`` if a file cannot be written. For the first file this is known when the block begins. Earlier
+    files of the same names stay as they were.
     """
     place = resolve_output(target) if isinstance(target, str | os.PathLike) else target
     claims = Claims()
     claims.read(inputs)
-    for each in (place, *papers):
-        if isinstance(each, OutputPlace):
-            claims.write(each)
+    places = [each for each in (place, *papers) if isinstance(each, OutputPlace)]
+    for each in places:
+        claims.write(each)
+    settle_and_log(each.path.parent for each in places if not each.is_stream)
     hidden = HiddenFolders()
     # An interruption of the first removal leaves the second one to do it.
     try:
@@ -300,8 +278,10 @@ def _fill_and_publish(
     own = place if isinstance(place, OutputPlace) else None
     if own is not None and own.is_stream:
         stream = opened.enter_context(open_stream(own))
-    folder = hidden.temporary() if stream is not None or own is None else hidden.beside(own)
-    name = "stream" if stream is not None or own is None else Path(own.name).name
+    if is_stream := stream is not None or own is None:
+        remove_temporary_folders()
+    folder = hidden.temporary() if is_stream or own is None else hidden.beside(own)
+    name = "stream" if is_stream or own is None else Path(own.name).name
     earlier = EarlierJob(own.path) if is_job and own is not None and stream is None else None
     files = OutputFiles(folder, name, own, claims, earlier)
     yield from _fill(files)

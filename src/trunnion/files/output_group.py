@@ -1,13 +1,16 @@
 """Jobs whose files appear together, or none of them."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
+from trunnion.files.dead_jobs import settle_and_log
 from trunnion.files.earlier_job import EarlierJob
-from trunnion.files.hidden_folders import HiddenFolders, move_all
+from trunnion.files.hidden_folders import HiddenFolders
+from trunnion.files.journal import Names, Record
+from trunnion.files.moves import Moves
 from trunnion.files.output import OutputFiles
 from trunnion.files.places import Claims, OutputPlace
 from trunnion.messages import Wording
@@ -21,7 +24,8 @@ class OutputGroup:
         self._claims = Claims()
         self._folders: list[HiddenFolders] = []
         self._complete: list[tuple[OutputFiles, HiddenFolders]] = []
-        self._afterwards: list[Callable[[], None]] = []
+        self._owners: dict[Path, tuple[str, ...]] = {}
+        self._names: list[Names] = []
 
     @contextmanager
     def open(
@@ -33,11 +37,8 @@ class OutputGroup:
     ) -> Iterator[OutputFiles]:
         """Yield the files of a job, as ``atomic_output`` has them; none appears before the group is published.
 
-        Raises
-        ------
-        InputError
-            As ``atomic_output``, also where another job of the group writes or reads the same file; or if a place is a
-            device, which takes what it gets at once.
+        Raises ``InputError`` as ``atomic_output``, also where another job of the group writes or reads the same file;
+        or if a place is a device, which takes what it gets at once.
         """
         places = [place, *papers]
         for each in places:
@@ -46,6 +47,7 @@ class OutputGroup:
         self._claims.read(inputs)
         for each in places:
             self._claims.write(each)
+        settle_and_log(each.path.parent for each in places)
         hidden = HiddenFolders()
         self._folders.append(hidden)
         earlier = EarlierJob(place.path) if self._remembers else None
@@ -56,17 +58,22 @@ class OutputGroup:
 
     def publish(self) -> None:
         """Bring the files of all jobs to their places."""
-        moves = [move for files, hidden in self._complete for move in files.bring(hidden)]
-        if moves:
-            move_all(moves, [place for files, _ in self._complete for _, place in files.papers])
-        for files, _ in self._complete:
-            files.remember()
-        for work in self._afterwards:
-            work()
+        moves = Moves(names=self._names)
+        for files, hidden in self._complete:
+            files.bring(hidden, moves)
+        for path, owner in self._owners.items():
+            number = moves.number(path)
+            assert number is not None, "the program of a job of the group"
+            moves.records.append(Record(number, owner=owner))
+        moves.carry_out()
 
-    def afterwards(self, work: Callable[[], None]) -> None:
-        """Do something once all files are in their places."""
-        self._afterwards.append(work)
+    def record_owner(self, program: Path, owner: Iterable[str]) -> None:
+        """Record for whom a program of the group is written (``EarlierJob.set_owner``), once it is in its place."""
+        self._owners[program] = tuple(owner)
+
+    def record_names(self, project: Path, programs: Iterable[Path]) -> None:
+        """Record the programs of a project under its own file, once they are in their places."""
+        self._names.append(Names(str(project), tuple(map(str, programs))))
 
     def remove(self) -> None:
         """Remove what has not reached its place; can be called again if it was interrupted."""
@@ -78,15 +85,9 @@ class OutputGroup:
 def output_group(*, remembers: bool = True) -> Iterator[OutputGroup]:
     """Jobs whose files reach their places together when the block ends, or not at all if it raises.
 
-    Parameters
-    ----------
-    remembers
-        Files that nobody has named replace only what earlier jobs have written, and these are remembered.
+    remembers  files that nobody has named replace only what earlier jobs have written, and these are remembered
 
-    Raises
-    ------
-    InputError
-        If a file cannot be written. Earlier files of the same names stay as they were.
+    Raises ``InputError`` if a file cannot be written. Earlier files of the same names stay as they were.
     """
     group = OutputGroup(remembers=remembers)
     # An interruption of the first removal leaves the second one to do it.

@@ -36,16 +36,10 @@ class OutputPlace:
 def resolve_output(file: object) -> OutputPlace:
     """Find out where a file will be written.
 
-    Parameters
-    ----------
-    file
-        A path as text or as ``os.PathLike``.
+    file  A path as text or as ``os.PathLike``
 
-    Raises
-    ------
-    InputError
-        If it names no file, a folder, or what cannot be written: something of another type, a name with a NUL or with
-        a slash at its end, a file in a folder that does not exist, a disk.
+    Raises ``InputError`` if it names no file, a folder, or what cannot be written: something of another type, a name
+    with a NUL or with a slash at its end, a file in a folder that does not exist, a disk.
     """
     name = _file_name(file)
     path = Path(name)
@@ -157,10 +151,7 @@ class Claims:
     def read(self, files: Iterable[str | os.PathLike[str]]) -> None:
         """Files that are read.
 
-        Raises
-        ------
-        InputError
-            If one of them is going to be written.
+        Raises ``InputError`` if one of them is going to be written.
         """
         named = list(files)
         self._read.update(map(file_identity, named))
@@ -171,10 +162,7 @@ class Claims:
     def write(self, place: OutputPlace) -> None:
         """Note a file that is going to be written.
 
-        Raises
-        ------
-        InputError
-            If it is read, or written already.
+        Raises ``InputError`` if it is read, or written already.
         """
         self.check(place)
         self._written[place.entry] = place
@@ -201,10 +189,7 @@ class Claims:
 def check_outputs(outputs: Iterable[object], inputs: Iterable[str | os.PathLike[str]]) -> list[OutputPlace]:
     """Find out where files will be written that must neither be among those that are read nor the same file twice.
 
-    Raises
-    ------
-    InputError
-        As ``resolve_output`` and ``Claims`` raise it.
+    Raises ``InputError`` as ``resolve_output`` and ``Claims`` raise it.
     """
     claims = Claims()
     claims.read(inputs)

@@ -41,10 +41,7 @@ def stream_name(stream: object) -> str:
 def open_stream(place: OutputPlace) -> Iterator[BinaryIO]:
     """Open a device or a pipe, as it is.
 
-    Raises
-    ------
-    InputError
-        If it cannot be opened.
+    Raises ``InputError`` if it cannot be opened.
     """
 
     def open_existing(path: str, flags: int) -> int:
@@ -61,10 +58,7 @@ def open_stream(place: OutputPlace) -> Iterator[BinaryIO]:
 def send(source: BinaryIO, stream: BinaryIO) -> None:
     """Write all of a file to a stream, however little it takes at a time.
 
-    Raises
-    ------
-    OSError
-        If it does not take everything.
+    Raises ``OSError`` if it does not take everything.
     """
     source.seek(0)
     while piece := source.read(_PIECE):

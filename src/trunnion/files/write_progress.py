@@ -36,10 +36,7 @@ class WriteProgress:
     def wait_for(self, size: int) -> bool:
         """Wait until ``size`` bytes can be read; return False if writing has finished, with whatever size.
 
-        Raises
-        ------
-        WritingStoppedError
-            If the file will not be finished.
+        Raises ``WritingStoppedError`` if the file will not be finished.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._finished or self._size >= size)

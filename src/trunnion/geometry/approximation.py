@@ -22,14 +22,9 @@ def approximate(points: Floats, parameters: Floats, tolerance: float) -> BSpline
     interval has points (Piegl and Tiller, The NURBS Book, equations 9.68 and 9.69), then parameters and curve are
     corrected in turn (Hoschek 1988).
 
-    Parameters
-    ----------
-    points : (n, 3) float64
-        mm; at least two.
-    parameters : (n,) float64
-        Rising from 0 to 1.
-    tolerance
-        mm, above 0: how far a point may be from the curve.
+    points      (n, 3) float64: mm; at least two
+    parameters  (n,) float64: rising from 0 to 1
+    tolerance   mm, above 0: how far a point may be from the curve
     """
     count, most = DEGREE + 1, len(points)
     failed = DEGREE

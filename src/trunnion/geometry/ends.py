@@ -61,10 +61,7 @@ class Ends:
 def parse_end(argument: str, text: object) -> End:
     """Return an end from ``natural``, ``tangent:X,Y,Z`` or ``derivative:X,Y,Z``.
 
-    Raises
-    ------
-    InputError
-        For another text; ``argument`` names it.
+    Raises ``InputError`` for another text; ``argument`` names it.
     """
     if isinstance(text, Natural | Tangent):
         return text

@@ -22,18 +22,9 @@ def fair_points(points: Floats, parameters: Floats, most: float) -> Floats:
     The points of a smoothing spline, which makes the sum of squared moves and the integral of the squared second
     derivative, times a weight, least (Reinsch 1967). The weight is the largest that moves no point too far.
 
-    Parameters
-    ----------
-    points : (n, 3) float64
-        mm; at least ``LEAST_POINTS``.
-    parameters : (n,) float64
-        Rising from 0 to 1.
-    most
-        mm, above 0.
-
-    Returns
-    -------
-    (n, 3) float64
+    points      (n, 3) float64: mm; at least ``LEAST_POINTS``
+    parameters  (n,) float64: rising from 0 to 1
+    most        mm, above 0
     """
     smoothing = import_extra("scipy.interpolate", "geometry").make_smoothing_spline
 

@@ -91,10 +91,7 @@ class CurveFit:
 def fit(table: PointTable, wanted: Wanted, weights: Floats | None = None) -> CurveFit:
     """Fit a curve to the points of a table.
 
-    Raises
-    ------
-    InputError
-        If the points do not make a curve, or what is wanted contradicts itself; with every mistake.
+    Raises ``InputError`` if the points do not make a curve, or what is wanted contradicts itself; with every mistake.
     """
     faults = list(point_faults(table))
     faults += _contradictions(wanted, weights, len(table.points))

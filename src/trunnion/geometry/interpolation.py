@@ -17,26 +17,14 @@ def interpolate(
 ) -> BSplineCurve:
     """Return the cubic curve through points, twice continuously differentiable, with a knot at each point.
 
-    Parameters
-    ----------
-    points : (n, 3) float64
-        mm; at least two.
-    parameters : (n,) float64
-        Rising from 0 to 1.
-    ends
-        Of the curve; by default natural. Natural ends of a rational curve are those of its homogeneous form.
-    weights : (n,) float64, optional
-        Above 0: the curve is rational, and has these weights at the points.
+    points      (n, 3) float64: mm; at least two
+    parameters  (n,) float64: rising from 0 to 1
+    ends        of the curve; by default natural. Natural ends of a rational curve are those of its homogeneous form
+    weights     (n,) float64, optional: above 0: the curve is rational, and has these weights at the points
 
-    Returns
-    -------
-    BSplineCurve
-        With n + 2 control points.
+    BSplineCurve  with n + 2 control points
 
-    Raises
-    ------
-    InputError
-        If weights vary so much from point to point that the curve would have a weight of 0 or less.
+    Raises ``InputError`` if weights vary so much from point to point that the curve would have a weight of 0 or less.
     """
     ends = ends or Ends()
     if weights is None:

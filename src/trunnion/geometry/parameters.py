@@ -14,12 +14,8 @@ PARAMETERIZATIONS: Final = ("chord-length", "centripetal")
 def parameters_of(points: Floats, parameterization: str = "chord-length") -> Floats:
     """Parameters (n,) from 0 to 1 of points (n, 3), of which no two in turn are the same.
 
-    Parameters
-    ----------
-    points
-        mm.
-    parameterization
-        One of ``PARAMETERIZATIONS``.
+    points            mm
+    parameterization  one of ``PARAMETERIZATIONS``
     """
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     if parameterization == "centripetal":

@@ -88,10 +88,7 @@ class _Columns:
 def read_point_table(file: Path) -> list[PointTable]:
     """Return the curves of a table, in the order of their columns.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or is no table of points; with every mistake and its line.
+    Raises ``InputError`` if the file cannot be read, or is no table of points; with every mistake and its line.
     """
     problem = unusable_file(file, "a table of points")
     if problem is not None:

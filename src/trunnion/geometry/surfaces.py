@@ -56,10 +56,7 @@ def loft(curves: Sequence[BSplineCurve]) -> BSplineSurface:
 
     Points of the curves with the same u are joined. The places along v are as far apart as the curves are on average.
 
-    Parameters
-    ----------
-    curves
-        At least two, polynomial ones.
+    curves  at least two, polynomial ones
     """
     knots = _merged([curve.knots for curve in curves])
     control = np.stack([_with_knots(curve, knots) for curve in curves])

@@ -89,10 +89,7 @@ class ImpellerDefinition:
 def read_impeller(path: Path) -> ImpellerDefinition:
     """Read a definition of an impeller and its tables of points.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be read, with every mistake and its line.
+    Raises ``InputError`` if a file cannot be read, with every mistake and its line.
     """
     return read_impeller_table(load_table(path, files(__package__), kind="impeller"), path)
 

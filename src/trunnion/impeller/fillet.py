@@ -106,10 +106,7 @@ def root_stations(along: int, around: int, *, round_trailing: bool) -> Stations:
 def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -> Fillet:
     """Roll a ball along the root of a blade.
 
-    Raises
-    ------
-    FilletError
-        If the ball does not touch blade and hub at each station, with the first where it does not.
+    Raises ``FilletError`` if the ball does not touch blade and hub at each station, with the first where it does not.
     """
     count = len(stations.part)
     low, high = np.full(count, blade.low), np.full(count, blade.high)

@@ -76,12 +76,9 @@ class Impeller:
 def build_impeller(definition: ImpellerDefinition) -> Impeller:
     """Make the surfaces of an impeller.
 
-    Raises
-    ------
-    InputError
-        If the points make no blade: the same twice, out of order, a section that crosses itself or is below the one
-        before, blades that overlap or stand out of the stock, a trailing edge that the stock does not cut; each with
-        the rows.
+    Raises ``InputError`` if the points make no blade: the same twice, out of order, a section that crosses itself or is
+    below the one before, blades that overlap or stand out of the stock, a trailing edge that the stock does not cut;
+    each with the rows.
     """
     problems = [fault for table in definition.sections for fault in point_faults(table)]
     if problems:
@@ -137,10 +134,7 @@ def _at_length(curve: BSplineCurve, share: float, more: float) -> float:
 def _beyond_stock(definition: ImpellerDefinition, curve: BSplineCurve, radius: float) -> float:
     """Return the parameter at which a curve that goes straight on beyond its end is outside of the stock with its edge.
 
-    Raises
-    ------
-    InputError
-        If it does not lead out of the stock.
+    Raises ``InputError`` if it does not lead out of the stock.
     """
     (point,), (slope,) = curve.derivatives(np.ones(1), 1)
     outward = float(point[:2] @ slope[:2]) / float(np.hypot(*point[:2]))

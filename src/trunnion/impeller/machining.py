@@ -92,21 +92,12 @@ def step_paths(
 ) -> Iterator[StepPaths]:
     """Yield the paths of the steps of an impeller, one after another.
 
-    Parameters
-    ----------
-    impeller
-        Its definition has the steps and their tools.
-    reachable
-        None: every tool axis can be had.
-    names
-        Of the steps to make; none: all of them.
-    progress
-        Accompanies the work within each step.
+    impeller   its definition has the steps and their tools
+    reachable  None: every tool axis can be had
+    names      of the steps to make; none: all of them
+    progress   accompanies the work within each step
 
-    Raises
-    ------
-    InputError
-        If a step cannot be made, with its place and cure; or there is none.
+    Raises ``InputError`` if a step cannot be made, with its place and cure; or there is none.
     """
     definition = impeller.definition
     if not definition.steps:
@@ -319,10 +310,8 @@ def _named(
 def _kept(step: MachiningStep, tool: LibraryTool, clearance: Sequence[PartClearance]) -> float:
     """Return the share of the wanted clearances that is kept.
 
-    Raises
-    ------
-    InputError
-        If not even the least is: with the place, what is in the way of which part of the tool, and what helps.
+    Raises ``InputError`` if not even the least is: with the place, what is in the way of which part of the tool, and
+    what helps.
     """
     cutter, shank, holder, _ = step.clearance
     wanted = Wanted(cutter=cutter, shank=shank, holder=holder)

@@ -62,17 +62,11 @@ class ImpellerModel:
 def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:
     """Make a closed mesh of an impeller.
 
-    Parameters
-    ----------
-    impeller
-        Its surfaces.
-    tolerance
-        mm: how far facets may be off the surfaces.
+    impeller   its surfaces
+    tolerance  mm: how far facets may be off the surfaces
 
-    Raises
-    ------
-    InputError
-        If the fillet finds no place, the bodies make no closed solid, or its facets are farther off than the tolerance.
+    Raises ``InputError`` if the fillet finds no place, the bodies make no closed solid, or its facets are farther off
+    than the tolerance.
     """
     definition = impeller.definition
     share = min(_SHARE * tolerance, _OF_FILLET * definition.fillet)
@@ -121,10 +115,7 @@ def is_closed(faces: Ints) -> bool:
 def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]:
     """Return the fillet of the blade, and of the splitter if there is one.
 
-    Raises
-    ------
-    InputError
-        If one finds no place.
+    Raises ``InputError`` if one finds no place.
     """
     definition, blades = impeller.definition, list(impeller.blades())
     # The ball goes round the edges on a circle that is by its own radius larger than theirs.

@@ -5,7 +5,7 @@ declaration. Functions say in their docstrings what each means; here it stands u
 """
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, TypeVar, cast
@@ -56,7 +56,7 @@ class BodyArguments(TypedDict, total=False):
     part: "str | Path | TriangleMesh | None"
     fixtures: "str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh]"
     tools: "str | ToolShape | Iterable[str | ToolShape]"
-    libraries: Sequence[FilePath]
+    tool_libraries: Sequence[FilePath]
     unit: Literal["mm", "inch"] | None
 
 
@@ -100,7 +100,7 @@ class ConvertArguments(ReadingArguments, SetUpArguments, total=False):
     force: bool
 
 
-class VerifyArguments(ClampingArguments, SetUpArguments, total=False):
+class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.verify``."""
 
     cl: ToolpathLike | Iterable[ToolpathLike]
@@ -112,8 +112,6 @@ class VerifyArguments(ClampingArguments, SetUpArguments, total=False):
     tool: str | int
     work_offset: str | None
     edge: int | str | None
-    units: Literal["mm", "inch"] | None
-    dialect: str | None
     frame: Literal["first", "absolute"]
     feed: Literal["programmed", "fastest"]
     feed_limit: float | None
@@ -207,13 +205,6 @@ class LiveArguments(TypedDict, total=False):
     password: str
 
 
-class RecordArguments(LiveArguments, total=False):
-    """Arguments of ``record``."""
-
-    seconds: float | None
-    ready: Callable[[tuple[str, ...]], None] | None
-
-
 class ImpellerArguments(TypedDict, total=False):
     """Arguments of ``trunnion.cut_impeller``."""
 
@@ -231,7 +222,7 @@ LIBRARY: Final[Mapping[str, Any]] = MappingProxyType(
 )  # fmt: skip
 
 #: Names of earlier versions, which are still taken with a warning: name -> the present one.
-EARLIER: Final[Mapping[str, str]] = MappingProxyType({})
+EARLIER: Final[Mapping[str, str]] = MappingProxyType({"libraries": "tool_libraries"})
 
 
 def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
@@ -247,7 +238,7 @@ def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
         If something is given as an argument and as a setting.
     """
     known = kind.__annotations__
-    stated = _present_names(cast(Mapping[str, Any], given), known, command)
+    stated = _known(cast(Mapping[str, Any], given), known, command)
     options = {each.name: each for each in JOBS[command].options if each.name in known}
     found = {name: LIBRARY.get(name) for name in known} | {name: each.empty for name, each in options.items()}
     found |= {name: None for name, each in options.items() if isinstance(each.kind, Setting) or each.setting}
@@ -258,16 +249,11 @@ def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
     return cast(_Given, found)
 
 
-def _present_names(given: Mapping[str, Any], known: Iterable[str], command: str) -> dict[str, Any]:
-    """Return arguments under their present names."""
+def with_present_names(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return arguments under their present names; those of earlier versions are warned of."""
     found: dict[str, Any] = {}
     for name, value in given.items():
-        present = name if name in known else EARLIER.get(name, name)
-        if present not in known:
-            near = nearest_word(name, known)
-            raise TypeError(f"{command} has no argument {name!r}{f'; did you mean {near!r}?' if near else ''}")
-        if present in given and present != name:
-            raise TypeError(f"{name!r} is now called {present!r}, and both are given")
+        present = EARLIER.get(name, name)
         if present != name:
             what = f"the argument {name!r} is now called {present!r}; the next version no longer knows {name!r}"
             warnings.warn(what, FutureWarning, stacklevel=4)
@@ -275,8 +261,19 @@ def _present_names(given: Mapping[str, Any], known: Iterable[str], command: str)
     return found
 
 
+def _known(given: Mapping[str, Any], known: Iterable[str], command: str) -> dict[str, Any]:
+    """Return arguments under their present names, all of which the function has."""
+    names = [*known]
+    found = with_present_names(given)
+    for name in found:
+        if name not in names:
+            near = nearest_word(name, names)
+            raise TypeError(f"{command} has no argument {name!r}{f'; did you mean {near!r}?' if near else ''}")
+    return found
+
+
 def _with_setting(settings: Settings | None, key: str, name: str, value: Any) -> Settings:
     """Return settings with one that is given as an argument."""
     if settings is not None and key in settings:
-        raise InputError(argument_problem(name, Wording("ARG130", "setting_too", name=key)))
+        raise InputError(argument_problem(name, Wording("ARG130", "setting_too", key=key)))
     return {**(settings or {}), key: value}

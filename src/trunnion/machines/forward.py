@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Floats2
+from trunnion.arrays import Flags, Floats, Floats2, make_read_only
 from trunnion.jit import inner, kernel
 from trunnion.machines.machine import Machine
 
@@ -60,19 +60,12 @@ def forward(machine: Machine, joints: Floats, tool_length: float | None = None) 
 def tool_axes(machine: Machine, joints: Floats) -> tuple[Floats, Floats]:
     """Tool axes of consecutive rows, and half-way between each two of them.
 
-    Parameters
-    ----------
-    machine
-        The chain, from the workpiece to the tool.
-    joints : (n, 5) float64, mm or deg
-        Displayed axis values in the order of ``machine.axes``.
+    machine  the chain, from the workpiece to the tool
+    joints   (n, 5) float64, mm or deg: displayed axis values in the order of ``machine.axes``
 
-    Returns
-    -------
-    axis : (n, 3) float64
-        Unit vectors from tip to holder, in workpiece coordinates.
-    half_way : (n - 1, 3) float64
-        The same with every joint half-way from one row to the next; rotary axes turn as their values say.
+    axis      (n, 3) float64: Unit vectors from tip to holder, in workpiece coordinates
+    half_way  (n - 1, 3) float64: The same with every joint half-way from one row to the next; rotary axes turn as their
+              values say
     """
     axis, half_way = np.empty((len(joints), 3)), np.empty((max(len(joints) - 1, 0), 3))
     tool_axis_rows(kinematic_chain(machine), machine.rotary, joints, axis, half_way)
@@ -114,8 +107,7 @@ def kinematic_chain(machine: Machine, tool_length: float | None = None) -> Kinem
         spindle=spindle,
         zero=np.array(machine.workpiece_zero or (0.0, 0.0, 0.0)),
     )
-    for array in chain:
-        array.setflags(write=False)
+    make_read_only(*chain)
     return chain
 
 

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Floats2
+from trunnion.arrays import Flags, Floats, Floats2, make_read_only
 from trunnion.jit import inner, kernel
 from trunnion.machines.machine import Machine, Mount
 
@@ -45,22 +45,12 @@ class LinkChain(NamedTuple):
 def link_transforms(machine: Machine, joints: Floats) -> dict[str, Floats]:
     """Return where each link stands.
 
-    Parameters
-    ----------
-    machine
-        The chain, from the workpiece to the tool.
-    joints : (n, 5) float64, mm or deg
-        Displayed axis values in the order of ``machine.axes``.
+    machine  the chain, from the workpiece to the tool
+    joints   (n, 5) float64, mm or deg: displayed axis values in the order of ``machine.axes``
 
-    Returns
-    -------
-    dict
-        By name of link (n, 4, 4) float64: maps from the machine frame with all axes at zero to the machine frame.
+    dict  by name of link (n, 4, 4) float64: maps from the machine frame with all axes at zero to the machine frame
 
-    Raises
-    ------
-    ValueError
-        If ``joints`` has another shape.
+    Raises ``ValueError`` if ``joints`` has another shape.
     """
     rows = np.ascontiguousarray(joints, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] != 5:
@@ -78,10 +68,7 @@ def link_transforms(machine: Machine, joints: Floats) -> dict[str, Floats]:
 def carrier(machine: Machine, link: str) -> str:
     """Return the axis, or the bed, that a link is: workpiece and spindle are the last links of their side.
 
-    Raises
-    ------
-    KeyError
-        If the machine has no such link.
+    Raises ``KeyError`` if the machine has no such link.
     """
     if link == WORKPIECE:
         return machine.axes[0].name if machine.axes[0].mount is Mount.PART else BED
@@ -124,8 +111,7 @@ def link_chain(machine: Machine) -> LinkChain:
         point=np.array([axis.point for axis in machine.axes]),
         part_axes=sum(axis.mount is Mount.PART for axis in machine.axes),
     )
-    for array in chain[:3]:
-        array.setflags(write=False)
+    make_read_only(*chain[:3])
     return chain
 
 

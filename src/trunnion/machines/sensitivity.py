@@ -115,14 +115,9 @@ def idle_numbers(machine: Machine) -> tuple[GeometryNumber, ...]:
 def derivatives(machine: Machine, joints: Floats, tool_length: float | None = None) -> Iterator[NumberDerivative]:
     """Yield the derivative of the forward map with respect to each number that can move the tool.
 
-    Parameters
-    ----------
-    machine
-        The chain, from the workpiece to the tool.
-    joints : (n, 5) float64, mm or deg
-        Displayed axis values in the order of ``machine.axes``.
-    tool_length
-        From the gauge point to the tip, mm; None: that of ``machine.tool_length``.
+    machine      the chain, from the workpiece to the tool
+    joints       (n, 5) float64, mm or deg: displayed axis values in the order of ``machine.axes``
+    tool_length  from the gauge point to the tip, mm; None: that of ``machine.tool_length``
     """
     chain = kinematic_chain(machine, tool_length)
     length = (machine.tool_length or 0.0) if tool_length is None else tool_length

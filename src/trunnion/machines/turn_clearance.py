@@ -87,12 +87,8 @@ class SweptPart:
 def turns_part_alone(machine: Machine, before: Floats, after: Floats, still: float) -> bool:
     """Whether a turn keeps the tilt: only the rotary axis next to the part turns, and carries the part.
 
-    Parameters
-    ----------
-    before, after : (5,) float64
-        Axis values.
-    still
-        Smaller motion, degrees, is none.
+    before, after  (5,) float64: axis values
+    still          smaller motion, degrees, is none
     """
     first, second = machine.rotary
     return machine.axes[first].mount is Mount.PART and abs(float(after[second] - before[second])) <= still
@@ -104,14 +100,9 @@ def turn_clearance(machine: Machine, before: Floats, after: Floats, part: SweptP
     The tool is the half-line from its tip through the spindle: what surrounds it is left to the distance that is asked
     for. The rotary axes turn evenly, and the slides rest at the values of ``before``.
 
-    Parameters
-    ----------
-    machine
-        With its workpiece zero; None counts as on the machine's own zero.
-    before, after : (5,) float64
-        Axis values, mm or deg; of ``after`` only the rotary ones count.
-    part
-        What the part fills, in workpiece coordinates.
+    machine        with its workpiece zero; None counts as on the machine's own zero
+    before, after  (5,) float64: axis values, mm or deg; of ``after`` only the rotary ones count
+    part           what the part fills, in workpiece coordinates
     """
     rotary = list(machine.rotary)
     turn = after[rotary] - before[rotary]

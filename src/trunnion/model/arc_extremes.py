@@ -115,13 +115,9 @@ def _tip_reach(paths: ArcPaths) -> Reach:
 def axis_reach(machine: Machine, paths: ArcPaths, rotary_start: Floats, rotary_end: Floats) -> Reach:
     """Extremes of the slides, (m, 5), in the order of ``machine.axes``; rotary axes have theirs at the ends.
 
-    Parameters
-    ----------
-    paths
-        In the workpiece frame.
-    rotary_start, rotary_end : (m, 2) float64
-        Positions at the ends of each arc, degrees, between which they move linearly, in the order of
-        ``machine.rotary``.
+    paths                     in the workpiece frame
+    rotary_start, rotary_end  (m, 2) float64: positions at the ends of each arc, degrees, between which they move
+                              linearly, in the order of ``machine.rotary``
     """
     reach = Reach.nothing(len(paths), 5)
     for part in _parts(len(paths)):

@@ -71,22 +71,15 @@ def resolve_rotary(
 ) -> Codes:
     """Replace the rotary values of consecutive rows by the positions that the axes take.
 
-    Parameters
-    ----------
-    xyz : (n, 3) float64, mm
-        Tool tips in the workpiece frame if ``xyz_is_tip``, else slide positions in the order X, Y, Z.
-    words
-        Rotary words and vectors; ``words.rotary`` is changed.
-    start : (2,) float64, deg
-        Rotary positions before the first row.
-    deciding_axis
-        The rotary axis, 0 or 1, whose rotation decides between the two solutions for a vector. If it is equal in both,
-        the rotation of the other axis decides, then the solution nearer to 0. ``TOTAL_ROTATION``: the sum of both.
+    xyz            (n, 3) float64, mm: tool tips in the workpiece frame if ``xyz_is_tip``, else slide positions in the
+                   order X, Y, Z
+    words          rotary words and vectors; ``words.rotary`` is changed
+    start          (2,) float64, deg: rotary positions before the first row
+    deciding_axis  the rotary axis, 0 or 1, whose rotation decides between the two solutions for a vector. If it is
+                   equal in both, the rotation of the other axis decides, then the solution nearer to 0.
+                   ``TOTAL_ROTATION``: the sum of both
 
-    Returns
-    -------
-    (n,) uint8
-        Bits OUT_OF_TRAVEL, NO_ROTARY_SOLUTION and NO_SLIDE_SOLUTION.
+    (n,) uint8  bits OUT_OF_TRAVEL, NO_ROTARY_SOLUTION and NO_SLIDE_SOLUTION
     """
     status = np.zeros(len(xyz), np.uint8)
     resolve_angles(machine, words, start, status, deciding_axis)

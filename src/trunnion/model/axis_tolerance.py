@@ -41,11 +41,7 @@ class AxisTolerance:
 def allowed_deviation(tolerance: float | Floats, turn: Floats) -> Floats:
     """Return how far the tool axis may be off between points, (n,) degrees.
 
-    Parameters
-    ----------
-    tolerance
-        Of the operation, for each step or for all of them.
-    turn : (n,) float64
-        How far the tool axis turns from point to point.
+    tolerance  of the operation, for each step or for all of them
+    turn       (n,) float64: how far the tool axis turns from point to point
     """
     return np.asarray(np.maximum(tolerance, _COARSE_PART * turn))

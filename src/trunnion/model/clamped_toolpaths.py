@@ -21,10 +21,7 @@ from trunnion.model.toolpath import Frame, Operation, Toolpath
 def stated_clamping(toolpaths: Sequence[Toolpath]) -> Clamping | None:
     """How the part is clamped as its CL files state; None: they state nothing.
 
-    Raises
-    ------
-    InputError
-        If they state different clampings, one of which may be that of the drawing.
+    Raises ``InputError`` if they state different clampings, one of which may be that of the drawing.
     """
     first = next((path for path in toolpaths if path.clamping is not None), None)
     if first is None or first.clamping is None:
@@ -47,10 +44,7 @@ def stated_clamping(toolpaths: Sequence[Toolpath]) -> Clamping | None:
 def clamped_after(stated: Clamping | None, angles: tuple[float, float], file: str) -> Clamping:
     """How a part is clamped that is ``stated`` to be clamped so, and is tilted and turned by ``angles`` then, degrees.
 
-    Raises
-    ------
-    InputError
-        If that is no tilt with a turn behind it, as a head has to state it.
+    Raises ``InputError`` if that is no tilt with a turn behind it, as a head has to state it.
     """
     found = (stated or Clamping()).then(*angles)
     if found is None:
@@ -78,10 +72,7 @@ def turned_toolpaths(
 def toolpaths_clamped(toolpaths: Sequence[Toolpath], degrees: float, tilt: float) -> list[Toolpath]:
     """Toolpaths of a part that is clamped so against its drawing, whatever they state of it themselves.
 
-    Raises
-    ------
-    InputError
-        If they state different clampings.
+    Raises ``InputError`` if they state different clampings.
     """
     stated = stated_clamping(toolpaths) or Clamping()
     if stated.is_as_drawn:

@@ -41,12 +41,8 @@ class FeedPath(IntEnum):
 def feed_path_lengths(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats:
     """Return the lengths that F refers to for k motions of the axes, (k,) mm or degrees; length over F is the time.
 
-    Parameters
-    ----------
-    before, after : (k, 5) float64
-        Axis values at both ends, rotary values with all turns.
-    path : (k,) uint8
-        A ``FeedPath`` for each motion.
+    before, after  (k, 5) float64: axis values at both ends, rotary values with all turns
+    path           (k,) uint8: A ``FeedPath`` for each motion
     """
     steps = after - before
     slides = np.linalg.norm(steps[:, list(machine.linear)], axis=1)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Annotated
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats, Ints, make_read_only
 from trunnion.errors import Problem, Severity
 from trunnion.model.arcs import with_closed_turns
 from trunnion.model.deviations import Deviations
@@ -61,7 +61,7 @@ class Motion:
     cl_rows: Ints | None = None
 
     def __post_init__(self) -> None:
-        self.rotary.setflags(write=False)
+        make_read_only(self.rotary)
 
     @property
     def three_axis(self) -> bool:

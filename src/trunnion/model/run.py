@@ -14,17 +14,19 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields
 from enum import IntEnum, IntFlag, StrEnum
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
+from trunnion.arrays import Codes, Floats, Ints, Lines, make_read_only
 from trunnion.concurrency import prefetch
 from trunnion.errors import Severity
 from trunnion.machines import KinematicParameters, Machine, forward, kinematic_parameters, tool_axes
 from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
+from trunnion.model.run_columns import ModalState, SurfaceNormals
 from trunnion.model.splines import Splines
 from trunnion.model.toolpath import Arcs
 
@@ -166,62 +168,6 @@ ORIENTATION_FROM_WORDS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SurfaceNormals:
-    """Surface normals that blocks program: ``row`` (k,), ascending, and ``vector`` (k, 3) in the workpiece frame.
-
-    The vectors keep the length that they have in the program.
-    """
-
-    row: Ints
-    vector: Floats
-
-    def __post_init__(self) -> None:
-        for column in (self.row, self.vector):
-            column.setflags(write=False)
-
-    def __len__(self) -> int:
-        return len(self.row)
-
-    @staticmethod
-    def empty() -> "SurfaceNormals":
-        """Return a table without normals."""
-        return SurfaceNormals(np.zeros(0, np.int64), np.zeros((0, 3)))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ModalState:
-    """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
-
-    xyz_is_tip  ``Run.xyz`` is the tool tip, not the positions of the linear axes
-    plane       the row of ``Run.planes`` in whose coordinates words are; -1: in none of them
-    compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
-    radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
-    machine_steps  in coordinates of the machine: bits of the linear axes that a block moves from where they are (G91)
-    feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
-    """
-
-    file: StepColumn
-    feed: StepColumn
-    feed_mode: StepColumn
-    rpm: StepColumn
-    spindle: StepColumn
-    tool: StepColumn
-    edge: StepColumn
-    compensation: StepColumn
-    radius: StepColumn
-    compensation_plane: StepColumn
-    work_offset: StepColumn
-    tcp: StepColumn
-    machine_frame: StepColumn
-    machine_steps: StepColumn
-    inches: StepColumn
-    orientation: StepColumn
-    xyz_is_tip: StepColumn
-    plane: StepColumn
-    feed_path: StepColumn
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class RowPositions:
     """Axes and tool at the end of k rows: ``joints`` (k, 5), ``tip`` and ``axis`` (k, 3) as in ``Run``, read-only."""
 
@@ -230,8 +176,7 @@ class RowPositions:
     axis: Floats
 
     def __post_init__(self) -> None:
-        for column in (self.joints, self.tip, self.axis):
-            column.setflags(write=False)
+        make_read_only(self.joints, self.tip, self.axis)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -239,6 +184,19 @@ class PositionChunk(RowPositions):
     """Consecutive rows; ``midpoint_axis`` (k - 1, 3) is the tool axis with every joint half-way from row to row."""
 
     midpoint_axis: Floats
+
+
+_Item = TypeVar("_Item", bound=np.generic)
+
+
+def _whole(name: str, kind: type[_Item]) -> "cached_property[NDArray[_Item]]":
+    """Return a property of ``Run``: a value of ``ModalState``, whose items are of a kind, as a whole column."""
+
+    def column(run: "Run") -> NDArray[_Item]:
+        column: StepColumn = getattr(run.state, name)
+        return column.column()
+
+    return cached_property(column)
 
 
 @dataclass(frozen=True, eq=False)
@@ -427,62 +385,17 @@ class Run:
         column.setflags(write=False)
         return column
 
-    @cached_property
-    def file(self) -> NDArray[np.uint16]:
-        """Index of each row's file in ``files``, (n,)."""
-        return self.state.file.column()
+    # What each of these is stands above.
 
-    @cached_property
-    def feed(self) -> Floats:
-        """Programmed feed, (n,), in the unit of ``feed_mode``; NaN before the first F."""
-        return self.state.feed.column()
-
-    @cached_property
-    def feed_mode(self) -> Codes:
-        """Unit of the feed, (n,): 94 mm/min, 95 mm/rev, 93 1/min."""
-        return self.state.feed_mode.column()
-
-    @cached_property
-    def rpm(self) -> Floats:
-        """Programmed spindle speed, (n,), rev/min; 0 before the first S."""
-        return self.state.rpm.column()
-
-    @cached_property
-    def spindle(self) -> NDArray[np.int8]:
-        """Sense of the spindle, (n,): 1 M3, -1 M4, 0 off."""
-        return self.state.spindle.column()
-
-    @cached_property
-    def tool(self) -> Lines:
-        """Index of the tool in ``tools``, (n,); 0 before the first."""
-        return self.state.tool.column()
-
-    @cached_property
-    def edge(self) -> Lines:
-        """D number, (n,), or H of the active length; -1 for none."""
-        return self.state.edge.column()
-
-    @cached_property
-    def compensation(self) -> NDArray[np.int8]:
-        """Cutter radius compensation, (n,): 1 left (G41), -1 right (G42), 0 off."""
-        return self.state.compensation.column()
-
-    @cached_property
-    def work_offset(self) -> NDArray[np.uint16]:
-        """Work offset, (n,), 0 before the first; ``work_offset_name`` tells its name."""
-        return self.state.work_offset.column()
-
-    @cached_property
-    def tcp(self) -> Flags:
-        """Whether tool centre point control is on, (n,)."""
-        return self.state.tcp.column()
-
-    @cached_property
-    def machine_frame(self) -> Flags:
-        """Whether the block programs positions of the machine axes, (n,)."""
-        return self.state.machine_frame.column()
-
-    @cached_property
-    def inches(self) -> Flags:
-        """Whether lengths are programmed in inches, (n,); the columns are in mm."""
-        return self.state.inches.column()
+    file = _whole("file", np.uint16)
+    feed = _whole("feed", np.float64)
+    feed_mode = _whole("feed_mode", np.uint8)
+    rpm = _whole("rpm", np.float64)
+    spindle = _whole("spindle", np.int8)
+    tool = _whole("tool", np.int32)
+    edge = _whole("edge", np.int32)
+    compensation = _whole("compensation", np.int8)
+    work_offset = _whole("work_offset", np.uint16)
+    tcp = _whole("tcp", np.bool_)
+    machine_frame = _whole("machine_frame", np.bool_)
+    inches = _whole("inches", np.bool_)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, make_read_only
 
 
 class Spline(NamedTuple):
@@ -70,10 +70,8 @@ class Splines:
     knots: Floats
 
     def __post_init__(self) -> None:
-        for column in (self.first, self.last, self.degree, self.pole_begin, self.knot_begin):
-            column.setflags(write=False)
-        for values in (self.poles, self.weights, self.knots):
-            values.setflags(write=False)
+        make_read_only(self.first, self.last, self.degree, self.pole_begin, self.knot_begin)
+        make_read_only(self.poles, self.weights, self.knots)
 
     def __len__(self) -> int:
         return len(self.first)

@@ -54,14 +54,9 @@ class _Pieces:
 def subdivide(run: Run, pieces: int | Ints, rows: slice = slice(None)) -> Samples:
     """Cut rows of a run into pieces of equal length.
 
-    Parameters
-    ----------
-    run
-        The run.
-    pieces
-        At least 1; a number for all rows, or one for each row of ``rows``.
-    rows
-        Consecutive rows, all of them by default.
+    run     the run
+    pieces  at least 1; a number for all rows, or one for each row of ``rows``
+    rows    consecutive rows, all of them by default
     """
     cut = _cut(run, pieces, rows)
     row, fraction = cut.row, cut.fraction

@@ -14,7 +14,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
+from trunnion.arrays import Codes, Flags, Floats, Ints, Lines, make_read_only
 from trunnion.errors import Problem
 from trunnion.model.clamping import Clamping
 from trunnion.model.splines import Splines
@@ -68,9 +68,7 @@ class Moves:
     normal: Floats | None = None
 
     def __post_init__(self) -> None:
-        for column in (self.tip, self.axis, self.kind, self.phase, self.feed, self.per_rev, self.line, self.normal):
-            if column is not None:
-                column.setflags(write=False)
+        make_read_only(self.tip, self.axis, self.kind, self.phase, self.feed, self.per_rev, self.line, self.normal)
 
     def __len__(self) -> int:
         return len(self.tip)
@@ -101,8 +99,7 @@ class Arcs:
     full_turns: Ints
 
     def __post_init__(self) -> None:
-        for column in (self.row, self.centre, self.normal, self.radius, self.full_turns):
-            column.setflags(write=False)
+        make_read_only(self.row, self.centre, self.normal, self.radius, self.full_turns)
 
     @staticmethod
     def empty() -> "Arcs":

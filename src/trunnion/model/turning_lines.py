@@ -61,12 +61,8 @@ def longest_arms(kinematics: KinematicParameters, tip: Floats) -> Floats:
 def chord_excursion(turn: Floats, way: Floats, arm: Floats) -> Floats:
     """How far a slide with a normal of length 1 leaves its chord at most, (n,) mm.
 
-    Parameters
-    ----------
-    turn : (n,) float64
-        Angles that both rotary axes turn together, evenly, radians.
-    way, arm : (n,) float64
-        Of the tip, and from a rotary axis to it, mm.
+    turn      (n,) float64: angles that both rotary axes turn together, evenly, radians
+    way, arm  (n,) float64: of the tip, and from a rotary axis to it, mm
     """
     return np.asarray((turn**2 * arm + 2.0 * turn * way) / 8.0)
 
@@ -193,12 +189,9 @@ class LineSearch:
     def likely(self, tip: Floats, joints: Floats, counts: Flags, great_circle: Flags) -> Ints:
         """Which of n consecutive rows may go beyond what has been found, the farthest first.
 
-        Parameters
-        ----------
-        tip, joints : (n + 1, 3), (n + 1, 5) float64
-            The position before the rows comes first.
-        counts, great_circle : (n,) bool
-            Which rows are lines under TCP, and on which of these the tool axis moves on a great circle.
+        tip, joints           (n + 1, 3), (n + 1, 5) float64: the position before the rows comes first
+        counts, great_circle  (n,) bool: which rows are lines under TCP, and on which of these the tool axis moves on a
+                              great circle
         """
         beyond = np.empty(len(counts))
         _write_beyond(

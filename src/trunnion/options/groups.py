@@ -165,7 +165,7 @@ BODIES: Final = Group(
         ),
         TOOLS,
         Option(
-            "libraries",
+            "tool_libraries",
             "--tool-library",
             FileIn("LIBRARY", leads="library"),
             "tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl",

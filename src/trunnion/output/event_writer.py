@@ -78,16 +78,11 @@ class EventWriter:
     ) -> None:
         """Write the rows of a motion from ``first`` on, with its events.
 
-        Parameters
-        ----------
-        motion
-            In the coordinates of its blocks.
-        end_lines
-            Lines of the template that comes next. What they switch at their beginning is not switched right before.
-        values
-            Of templates, for those of stops.
-        restart_spindle
-            The end of the last operation has stopped the spindle.
+        motion           in the coordinates of its blocks
+        end_lines        lines of the template that comes next. What they switch at their beginning is not switched
+                         right before
+        values           of templates, for those of stops
+        restart_spindle  the end of the last operation has stopped the spindle
         """
         rows = len(motion.operation.moves)
         self._motion, self._next_row, self._phase, self._cycle = motion, first, -1, None

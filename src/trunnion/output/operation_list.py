@@ -14,12 +14,8 @@ from trunnion.output.program import Program
 def operation_texts(program: Program, calls: Sequence[str], times: Sequence[str | None]) -> list[str]:
     """Return three texts or fewer for each operation, lengths and feeds in the unit of the program.
 
-    Parameters
-    ----------
-    calls
-        The tool of each operation as the program calls it.
-    times
-        The machining time of each, or what stands for it; None: it is not told.
+    calls  the tool of each operation as the program calls it
+    times  the machining time of each, or what stands for it; None: it is not told
     """
     starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
     groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]

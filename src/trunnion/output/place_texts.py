@@ -18,7 +18,8 @@ from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOn, Event, Insert, Kind, Message, RewindMessage, ShopStatement, SpindleOn
 from trunnion.output.program import Program
 from trunnion.output.template_printing import TemplatePrinting
-from trunnion.output.template_values import LoadedTool, TemplateValues, plain_text
+from trunnion.output.template_values import TemplateValues, plain_text
+from trunnion.output.tool_calls import LoadedTool
 
 _MOTION_PLACES: Final = ("first_cut", "rewind", "retract")
 
@@ -26,11 +27,8 @@ _MOTION_PLACES: Final = ("first_cut", "rewind", "retract")
 def with_place_texts(program: Program) -> Program:
     """Return a program with the texts of its control's templates for places within the motion of operations.
 
-    Raises
-    ------
-    InputError
-        If a template does what it cannot, or prints a number beyond the limits of its format, or there is nothing to
-        call a tool by.
+    Raises ``InputError`` if a template does what it cannot, or prints a number beyond the limits of its format, or
+    there is nothing to call a tool by.
     """
     names = program.control.templates.keys()
     if not any(name in _MOTION_PLACES or name.startswith(EVENT_PLACE) for name in names):
@@ -58,8 +56,8 @@ class _Places:
         self._has_cut = self._has_cut and not motion.starts_operation
         values = self._values.values(motion, k, self._loaded, spindle[0] if spindle else None)
         if motion.starts_operation:
-            register = self._values.length_register(operation, self._loaded)
-            self._loaded = LoadedTool(self._values.tool_call(operation, self._loaded), operation.tool.name, register)
+            register = self._values.tools.length_register(operation, self._loaded)
+            self._loaded = LoadedTool(self._values.tools.call(operation, self._loaded), operation.tool.name, register)
         self._spindle = starts[-1:] or self._spindle
         events = [new for event in operation.events for new in self._instead(event, values, motion)]
         if not self._has_cut and "first_cut" in self._templates:

@@ -27,8 +27,9 @@ from trunnion.output.operation_list import operation_texts
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
 from trunnion.output.template_printing import TemplatePrinting
-from trunnion.output.template_values import LoadedTool, TemplateValues, tool_text
+from trunnion.output.template_values import TemplateValues
 from trunnion.output.template_writer import TemplateWriter
+from trunnion.output.tool_calls import LoadedTool, tool_text
 
 #: M codes of coolant that belong to the control.
 _OWN_COOLANT: Final = frozenset({7, 8})
@@ -98,7 +99,7 @@ class _ProgramWriter:
         self._notices = self._comments(program.notices)
         self._loaded_tool = LoadedTool()
         self._called_tool = ""  # in the present file
-        self._tool_calls = self._template_values.tool_calls
+        self._tool_calls = self._template_values.tools.calls
         self._operation = 0
         self._calls_each = program.effective_setting("restart") == "on"
         self._previous_motion: Motion | None = None
@@ -217,7 +218,7 @@ class _ProgramWriter:
 
     def _preselect_next(self, motion: Motion, values: Mapping[str, Value]) -> None:
         """Select the next other tool, if that is asked for, as soon as that of an operation is in the spindle."""
-        following = self._template_values.next_call(self._operation + 1)
+        following = self._template_values.tools.next_call(self._operation + 1)
         if self._program.effective_setting("preselect") != "on" or following is None:
             return
         if not self._templates.write_place("preselect", values, motion):
@@ -267,7 +268,7 @@ class _ProgramWriter:
             self._templates.write_place("same_tool", values, motion)
         self._called_tool = tool
         self._operation += 1
-        register = self._template_values.length_register(motion.operation, self._loaded_tool)
+        register = self._template_values.tools.length_register(motion.operation, self._loaded_tool)
         self._loaded_tool = LoadedTool(tool, motion.operation.tool.name, register)
 
     def _approach(self, motion: Motion, suffix: str, values: Mapping[str, Value]) -> None:

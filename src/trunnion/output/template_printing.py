@@ -40,7 +40,7 @@ class TemplatePrinting:
         if isinstance(number, int):
             operation = records.operations[number - 1]
             found |= {"operation": operation, "tool": operation.values["tool"]}
-            found["next_tool"] = records.tool(self._values.next_call(number))
+            found["next_tool"] = records.tool(self._values.tools.next_call(number))
         return found
 
     @cached_property

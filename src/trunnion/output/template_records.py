@@ -39,7 +39,7 @@ class TemplateRecords:
 
     def __init__(self, program: Program, values: TemplateValues) -> None:
         self._program, self._values = program, values
-        calls = values.tool_calls
+        calls = values.tools.calls
         count = {call: sum(other == call for other, *_ in calls) for call, *_ in calls}
         tools = {call: operation.tool for call, _, operation in reversed(calls)}
         self._tools = {call: self._tool(call, tools[call], count[call]) for call in dict.fromkeys(c for c, *_ in calls)}

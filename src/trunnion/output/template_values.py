@@ -5,27 +5,23 @@ A value is None where there is none: a template leaves out the line that names i
 
 import secrets
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
 from itertools import accumulate
 from string import ascii_uppercase
 from typing import Final
 
 import numpy as np
 
-from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
-from trunnion.controls.setting_rules import tool_number
+from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.template import PrintedText, Value
 from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
-from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
-from trunnion.messages import Wording
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn, Tool
+from trunnion.model.toolpath import Operation, Sense, SpindleOn
 from trunnion.output.coordinates.extents import cut_extents
 from trunnion.output.coordinates.rotary_angles import rotary_counts
 from trunnion.output.program import Program
+from trunnion.output.tool_calls import LoadedTool, ToolCalls
 from trunnion.planning import operation_seconds
 from trunnion.wording import format_duration
 
@@ -40,25 +36,14 @@ TIME_TOKEN_DIGITS: Final = 7
 _NO_POSITION: Final = (None, None, None)
 
 
-@dataclass(frozen=True, slots=True)
-class LoadedTool:
-    """The tool in the spindle: how the program called it, and its name; both empty before the first.
-
-    register   the number of its length that LOAD/TOOL names; 0: that of the tool
-    """
-
-    call: str = ""
-    name: str = ""
-    register: int = 0
-
-
 class TemplateValues:
-    """Computes the values of templates; keeps the machining times, which take long."""
+    """Computes the values of templates with the ``tools`` of the program; keeps machining times, which take long."""
 
     def __init__(self, program: Program) -> None:
         self._program = program
         self._family: FamilyWriter = program.control.family
         self._seconds: list[float] = []
+        self.tools = ToolCalls(program)
         modes = {motion.mode for motion in program.motions}
         offsets = {program.effective_setting("work_offset", motion.operation) for motion in program.motions}
         self._prints_times = prints_times(program)
@@ -72,25 +57,16 @@ class TemplateValues:
     def values(self, motion: Motion, number: int, loaded: LoadedTool, spindle: SpindleOn | None) -> dict[str, Value]:
         """Return the values for an operation, or for the part of it that is one motion.
 
-        Parameters
-        ----------
-        motion
-            In coordinates of the workpiece.
-        number
-            Index of the motion in the program; -1 for the last.
-        loaded
-            The tool before the operation.
-        spindle
-            At the first row; None if it has not been started.
+        motion   in coordinates of the workpiece
+        number   index of the motion in the program; -1 for the last
+        loaded   the tool before the operation
+        spindle  at the first row; None if it has not been started
 
-        Raises
-        ------
-        InputError
-            If there is nothing to call the tool by.
+        Raises ``InputError`` if there is nothing to call the tool by.
         """
         operation, machine = motion.operation, self._program.machine
         position = self._operation_numbers[number]
-        following = self.next_call(position)
+        following = self.tools.next_call(position)
         found: dict[str, Value] = {
             **self._setting_values(motion),
             **self._rotary_values(motion),
@@ -110,8 +86,8 @@ class TemplateValues:
             "next_tool": following,
             "intol": operation.intol,
             "outtol": operation.outtol,
-            "tool": (tool := self.tool_call(operation, loaded)),
-            "length_number": str(self.length_register(operation, loaded) or tool),
+            "tool": (tool := self.tools.call(operation, loaded)),
+            "length_number": str(self.tools.length_register(operation, loaded) or tool),
         }
         return {name: self._escaped(value) for name, value in found.items()}
 
@@ -165,22 +141,6 @@ class TemplateValues:
             values[key] = machine.axes[axis].name
             values[f"{key}_word"] = word.letter + word.format.text_of_count(count)
         return values
-
-    @cached_property
-    def _next_calls(self) -> list[str | None]:
-        """For each operation the next other tool after it, as the program calls it; None if there is none."""
-        found: list[str | None] = []
-        following: tuple[str, str | None] | None = None
-        for call, *_ in reversed(self.tool_calls):
-            found.append(None if following is None else following[1] if following[0] == call else following[0])
-            following = call, found[-1]
-        return found[::-1]
-
-    def next_call(self, operation: int) -> str | None:
-        """Return the next other tool after an operation, by its number, as the program calls it; None if there
-        is none.
-        """
-        return self._next_calls[operation - 1]
 
     def time_of(self, operation: int) -> Value:
         """Return the machining time of an operation, by its number; None where no template prints any."""
@@ -277,68 +237,6 @@ class TemplateValues:
             "tool_holder": tool.holder or None,
         }
 
-    def tool_call(self, operation: Operation, loaded: LoadedTool) -> str:
-        """Return the tool as a tool change calls it: by the run's setting, the number of LOAD/TOOL, or else
-        its name.
-        """
-        loads = [event for event in operation.events if isinstance(event, LoadTool)]
-        number, name = self._program.effective_setting("tool", operation), operation.tool.name
-        own = self._program.own_settings.get(operation.name, {}).get("tool")
-        if own:
-            return self._tool_setting(own, operation)
-        if loaded.call and not loads and name == loaded.name:
-            return loaded.call
-        if name and (self._program.effective_setting("tool_call", operation) == "name" or not (number or loads)):
-            return self._family_call(0, name, operation)
-        if number:
-            return self._tool_setting(number, operation)
-        if loads:
-            return self._family_call(loads[-1].number, "", operation)
-        raise InputError(
-            Problem(
-                self._program.file_of(operation),
-                operation.line,
-                Wording("CTL145", "operation_no_load", operation=operation.name),
-            )
-        )
-
-    @cached_property
-    def tool_calls(self) -> list[tuple[str, int, Operation]]:
-        """The tool of each operation as the program calls it, and the register of its length, 0 for that of the tool.
-
-        In the order of the program; errors as ``tool_call``.
-        """
-        calls: list[tuple[str, int, Operation]] = []
-        loaded = LoadedTool()
-        for motion in self._program.motions:
-            if motion.starts_operation:
-                operation = motion.operation
-                register = self.length_register(operation, loaded)
-                loaded = LoadedTool(self.tool_call(operation, loaded), operation.tool.name, register)
-                calls.append((loaded.call, register, operation))
-        return calls
-
-    def length_register(self, operation: Operation, loaded: LoadedTool) -> int:
-        """Return the register of LOAD/TOOL for the length, 0 for that of the tool, as where the settings name
-        the tool.
-        """
-        loads = [event for event in operation.events if isinstance(event, LoadTool)]
-        if not loads:
-            return loaded.register
-        return 0 if self._program.effective_setting("tool", operation) else loads[-1].adjust
-
-    def _tool_setting(self, text: str, operation: Operation) -> str:
-        """Return the tool of the run's setting: a number as it is written, a name as the control takes names."""
-        return text if tool_number(text) is not None else self._family_call(0, text.strip('"'), operation)
-
-    def _family_call(self, number: int, name: str, operation: Operation) -> str:
-        """Return a tool as the control's family calls it: by its name if there is one."""
-        try:
-            return self._family.tool_call(number, name, by_name=bool(name))
-        except UnsupportedFeatureError as why:
-            wording = why.wording.within("of", name=self._program.control.name)
-            raise InputError(Problem(self._program.file_of(operation), operation.line, wording)) from None
-
 
 def plain_text(program: Program, text: str) -> str:
     """Return a text of a CL file in letters of the program.
@@ -374,25 +272,6 @@ def estimated_seconds(program: Program) -> list[float]:
         else:
             seconds[-1] += own
     return seconds
-
-
-def tool_text(call: str, tool: Tool, unit: float = 1.0) -> str:
-    """Return a tool with its data, for the list of tools; ``unit`` is that of the program, mm."""
-    known = tool.kind != "UNKNOWN"
-    lengths = ("diameter", tool.diameter), ("corner", tool.corner_radius), ("length", tool.length)
-    data = "".join(f", {what} {length / unit:g}" for what, length in lengths) if known else ""
-    others = (
-        ("upper corner", tool.upper_radius / unit),
-        ("taper", tool.taper_angle),
-        ("tip", tool.tip_angle),
-        ("flute length", tool.flute_length / unit),
-        ("stands out", tool.extension / unit),
-        ("in the spindle", tool.set_length / unit),
-    )
-    data += "".join(f", {what} {value:g}" for what, value in others if value)
-    holder = f", holder {tool.holder}" if tool.holder else ""
-    name = f" {tool.name}" if tool.name and tool.name != call.strip('"') else ""
-    return f"T{call}{name}{data}{holder}"
 
 
 def spindle_values(program: Program, event: SpindleOn | None) -> dict[str, Value]:

@@ -106,12 +106,8 @@ def most_between(machine: Machine, rows: PathRows, positions: Floats, zero: Floa
     """Return the bound over the ways to all rows, mm, with the zero (3,) there; NaN if rotary axes stand between
     slides.
 
-    Parameters
-    ----------
-    rows
-        As the part is turned.
-    positions : (n, 2) float64
-        Of the rotary axes, degrees.
+    rows       as the part is turned
+    positions  (n, 2) float64: of the rotary axes, degrees
     """
     x, y, z = zero.tolist()
     if rows.length is not None and np.isfinite(rows.length).any():

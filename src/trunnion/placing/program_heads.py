@@ -54,16 +54,10 @@ def unlike_cl_files(
 ) -> list[Problem]:
     """Warnings for who compares a program with CL files where its head says otherwise how its part is clamped.
 
-    Parameters
-    ----------
-    given
-        Turn and tilt by which the CL files are turned before they are compared.
-    clamped
-        How the part is clamped then: as the CL files state, and turned by what is given.
-    of_cl
-        What the CL files state; None: nothing.
-    machine
-        Where its zero and tool length are known, those of the head are held against them.
+    given    turn and tilt by which the CL files are turned before they are compared
+    clamped  how the part is clamped then: as the CL files state, and turned by what is given
+    of_cl    what the CL files state; None: nothing
+    machine  where its zero and tool length are known, those of the head are held against them
     """
     stated = stated_place(program)
     found = _unlike_zero(program, stated, machine)

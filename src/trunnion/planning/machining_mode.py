@@ -111,15 +111,10 @@ def mode_conflicts(
 def tilted_plane(axis: Floats, own_frame: Frame, x_direction: Floats | None = None) -> Frame:
     """Return the tilted plane under a tool axis, in the program's coordinate system.
 
-    Parameters
-    ----------
-    axis : (3,) float64
-        The tool axis, which becomes exactly the plane's Z.
-    own_frame
-        The operation's own coordinate system. If its Z is the tool axis, the plane has its origin and its X; otherwise
-        the program's zero, and as X the projection of ``x_direction``.
-    x_direction : (3,) float64, optional
-        By default X of the program.
+    axis         (3,) float64: the tool axis, which becomes exactly the plane's Z
+    own_frame    the operation's own coordinate system. If its Z is the tool axis, the plane has its origin and its X;
+                 otherwise the program's zero, and as X the projection of ``x_direction``
+    x_direction  (3,) float64, optional: by default X of the program
     """
     own_z = own_frame.matrix()[:, 2]
     if float(np.linalg.norm(np.cross(own_z, axis))) < _PARALLEL_SINE and own_z @ axis > 0.0:

@@ -100,14 +100,10 @@ def kind_and_planes(operation: Operation) -> tuple[str, tuple[tuple[float, float
 def measure(operation: Operation, before: Floats | None, spindle: SpindleState | None) -> Measures:
     """Measure an operation in any coordinates.
 
-    Parameters
-    ----------
-    operation
-        The operation.
-    before : (3,) float64, optional
-        Where the tool stands before it, in the same coordinates; None: not known, so its first move has no length.
-    spindle
-        As it turns before the operation; None: it stands.
+    operation  the operation
+    before     (3,) float64, optional: where the tool stands before it, in the same coordinates; None: not known, so its
+               first move has no length
+    spindle    as it turns before the operation; None: it stands
     """
     found = Measures()
     moves = operation.moves

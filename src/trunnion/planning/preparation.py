@@ -47,15 +47,10 @@ _SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
 def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRequest) -> list[PreparedOperation]:
     """Prepare all operations of a program.
 
-    Parameters
-    ----------
-    sources
-        CL file and operation, in the order in which they are cut.
+    sources  CL file and operation, in the order in which they are cut
 
-    Raises
-    ------
-    RefusedError
-        With everything that cannot be made: modes that the control lacks or the tool axis does not fit, and cycles.
+    Raises ``RefusedError`` with everything that cannot be made: modes that the control lacks or the tool axis does not
+    fit, and cycles.
     """
     frame = Frame() if request.options.absolute_frame else sources[0][1].frame
     prepared: list[PreparedOperation] = []
@@ -159,15 +154,9 @@ def _with_lines_for_splines(prepared: PreparedOperation) -> PreparedOperation:
 def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> PreparedOperation:
     """Return the operation with its parts, and with rows of motion in place of the cycles that the control lacks.
 
-    Parameters
-    ----------
-    spindle
-        The state before the operation.
+    spindle  the state before the operation
 
-    Raises
-    ------
-    HoleCycleError
-        When a cycle that would become motion leaves out something.
+    Raises ``HoleCycleError`` when a cycle that would become motion leaves out something.
     """
     operation = prepared.operation
     if not any(isinstance(event, CycleOn) for event in operation.events):

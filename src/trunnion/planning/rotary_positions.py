@@ -20,15 +20,9 @@ def is_endless(machine: Machine) -> tuple[bool, bool]:
 def continuous_positions(machine: Machine, rotary: Floats) -> Floats:
     """Return displayed positions as the axes wind: endless axes take the shorter way, the others stay as they are.
 
-    Parameters
-    ----------
-    rotary : (n, 2) float64
-        Degrees, in the order of ``machine.rotary``.
+    rotary  (n, 2) float64: degrees, in the order of ``machine.rotary``
 
-    Returns
-    -------
-    (n, 2) float64
-        Degrees; without the jumps of an axis that displays one turn.
+    (n, 2) float64  degrees; without the jumps of an axis that displays one turn
     """
     continuous = np.array(rotary)
     for r, endless in enumerate(is_endless(machine)):

@@ -35,16 +35,10 @@ def render_page(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
 def plot_page(title: str, body: str, parts: Sequence[PlotSeries], *, pictures: bool = False) -> Iterator[bytes]:
     """Yield a page with plots, piece by piece.
 
-    Parameters
-    ----------
-    title
-        Of the window.
-    body
-        HTML from the body tag, with ``main`` open, up to the plots.
-    parts
-        What is plotted, each in a section of its own.
-    pictures
-        The body has pictures.
+    title     of the window
+    body      HTML from the body tag, with ``main`` open, up to the plots
+    parts     what is plotted, each in a section of its own
+    pictures  the body has pictures
     """
     levels = [list(detail_levels(part)) for part in parts]
     scripts = (_read_vendored("uPlot.iife.min.js"), _read_asset("unpack.js") + _read_asset("page.js"))

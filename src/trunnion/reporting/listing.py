@@ -66,17 +66,11 @@ def listing(
 ) -> Iterator[bytes]:
     """Yield the listing of a program, piece by piece.
 
-    Parameters
-    ----------
-    program
-        Its name.
-    operations
-        Whose first rows get a line of their own.
-    slides
-        Add the positions of the slides, as the machine shows them if the workpiece zero is known, or else from the
-        workpiece zero.
-    made_by
-        What made it, in words.
+    program     its name
+    operations  whose first rows get a line of their own
+    slides      add the positions of the slides, as the machine shows them if the workpiece zero is known, or else from
+                the workpiece zero
+    made_by     what made it, in words
     """
     yield "".join(f"; {line}\n" for line in _head(run, _word(program), slides, made_by)).encode()
     lines, numbers = run.line, run.block_number
@@ -174,17 +168,10 @@ def _mark(text: str) -> bytes:
 def row_texts(columns: Sequence[Column], texts: Sequence[str], text_of: Ints) -> tuple[bytes, Ints]:
     """Write rows of numbers, each to the right of its column, and a text at the end of each.
 
-    Parameters
-    ----------
-    columns
-        With n rows.
-    texts, text_of : (n,) int64
-        The texts, all of one length, and which of them each row has.
+    columns         with n rows
+    texts, text_of  (n,) int64: the texts, all of one length, and which of them each row has
 
-    Returns
-    -------
-    text, ends
-        All lines, and where each ends, (n,) int64.
+    text, ends  all lines, and where each ends, (n,) int64
     """
     if not all(each.fits for each in columns):
         return _slow_row_texts(columns, texts, text_of)

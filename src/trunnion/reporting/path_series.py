@@ -53,19 +53,11 @@ def collect_paths(
 ) -> tuple[list[PathSeries], float]:
     """Return the paths of operations.
 
-    Parameters
-    ----------
-    operations
-        What is shown of each, and the operation, all in one coordinate system.
-    most
-        More points than this are thinned out.
+    operations  what is shown of each, and the operation, all in one coordinate system
+    most        more points than this are thinned out
 
-    Returns
-    -------
-    paths
-        Those that have points.
-    tolerance
-        How far points that are left out lie off the lines that are drawn, mm; 0 if none is.
+    paths      those that have points
+    tolerance  how far points that are left out lie off the lines that are drawn, mm; 0 if none is
     """
     drawn = [(details, operation, *_polyline(operation)) for details, operation in operations if len(operation.moves)]
     tolerance, passes = 0.0, 0

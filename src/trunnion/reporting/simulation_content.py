@@ -1,36 +1,12 @@
 """What the report of a simulation shows, as values from which its page is made.
 
-Units:  mm, mm², mm³, seconds. Text from outside has been cleaned of characters that no file can hold.
+Units:  mm, mm², mm³, seconds.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-
-@dataclass(frozen=True, slots=True)
-class FindingRow:
-    """A finding, or a near miss: what, where in the programs, when (s), where (mm), how deep or how far apart (mm)."""
-
-    what: str
-    between: str
-    place_in_program: str
-    cl_place: str
-    seconds: float
-    place: tuple[float, float, float]
-    size: float
-
-
-@dataclass(frozen=True, slots=True)
-class OperationRow:
-    """What consecutive blocks with one tool did."""
-
-    where: str
-    tool: str
-    removed: float
-    gouged: float
-    seconds: float
-    air: float
-    findings: int
+from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +49,9 @@ class SimulationContent:
     title: str
     passed: bool
     facts: tuple[tuple[str, str], ...]
-    findings: tuple[FindingRow, ...]
-    near: tuple[FindingRow, ...]
-    operations: tuple[OperationRow, ...]
+    findings: tuple[SimulationFinding, ...]
+    near: tuple[NearMiss, ...]
+    operations: tuple[SimulatedOperation, ...]
     states: tuple[StockState, ...]
     remarks: tuple[str, ...]
     data: Mapping[str, object]

@@ -7,11 +7,14 @@ Out:    HTML, with all text from outside escaped. It needs no script, and nothin
 import base64
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
+from pathlib import Path
 from typing import Final
 
 from trunnion.reporting.html_text import escape, format_number, source_hash
-from trunnion.reporting.simulation_content import DeviationBin, FindingRow, OperationRow, SimulationContent, StockState
-from trunnion.wording import counted, format_duration
+from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
+from trunnion.reporting.text import clean
+from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
+from trunnion.wording import counted, format_duration, position
 
 #: Findings that the page shows; the data has all.
 _MOST: Final = 200
@@ -73,24 +76,44 @@ def _verdict(content: SimulationContent) -> str:
     return f"{found}; the program must not run as it is"
 
 
-def _findings(found: Sequence[FindingRow], size: str) -> str:
+def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:
     if not found:
         return ""
-    rows = [
-        f"<tr><td class=n>{each.size:.3f}</td><th scope=row>{escape(each.what)}</th><td>{escape(each.between)}</td>"
-        f"<td>{escape(each.place_in_program)}</td><td>{escape(each.cl_place)}</td>"
-        f"<td class=n>{format_duration(each.seconds)}</td>"
-        f"<td class=n>{' '.join(f'{axis}{value:.3f}' for axis, value in zip('XYZ', each.place, strict=True))}</td></tr>"
-        for each in found[:_MOST]
-    ]
+    rows = [_finding(each) for each in found[:_MOST]]
     more = len(found) - _MOST
     note = f'<p class="note">and {more} more, in the data</p>' if more > 0 else ""
     return _table((size, "What", "Between", "Program", "CL file", "#After", "#Place mm"), rows) + note
 
 
-def _operations(operations: Sequence[OperationRow]) -> str:
+def _finding(each: SimulationFinding | NearMiss) -> str:
+    """Return a row: how deep or how far apart, what, where in the programs, when and where."""
+    what, size, cl = "near", 0.0, ""
+    if isinstance(each, NearMiss):
+        size = each.distance
+    else:
+        what, size = each.kind, each.depth
+        cl = f"{Path(each.cl_file).name}:{each.cl_line}" if each.cl_file else ""
+    number = f" N{each.block}" if each.block >= 0 else ""
+    last = f" to {each.last_line}" if each.last_line > each.line else ""
+    return (
+        f"<tr><td class=n>{size:.3f}</td><th scope=row>{escape(what)}</th><td>{_text(', '.join(each.between))}</td>"
+        f"<td>{_place(each)}{number}{last}</td><td>{_text(cl)}</td>"
+        f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{position(each.place)}</td></tr>"
+    )
+
+
+def _place(each: SimulationFinding | NearMiss | SimulatedOperation) -> str:
+    """Return the set-up, the file without its folder, and the line."""
+    return _text(f"{each.setup + ': ' if each.setup else ''}{Path(each.file).name}:{each.line}")
+
+
+def _text(text: str) -> str:
+    return escape(clean(text))
+
+
+def _operations(operations: Sequence[SimulatedOperation]) -> str:
     rows = [
-        f"<tr><th scope=row>{escape(each.where)}</th><td>{escape(each.tool)}</td><td class=n>{each.removed:.1f}</td>"
+        f"<tr><th scope=row>{_place(each)}</th><td>{_text(each.tool)}</td><td class=n>{each.removed:.1f}</td>"
         f"<td class=n>{each.gouged:.2f}</td><td class=n>{format_duration(each.seconds)}</td>"
         f"<td class=n>{_rate(each)}</td><td class=n>{each.air:.0f}</td><td class=n>{each.findings or ''}</td></tr>"
         for each in operations
@@ -99,7 +122,7 @@ def _operations(operations: Sequence[OperationRow]) -> str:
     return _table(heads, rows) if rows else ""
 
 
-def _rate(each: OperationRow) -> str:
+def _rate(each: SimulatedOperation) -> str:
     return format_number(60.0 * each.removed / each.seconds) if each.seconds > 0.0 else ""
 
 

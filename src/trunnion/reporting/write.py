@@ -25,23 +25,13 @@ def write_report(
 ) -> None:
     """Write a report: a page for ``.html``, data for ``.json``. The same input gives the same bytes.
 
-    Parameters
-    ----------
-    verification
-        The result of checking the program, with columns (``trunnion.verification.verify``).
-    path
-        The file to write. An existing one is replaced when the new one is complete.
-    control
-        Name of the control for the report; by default the key in the machine's definition.
-    made
-        When or by whom the report was made, in words. By default the report does not mention it.
-    decisions
-        The decisions of the planner, in the order of its operations.
+    verification  the result of checking the program, with columns (``trunnion.verification.verify``)
+    path          the file to write. An existing one is replaced when the new one is complete
+    control       name of the control for the report; by default the key in the machine's definition
+    made          when or by whom the report was made, in words. By default the report does not mention it
+    decisions     the decisions of the planner, in the order of its operations
 
-    Raises
-    ------
-    InputError
-        For any other suffix, and for a file that cannot be written.
+    Raises ``InputError`` for any other suffix, and for a file that cannot be written.
     """
     pieces = render_report(verification, path, control=control, made=made, decisions=decisions)
     with atomic_file(path) as sink:
@@ -70,19 +60,11 @@ def render_report(
 def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, path: Path) -> None:
     """Write the report of a program that was refused before it was run.
 
-    Parameters
-    ----------
-    problems
-        Why; warnings too.
-    machine, program
-        For which machine, and what the program would have been called.
-    path
-        As ``write_report`` has it.
+    problems          why; warnings too
+    machine, program  for which machine, and what the program would have been called
+    path              as ``write_report`` has it
 
-    Raises
-    ------
-    InputError
-        For any other suffix, and for a file that cannot be written.
+    Raises ``InputError`` for any other suffix, and for a file that cannot be written.
     """
     pieces = _renderer(path)(refused_content(machine, program, problems), no_series())
     with atomic_file(path) as sink:

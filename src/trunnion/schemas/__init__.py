@@ -40,15 +40,9 @@ def put_beside(definition: Path, kind: str) -> Path | None:
 
     One of another version of Trunnion is replaced; a file that is no schema of Trunnion is left alone.
 
-    Returns
-    -------
-    Path or None
-        The file that was written.
+    Path or None  the file that was written
 
-    Raises
-    ------
-    InputError
-        If it cannot be written.
+    Raises ``InputError`` if it cannot be written.
     """
     place, text = definition.parent / file_name(kind), schema_text(kind)
     try:

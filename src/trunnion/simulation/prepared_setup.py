@@ -53,10 +53,7 @@ class PreparedSetup:
     def programs(self) -> list[SimulatedProgram]:
         """Return the programs as far as they are simulated, about the part as it is drawn.
 
-        Raises
-        ------
-        InputError
-            If the last program has no block ``until``.
+        Raises ``InputError`` if the last program has no block ``until``.
         """
         turn, clamped = self.turn, self.clamped_runs()
         runs = clamped if turn is None else [run_of_drawn_part(run, turn) for run in clamped]

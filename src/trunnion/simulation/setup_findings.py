@@ -79,6 +79,10 @@ class NearMiss:
     setup: OptionalText = ""
     row: Annotated[int, NOT_DATA] = -1
 
+    def __str__(self) -> str:
+        """Return what comes near what, how near and where."""
+        return f"near: {' and '.join(self.between)}: {self.distance:.3f} mm apart at {position(self.place)}"
+
 
 @dataclass(frozen=True, slots=True)
 class AirCut:

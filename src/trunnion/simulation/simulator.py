@@ -121,25 +121,15 @@ def simulate(
 ) -> Simulation:
     """Cut stock with programs, one after another.
 
-    Parameters
-    ----------
-    model
-        The solids and the accuracy.
-    programs
-        The programs in their order.
-    stop_at_first
-        End after the row of the first finding.
-    threads
-        As for ``removal.measure``.
-    shares
-        What ``cut_share`` has made of each share of the same simulation: nothing is cut but what they cannot know.
-    progress
-        Is called with rows done and rows in all.
+    model          the solids and the accuracy
+    programs       the programs in their order
+    stop_at_first  end after the row of the first finding
+    threads        as for ``removal.measure``
+    shares         what ``cut_share`` has made of each share of the same simulation: nothing is cut but what they cannot
+                   know
+    progress       is called with rows done and rows in all
 
-    Raises
-    ------
-    DamagedShareError
-        If the shares cannot be used.
+    Raises ``DamagedShareError`` if the shares cannot be used.
     """
     found = _simulate(model, programs, threads, progress, shares=shares)
     if stop_at_first:

@@ -2,7 +2,8 @@
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -166,6 +167,20 @@ def test_what_cannot_be_used_is_told(arguments: list[str], what: str, capfd: Cap
     out, err = capfd.readouterr()
     assert out == ""
     assert what in err
+
+
+def test_progress_counts_the_motions() -> None:
+    counted: list[tuple[str, int, str] | int] = []
+
+    class Counting(trunnion.Observer):
+        @contextmanager
+        def progress(self, stage: str, total: int, unit: str) -> Iterator[Callable[[int], None]]:
+            counted.append((stage, total, unit))
+            yield counted.append
+
+    found = trunnion.sensitivity(BLADE, machine="yl569", observer=Counting())
+    assert counted[0] == ("sensitivity", len(found.run), "motions")
+    assert 0 < sum(each for each in counted[1:] if isinstance(each, int)) <= len(found.run)
 
 
 def test_a_program_without_cuts_is_refused(written: Written, capfd: Capture) -> None:

@@ -71,7 +71,7 @@ WRONG: list[tuple[Callable[..., Any], dict[str, Any], dict[str, list[Any]]]] = [
         {
             "nc": [None, 5],
             "machine": [5],
-            "dialect": ["apt", None, 5],
+            "to_dialect": ["apt", 5],
             "output": [io.StringIO(), 3],
             "subprograms": ["abc"],
             "zero": [("a", 2, 3)],

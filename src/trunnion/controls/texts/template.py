@@ -102,10 +102,7 @@ class TextTemplate(Template):
     def expand(self, values: Mapping[str, Value], printing: Printing) -> list[str]:
         """Return the lines of the program, without those whose values are absent, and without empty ones.
 
-        Raises
-        ------
-        InputError
-            If it does what it cannot do, or a number is beyond the limits of its format; at its line.
+        Raises ``InputError`` if it does what it cannot do, or a number is beyond the limits of its format; at its line.
         """
         assert self.code is not None
         rendering = Rendering(printing)
@@ -144,13 +141,9 @@ class TextTemplate(Template):
 def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTemplate, Fault | None]:
     """Read a template in the template language.
 
-    Returns
-    -------
-    template
-        Without code if something is wrong.
-    fault
-        The first thing in it that cannot be, at its line within the text, from 1; None if it can be compiled. Whether
-        its names and formats exist depends on the control.
+    template  without code if something is wrong
+    fault     the first thing in it that cannot be, at its line within the text, from 1; None if it can be compiled.
+              Whether its names and formats exist depends on the control
     """
     lines = tuple(text.rstrip("\n").split("\n"))
     try:

@@ -51,14 +51,11 @@ _REFUSED: Final[dict[type[nodes.Node], str]] = {
 def parsed(text: str) -> nodes.Template:
     """Return the checked tree of a template.
 
-    Raises
-    ------
-    Fault
-        With the first thing in it that may not be there.
-    TemplateSyntaxError
-        If Jinja does not understand it.
-    RecursionError
-        If it is too deep for Jinja's parser.
+    Raises ``Fault`` with the first thing in it that may not be there.
+
+    Raises ``TemplateSyntaxError`` if Jinja does not understand it.
+
+    Raises ``RecursionError`` if it is too deep for Jinja's parser.
     """
     if len(text) > LONGEST_SOURCE:
         raise Fault("too_many_letters", most=LONGEST_SOURCE)

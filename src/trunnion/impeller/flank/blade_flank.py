@@ -62,10 +62,7 @@ class BladeFlank:
 
         Normals point from the blade to the cutter: across the axis and the way.
 
-        Raises
-        ------
-        InputError
-            If the cutter would cut into another blade.
+        Raises ``InputError`` if the cutter would cut into another blade.
         """
         if self.neighbour < 0.0:
             raise InputError(
@@ -94,10 +91,7 @@ def mill_blade_flank(
 ) -> BladeFlank:
     """Fit the path for one side (+1 or -1) of a blade: the least undercut with no more overcut than allowed, mm.
 
-    Raises
-    ------
-    InputError
-        If the fillet takes up the blade where it begins.
+    Raises ``InputError`` if the fillet takes up the blade where it begins.
     """
     ball = max(cutter.radius, impeller.definition.fillet)
     until = _until(impeller, blade, side, ball)

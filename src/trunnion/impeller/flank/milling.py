@@ -66,16 +66,10 @@ def mill_flank(
 ) -> FlankCut:
     """Return the pass that leaves least of a flank.
 
-    Parameters
-    ----------
-    grid
-        gives the flank with so many points along and across
-    below
-        how far the axis begins below the flank's lower end, mm; below 0: above it
-    lead
-        how far the path goes on at either end, as a share of its length
-    progress
-        accompanies the work
+    grid      gives the flank with so many points along and across
+    below     how far the axis begins below the flank's lower end, mm; below 0: above it
+    lead      how far the path goes on at either end, as a share of its length
+    progress  accompanies the work
     """
     flank, dense = grid(*_FITTED), grid(*_DENSE).flat()
     points = flank.flat()

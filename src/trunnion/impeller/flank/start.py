@@ -51,12 +51,8 @@ def double_point_offset(
 ) -> FlankPath:
     """Return a path of so many control points whose cutter touches the flank at two heights at each station.
 
-    Parameters
-    ----------
-    below
-        how far the lower point of the axis is below the flank's lower end, mm along the axis; below 0: above it
-    lead
-        how far the path goes on straight at either end, as a share of its length
+    below  how far the lower point of the axis is below the flank's lower end, mm along the axis; below 0: above it
+    lead   how far the path goes on straight at either end, as a share of its length
     """
     heights = np.linspace(0.0, 1.0, flank.points.shape[1])
     at = [min(int(np.searchsorted(heights, one - 1e-9)), len(heights) - 1) for one in touch]

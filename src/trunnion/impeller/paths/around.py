@@ -136,10 +136,7 @@ def lay_passes(sheet: Sheet, s: Floats, rows: Floats, radius: float, way: Way) -
 
     A spiral begins with a whole turn at the first row and ends with one at the last; between them it sinks evenly.
 
-    Raises
-    ------
-    InputError
-        If a spiral is wanted and the stations do not go all the way round.
+    Raises ``InputError`` if a spiral is wanted and the stations do not go all the way round.
     """
     if way is Way.SPIRAL and s[-1] < 4.0:
         raise InputError(

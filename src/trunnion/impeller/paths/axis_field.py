@@ -117,16 +117,10 @@ def fit_field(
 ) -> FieldFit | None:
     """Return the field that turns least; None if its linear program finds no end.
 
-    Parameters
-    ----------
-    places
-        (n, k).
-    regions
-        A cone at each place; places without one do not count.
-    spans
-        Of the spline, for each parameter.
-    lengths
-        What a parameter from 0 to 1 is in mm, (k,).
+    places   (n, k)
+    regions  A cone at each place; places without one do not count
+    spans    of the spline, for each parameter
+    lengths  what a parameter from 0 to 1 is in mm, (k,)
     """
     sparse = import_extra("scipy.sparse", "impeller")
     degrees = _DEGREES[: len(spans)]

@@ -337,10 +337,8 @@ def _convex(reach: Floats) -> tuple[Ints, Floats, Floats]:
 
     The nearest end that is not cut off yet is, by the line through it that leaves most of the rays.
 
-    Returns
-    -------
-    owner, normal, far
-        (m,), (m, 2) unit vectors outward, (m,): inside are points p of plane ``owner`` with normal · p ≤ far.
+    owner, normal, far  (m,), (m, 2) unit vectors outward, (m,): inside are points p of plane ``owner`` with normal · p
+                        ≤ far
     """
     rays = reach.shape[1]
     turn = 2.0 * np.pi * np.arange(rays) / rays

@@ -63,10 +63,7 @@ def surroundings_of(impeller: Impeller, blade: Blade) -> Surroundings:
 def prove_room(around: Surroundings, family: PassFamily, allowance: float, tolerance: float) -> None:
     """Refuse passes whose ball would cut into blades, hub or fillets; balls outside of the stock cut nothing.
 
-    Raises
-    ------
-    InputError
-        With the place, by how much, and the largest ball that fits.
+    Raises ``InputError`` with the place, by how much, and the largest ball that fits.
     """
     definition = around.impeller.definition
     reach = family.radius + allowance

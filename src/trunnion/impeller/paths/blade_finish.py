@@ -59,10 +59,7 @@ def blade_finish(impeller: Impeller, blade: Blade, step: BladeFinish) -> PassFam
     The last row is where the ball touches the hub too; a ball smaller than the fillet ends at the fillet's upper edge.
     Passes at a cut trailing edge go on until the ball is out of the stock.
 
-    Raises
-    ------
-    InputError
-        If the ball has no room beside the blade, or a spiral is wanted round a cut trailing edge.
+    Raises ``InputError`` if the ball has no room beside the blade, or a spiral is wanted round a cut trailing edge.
     """
     reach = step.radius + step.allowance
     end = side_end(impeller, blade, reach)

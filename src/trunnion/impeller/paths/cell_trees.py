@@ -32,12 +32,8 @@ class Cells:
 def cell_tree(balls: Floats, kept: Flags) -> Cells:
     """Return the cells of a surface.
 
-    Parameters
-    ----------
-    balls
-        (STEPS i + 1, STEPS j + 1, 4): points and radii over i x j smallest cells; i and j are powers of 2.
-    kept
-        (i, j): the smallest cells that there are; at least one.
+    balls  (STEPS i + 1, STEPS j + 1, 4): points and radii over i x j smallest cells; i and j are powers of 2
+    kept   (i, j): the smallest cells that there are; at least one
     """
     levels: list[tuple[Floats, Ints]] = []
     numbers: Ints = np.full(kept.shape, -1)

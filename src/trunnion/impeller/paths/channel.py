@@ -75,12 +75,9 @@ class Channel:
     def extent(self, places: Floats, wanted: float) -> Extent:
         """How far a ball may go to either side whose centre keeps a distance from the blades.
 
-        Parameters
-        ----------
-        places : (k, 3) float64
-            Points of the mean surface from inlet to outlet, which are turned from ``start`` to ``end``.
-        wanted
-            mm. Where ``room`` is less, the ball does not fit, and both angles are that of the middle.
+        places  (k, 3) float64: points of the mean surface from inlet to outlet, which are turned from ``start`` to
+                ``end``
+        wanted  mm. Where ``room`` is less, the ball does not fit, and both angles are that of the middle
         """
         count = len(places)
         start, end = np.full(count, self.start), np.full(count, self.end)

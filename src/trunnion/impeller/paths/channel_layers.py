@@ -75,11 +75,8 @@ class _Throat:
 def layers_of(channel: Channel, ball: Ball, step_down: float | None, progress: Progress = silent) -> list[Layer]:
     """All layers of a channel from the lowest one, or that one alone without a step-down.
 
-    Raises
-    ------
-    InputError
-        If the ball is smaller than the fillet, does not get out of the stock, or does not fit between the blades; the
-        place is named then, and the largest ball that fits.
+    Raises ``InputError`` if the ball is smaller than the fillet, does not get out of the stock, or does not fit between
+    the blades; the place is named then, and the largest ball that fits.
     """
     impeller = channel.impeller
     fillet = impeller.definition.fillet

@@ -105,20 +105,12 @@ def passes_on(
 ) -> list[Pass]:
     """Return passes from the lower to the higher angle of a layer.
 
-    Parameters
-    ----------
-    layer
-        Where the ball's centres are.
-    radius
-        Of the ball, mm.
-    stepover
-        Between neighbouring passes, mm.
-    tolerance
-        How far chords may be off the path, mm.
-    along
-        The values of u that are the places 0 and 1 along.
-    below
-        Step-overs are those of the surface so many mm below the centres.
+    layer      where the ball's centres are
+    radius     of the ball, mm
+    stepover   between neighbouring passes, mm
+    tolerance  how far chords may be off the path, mm
+    along      the values of u that are the places 0 and 1 along
+    below      step-overs are those of the surface so many mm below the centres
     """
     pattern = _pattern(_steps(layer, radius, stepover, below))
     found = []

@@ -28,28 +28,16 @@ def channel_roughing(
 ) -> PassFamily:
     """Return passes of a ball that clears a channel.
 
-    Parameters
-    ----------
-    channel
-        One of ``channels_of``.
-    radius
-        Of the ball, mm.
-    stepover
-        Between neighbouring passes of a layer, mm, between the ball's centres.
-    step_down
-        Between layers at most, mm, above 0.
-    tolerance
-        How far chords may be off the path, mm.
-    blade_allowance, hub_allowance
-        What is left, mm.
-    progress
-        Accompanies the work.
+    channel                         one of ``channels_of``
+    radius                          of the ball, mm
+    stepover                        between neighbouring passes of a layer, mm, between the ball's centres
+    step_down                       between layers at most, mm, above 0
+    tolerance                       how far chords may be off the path, mm
+    blade_allowance, hub_allowance  what is left, mm
+    progress                        accompanies the work
 
-    Raises
-    ------
-    InputError
-        If the ball is smaller than the fillet, does not get out of the stock, or does not fit between the blades; the
-        place is named then, and the largest ball that fits.
+    Raises ``InputError`` if the ball is smaller than the fillet, does not get out of the stock, or does not fit between
+    the blades; the place is named then, and the largest ball that fits.
     """
     ball = Ball(radius, blade_allowance, hub_allowance, tolerance)
     layers = layers_of(channel, ball, step_down, progress)[::-1]

@@ -107,10 +107,7 @@ class Sheet:
 def sheets_of(impeller: Impeller, ball: Ball, step_down: float | None) -> list[Sheet]:
     """All sheets on which the ball meets stock, from the lowest one, or that one alone without a step-down.
 
-    Raises
-    ------
-    InputError
-        If it does not get out of the stock, or there is none.
+    Raises ``InputError`` if it does not get out of the stock, or there is none.
     """
     inside = np.linspace(0.0, 1.0, _INSIDE)
     every = np.linspace(-_BEYOND, 1.0 + _BEYOND, _PLACES)

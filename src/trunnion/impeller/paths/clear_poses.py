@@ -22,20 +22,11 @@ def pose_check(
 ) -> IsClear:
     """Return a function that says of poses whether the ball and all above it are clear.
 
-    Parameters
-    ----------
-    radius
-        Of the tool's ball.
-    tolerance
-        How far the ball may be in a surface: it touches one where it cuts.
+    radius          of the tool's ball
+    tolerance       how far the ball may be in a surface: it touches one where it cuts
+    side_tolerance  how far all above the ball may be in a surface: where the side of the tool cuts, it touches one
 
-    side_tolerance
-        How far all above the ball may be in a surface: where the side of the tool cuts, it touches one.
-
-    Raises
-    ------
-    InputError
-        If the tool has no ball of this radius.
+    Raises ``InputError`` if the tool has no ball of this radius.
     """
     body = tool_body(tool, radius, Margins(0.0, 0.0, 0.0, 1.0)).real
     point = np.array([[0.0, -_POINT], [_POINT, 0.0], [0.0, _POINT]])

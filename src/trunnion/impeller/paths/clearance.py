@@ -56,10 +56,7 @@ class Obstacles:
 def obstacles_of(impeller: Impeller, clamping: Floats | None = None) -> Obstacles:
     """Return the bodies of a finished impeller: blades, splitters, and the hub within its stock.
 
-    Parameters
-    ----------
-    clamping
-        Outline (m, 2), radius and height, of what stands below the part about Z; None: nothing does.
+    clamping  outline (m, 2), radius and height, of what stands below the part about Z; None: nothing does
     """
     trees: list[Cells] = []
     number: dict[int, int] = {}
@@ -214,10 +211,7 @@ class Margins:
 def tool_body(shape: ToolShape, radius: float, margins: Margins) -> ToolBody:
     """Return the pieces of a ball-ended tool.
 
-    Raises
-    ------
-    InputError
-        If the tool has no ball of this radius at its end.
+    Raises ``InputError`` if the tool has no ball of this radius at its end.
     """
     element = shape.sections[0].outline[0]
     centre = getattr(element, "centre", (math.nan, math.nan))

@@ -25,26 +25,15 @@ def hub_finish(
 ) -> PassFamily:
     """Return passes of a ball on the hub of a channel, along the blades.
 
-    Parameters
-    ----------
-    channel
-        One of ``channels_of``.
-    radius
-        Of the ball, mm.
-    stepover
-        Between neighbouring passes, mm, on the hub.
-    tolerance
-        How far chords may be off the path, mm.
-    blade_allowance, hub_allowance
-        What is left, mm.
-    progress
-        Accompanies the work.
+    channel                         one of ``channels_of``
+    radius                          of the ball, mm
+    stepover                        between neighbouring passes, mm, on the hub
+    tolerance                       how far chords may be off the path, mm
+    blade_allowance, hub_allowance  what is left, mm
+    progress                        accompanies the work
 
-    Raises
-    ------
-    InputError
-        If the ball is smaller than the fillet, does not get out of the stock, or does not fit between the blades; the
-        place is named then, and the largest ball that fits.
+    Raises ``InputError`` if the ball is smaller than the fillet, does not get out of the stock, or does not fit between
+    the blades; the place is named then, and the largest ball that fits.
     """
     (layer,) = layers_of(channel, Ball(radius, blade_allowance, hub_allowance, tolerance), None, progress)
     along = float(layer.u[0]), float(layer.u[-1])

@@ -51,12 +51,8 @@ def least_clearances(
 ) -> tuple[PartClearance, ...]:
     """For each part of a tool, the least of its distances, the nearest part first.
 
-    Parameters
-    ----------
-    centres, axes : (n, 3)
-        Of the ball, and of the tool towards the holder.
-    touched
-        Names of bodies that the cutter is meant to touch: for it they do not count.
+    centres, axes  (n, 3): of the ball, and of the tool towards the holder
+    touched        names of bodies that the cutter is meant to touch: for it they do not count
     """
     found = []
     for role in dict.fromkeys(body.roles):

@@ -93,12 +93,8 @@ class FreeSpace:
     def around(stock: StockSize, clearance: float, radius: float, outline: Floats, axes: Floats) -> "FreeSpace":
         """Return the space around a stock, for a ball of a radius.
 
-        Parameters
-        ----------
-        outline : (k, 2)
-            Radii and heights above the ball's centre of the tool, mm.
-        axes : (n, 3)
-            The tool axes that are used.
+        outline  (k, 2): radii and heights above the ball's centre of the tool, mm
+        axes     (n, 3): the tool axes that are used
         """
         tilt = float(np.arccos(np.clip(axes[:, 2], -1.0, 1.0)).max())
         angles = np.linspace(0.0, tilt, 65)[:, None]
@@ -151,25 +147,14 @@ def link_passes(
 ) -> LinkedPath:  # fmt: skip
     """Link passes in their order to one path.
 
-    Parameters
-    ----------
-    passes, axes
-        Of one step, in the order and direction of cutting.
-    space
-        Where motion is rapid.
-    radius
-        From the ball's centre to the tip, mm.
-    is_clear
-        Of the ball and the rest of the tool.
-    name
-        Of the step, for messages.
-    progress
-        Accompanies the work.
+    passes, axes  of one step, in the order and direction of cutting
+    space         where motion is rapid
+    radius        from the ball's centre to the tip, mm
+    is_clear      of the ball and the rest of the tool
+    name          of the step, for messages
+    progress      accompanies the work
 
-    Raises
-    ------
-    InputError
-        If the tool cannot leave a pass or come to it without touching something; with the place.
+    Raises ``InputError`` if the tool cannot leave a pass or come to it without touching something; with the place.
     """
     path = _Path()
     before: tuple[Floats, Floats] | None = None
@@ -250,10 +235,7 @@ def _raised(point: Floats, space: FreeSpace) -> Floats:
 def _clear_way(centre: Floats, axis: Floats, space: FreeSpace, is_clear: IsClear, name: str, what: str) -> float:
     """How far it is out of the stock along the tool axis, every pose on the way, and then straight up, being clear.
 
-    Raises
-    ------
-    InputError
-        If one is not, or there is no way out.
+    Raises ``InputError`` if one is not, or there is no way out.
     """
     way = space.way_out(centre, axis)
     if math.isfinite(way):

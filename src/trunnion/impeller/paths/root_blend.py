@@ -109,11 +109,8 @@ class _Root:
 def root_blend(impeller: Impeller, blade: Blade, step: RootBlend) -> PassFamily:
     """Return passes of a ball round the root of a blade or splitter, from the blade out to the hub.
 
-    Raises
-    ------
-    InputError
-        If the ball is larger than the fillet, the fillet has no room beside the next blade, or a spiral is wanted round
-        a cut trailing edge.
+    Raises ``InputError`` if the ball is larger than the fillet, the fillet has no room beside the next blade, or a
+    spiral is wanted round a cut trailing edge.
     """
     fillet = impeller.definition.fillet
     if step.radius > fillet + _SAME:

@@ -46,23 +46,13 @@ def stock_roughing(
 ) -> TurnedPasses:
     """Return a helix of a flat mill of a radius, tool axis Z: ball centres are its tips.
 
-    Parameters
-    ----------
-    radius
-        Of the mill.
-    step_down
-        By which a turn is below the one before.
-    widest
-        That one turn may cut across; where more stands, helices follow each other from outside.
-    allowance
-        That stays on the form of the shroud.
-    tolerance
-        Of chords.
+    radius     of the mill
+    step_down  by which a turn is below the one before
+    widest     that one turn may cut across; where more stands, helices follow each other from outside
+    allowance  that stays on the form of the shroud
+    tolerance  of chords
 
-    Raises
-    ------
-    InputError
-        If the stock has nothing outside of the shroud, or the helices have too many points.
+    Raises ``InputError`` if the stock has nothing outside of the shroud, or the helices have too many points.
     """
     stock = impeller.definition.stock
     heights, form = shroud_form(impeller, allowance)
@@ -96,18 +86,11 @@ def shroud_finish(
 ) -> TurnedPasses:
     """Return a helix of a ball down the form of the shroud.
 
-    Parameters
-    ----------
-    radius
-        Of the ball, and of the tool above it.
-    stepover
-        Of one turn to the next, on the form.
-    tilt
-        Of the tool axis, outward, degrees: 0 is a three-axis helix, 90 a turning tool's.
-    allowance
-        That stays on the form.
-    tolerance
-        Of chords.
+    radius     of the ball, and of the tool above it
+    stepover   of one turn to the next, on the form
+    tilt       of the tool axis, outward, degrees: 0 is a three-axis helix, 90 a turning tool's
+    allowance  that stays on the form
+    tolerance  of chords
     """
     stock = impeller.definition.stock
     heights, form = shroud_form(impeller)

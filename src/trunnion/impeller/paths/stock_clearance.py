@@ -48,21 +48,12 @@ def stock_clearances(
 ) -> tuple[PartClearance, ...]:  # fmt: skip
     """Shank and holder of a tool against the stock; those that are 10 mm away or more are left out.
 
-    Parameters
-    ----------
-    radius
-        From the points of passes, which are the centres of balls, to the tips; 0 where they are tips.
-    narrowest
-        Radius of parts that count; those that are narrower do not.
-    passes
-        With their tool axes, (n, 3).
-    before
-        The stock before a pass.
+    radius     from the points of passes, which are the centres of balls, to the tips; 0 where they are tips
+    narrowest  radius of parts that count; those that are narrower do not
+    passes     with their tool axes, (n, 3)
+    before     the stock before a pass
 
-    Raises
-    ------
-    InputError
-        If a part comes into the stock, or nearer to it than is told apart.
+    Raises ``InputError`` if a part comes into the stock, or nearer to it than is told apart.
     """
     nearest: dict[Role, tuple[float, Floats, Floats]] = {}
     outlines = list(_outlines(tool, radius, narrowest))

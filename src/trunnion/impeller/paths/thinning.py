@@ -23,16 +23,10 @@ _MOST: Final = 200
 def thinned(centre: Floats, axis: Floats, radius: float, tolerance: float, angle: float) -> Flags:
     """Which points of a path stay, (n,); the first and the last do.
 
-    Parameters
-    ----------
-    centre, axis : (n, 3)
-        Ball centres, and unit vectors from them towards the holder.
-    radius
-        From the ball's centre to the tip, mm.
-    tolerance
-        How far the ball may be off, mm.
-    angle
-        How far the tool axis may be off, degrees.
+    centre, axis  (n, 3): ball centres, and unit vectors from them towards the holder
+    radius        from the ball's centre to the tip, mm
+    tolerance     how far the ball may be off, mm
+    angle         how far the tool axis may be off, degrees
     """
     keep = np.zeros(len(centre), np.bool_)
     if len(centre):

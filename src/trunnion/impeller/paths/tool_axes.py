@@ -106,23 +106,14 @@ def choose_axes(
 ) -> ToolAxes:
     """Choose the tool axes of a family of passes.
 
-    Parameters
-    ----------
-    family
-        A family that is a spiral is closed along its first parameter.
-    obstacles
-        What the tool keeps clear of, in the frame of the passes.
-    wanted
-        Clearances; where they cannot be had everywhere, a smaller share of all of them is tried.
-    reachable
-        Tells of directions (n, 3) which the machine reaches, (n,).
-    progress
-        Accompanies the work.
+    family     A family that is a spiral is closed along its first parameter
+    obstacles  what the tool keeps clear of, in the frame of the passes
+    wanted     clearances; where they cannot be had everywhere, a smaller share of all of them is tried
+    reachable  tells of directions (n, 3) which the machine reaches, (n,)
+    progress   accompanies the work
 
-    Raises
-    ------
-    InputError
-        If there is no such field: with the place, what is in the way of which part of the tool, and what helps.
+    Raises ``InputError`` if there is no such field: with the place, what is in the way of which part of the tool, and
+    what helps.
     """
     search = _Search(family, obstacles, wanted.tilt, reachable, progress)
     for share in SHARES:

@@ -54,16 +54,10 @@ def operation_of(
 ) -> Operation:
     """Return the operation of a path.
 
-    Parameters
-    ----------
-    name
-        Of the operation.
-    tool, number
-        As CL files describe it, and by which it is called.
-    radius
-        From the ball's centre to the tip; 0 where centres are tips.
-    tolerance
-        That the path keeps, for INTOL and OUTTOL.
+    name          of the operation
+    tool, number  as CL files describe it, and by which it is called
+    radius        from the ball's centre to the tip; 0 where centres are tips
+    tolerance     that the path keeps, for INTOL and OUTTOL
     """
     n = len(path.kind)
     cutting = np.isin(path.phase, _CUTTING)

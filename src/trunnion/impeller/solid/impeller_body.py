@@ -79,10 +79,7 @@ class _Ring(NamedTuple):
 def impeller_body(impeller: Impeller, density: Density) -> tuple[Body, Floats]:
     """Make the body, and tell the angles (k,) about Z at which it has trailing edges.
 
-    Raises
-    ------
-    InputError
-        If it has a form that no such body has: the cause and, where there is one, the cure.
+    Raises ``InputError`` if it has a form that no such body has: the cause and, where there is one, the cure.
     """
     body = Body()
     main = root_loop(impeller, impeller.blade, density)

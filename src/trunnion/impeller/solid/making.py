@@ -91,17 +91,10 @@ def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:
     It is judged as it is read back from its file: valid, closed, of one body, within the tolerance of the exact
     surfaces, and of the volume of the mesh.
 
-    Parameters
-    ----------
-    impeller
-        Its surfaces.
-    tolerance
-        mm: how far faces and edges may be off the surfaces.
+    impeller   its surfaces
+    tolerance  mm: how far faces and edges may be off the surfaces
 
-    Raises
-    ------
-    InputError
-        If there is no such solid, or the extra ``cad`` is not installed.
+    Raises ``InputError`` if there is no such solid, or the extra ``cad`` is not installed.
     """
     if importlib.util.find_spec("OCP") is None:
         import_extra("OCP", "cad")
@@ -154,10 +147,7 @@ def _free_angle(angles: Floats) -> float:
 def _asked(order: Order) -> Made | Refusal:
     """Return what the kernel answers, in a process of its own.
 
-    Raises
-    ------
-    InputError
-        If it cannot be loaded, or does not come to an end.
+    Raises ``InputError`` if it cannot be loaded, or does not come to an end.
     """
     # -P: no module of the current folder is run.
     command = [sys.executable, "-P", "-c", _CHILD, str(Path(__file__).parents[3])]

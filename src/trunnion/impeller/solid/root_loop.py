@@ -91,19 +91,11 @@ class RootLoop:
 def root_loop(impeller: Impeller, blade: Blade, density: Density, near: float | None = None) -> RootLoop:
     """Make the loop of a blade.
 
-    Parameters
-    ----------
-    impeller, blade
-        The blade, and the impeller that it is of.
-    density
-        Of its points.
-    near
-        An angle about Z near to that of the loop's first station; default: whichever comes.
+    impeller, blade  the blade, and the impeller that it is of
+    density          of its points
+    near             an angle about Z near to that of the loop's first station; default: whichever comes
 
-    Raises
-    ------
-    InputError
-        If the fillet finds no place all round the blade, or reaches the shroud.
+    Raises ``InputError`` if the fillet finds no place all round the blade, or reaches the shroud.
     """
     radius = impeller.definition.fillet
     blade = carried_on(impeller, blade)
@@ -170,10 +162,7 @@ def _stations(blade: Blade, hub: Profile, radius: float, density: Density) -> tu
 def _heights(impeller: Impeller, blade: Blade, stations: Stations, fillet: Fillet) -> Floats:
     """v (k,) at which the blade ends at the shroud.
 
-    Raises
-    ------
-    InputError
-        If that is below the top of the fillet somewhere.
+    Raises ``InputError`` if that is below the top of the fillet somewhere.
     """
 
     def gap(v: Floats) -> Floats:

@@ -6,16 +6,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated, Final, Unpack
 
 import numpy as np
 
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem, Severity, TrunnionError, argument_problem
+from trunnion.jobs.arguments import FitArguments, taken
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
 from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.placing import place, unknown_length
@@ -92,15 +93,7 @@ class MachineFit:
 
 
 def fit(
-    files: Iterable[ToolpathLike] | ToolpathLike,
-    *,
-    machines: str | Iterable[MachineLike] = "all",
-    machine: MachineLike | None = None,
-    subprograms: Sequence[FilePath] = (),
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
-    turns: float | Sequence[float] | None = None,
-    observer: Observer = SILENT,
+    files: Iterable[ToolpathLike] | ToolpathLike, *, observer: Observer = SILENT, **given: Unpack[FitArguments]
 ) -> tuple[MachineFit, ...]:
     """Tell which machines can run CL files or an NC program, the best first.
 
@@ -150,15 +143,16 @@ def fit(
     >>> [(each.key, str(each.status)) for each in found]
     [('yl569', 'fits'), ('hs664rt', 'open')]
     """
-    asked = _asked(machines)
+    stated = taken(FitArguments, "fit", given)
+    asked, tool_length = _asked(stated["machines"]), stated["tool_length"]
     _check_are_there(asked)
-    toolpaths = _toolpaths(files, machine, check_paths("subprograms", subprograms), zero, tool_length, observer)
+    toolpaths = _toolpaths(files, stated, observer)
     if tool_length is None:
         tool_length = _stated_length(toolpaths)
     found = []
     with observer.progress("fit", len(asked), "machines") as advance:
         for each in asked:
-            found.append(_fit(each, toolpaths, tool_length, turns))
+            found.append(_fit(each, toolpaths, tool_length, stated["turns"]))
             advance(1)
     if tool_length is None and any(_LENGTH in reason for each in found for reason in each.reasons):
         observer.problems(
@@ -204,26 +198,17 @@ def _check_are_there(asked: Sequence[MachineLike]) -> None:
 
 
 def _toolpaths(
-    files: Iterable[ToolpathLike] | ToolpathLike,
-    machine: MachineLike | None,
-    subprograms: Sequence[FilePath],
-    zero: str | Iterable[float] | None,
-    tool_length: str | float | None,
-    observer: Observer,
+    files: Iterable[ToolpathLike] | ToolpathLike, stated: FitArguments, observer: Observer
 ) -> list[Toolpath]:
-    if machine is not None:
+    subprograms, zero = check_paths("subprograms", stated["subprograms"]), stated["zero"]
+    if stated["machine"] is not None:
         given = [files] if isinstance(files, str | os.PathLike) else list(files) if isinstance(files, Iterable) else []
         if len(given) != 1 or not isinstance(given[0], str | os.PathLike):
             raise InputError(argument_problem("files", Wording("ARG130", "machine_of_one_program")))
         converted = convert(
-            given[0],
-            machine=machine,
-            to_cl=True,
-            subprograms=subprograms,
-            zero=zero,
-            tool_length=tool_length,
-            observer=observer,
-        )
+            given[0], machine=stated["machine"], to_cl=True, subprograms=subprograms, zero=zero,
+            tool_length=stated["tool_length"], observer=observer,
+        )  # fmt: skip
         return [converted.toolpath]
     if subprograms or zero is not None:
         name = "subprograms" if subprograms else "zero"

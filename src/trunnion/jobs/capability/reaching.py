@@ -1,7 +1,6 @@
 """What a machine reaches: tool axes, points with each tilt, the surface of a part, and the points of CL files."""
 
-from collections.abc import Iterable, Sequence
-from typing import Final
+from typing import Final, Unpack
 
 from trunnion.capability.part_reach import facet_reach
 from trunnion.capability.path_reach import path_reach
@@ -13,8 +12,9 @@ from trunnion.capability.reach import (
     tilt_reach,
     tilts_between,
 )
+from trunnion.jobs.arguments import ReachArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
@@ -29,17 +29,7 @@ _STEPS: Final = (1.0, 45.0)
 _MOST_LEAN: Final = 90.0
 
 
-def reach(
-    machine: MachineLike,
-    *,
-    cl: ToolpathLike | Iterable[ToolpathLike] = (),
-    part: FilePath | None = None,
-    lean: float = 0.0,
-    zero: str | Sequence[float] | None = None,
-    tool_length: str | float | None = None,
-    step: float = DEFAULT_STEP,
-    observer: Observer = SILENT,
-) -> Reach:
+def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[ReachArguments]) -> Reach:
     """Tell what a machine reaches.
 
     Parameters
@@ -84,10 +74,11 @@ def reach(
     >>> [each.tilt for each in found.tilts if each.share == 1.0]
     [0.0, 30.0, 60.0, 90.0]
     """
-    degrees = _number("step", step, *_STEPS)
-    leaning = _number("lean", lean, 0.0, _MOST_LEAN)
-    loaded = set_up_machine(as_machine(machine), zero, tool_length)
-    toolpaths = as_toolpaths(cl, None, False, observer)
+    found = taken(ReachArguments, "reach", given)
+    degrees, part = _number("step", found["step"], *_STEPS), found["part"]
+    leaning = _number("lean", found["lean"], 0.0, _MOST_LEAN)
+    loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
+    toolpaths = as_toolpaths(found["cl"], None, False, observer)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     surface = None

@@ -1,18 +1,19 @@
 """Where the tool goes over a program when a number of the machine's geometry is not what its definition says."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
+from typing import Final, Unpack
 
 import numpy as np
 
 from trunnion.capability.sensitivity import Sensitivity, program_sensitivity
 from trunnion.capability.tip_errors import joints_at_zero
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jobs.inputs.arguments import wrong_argument
+from trunnion.jobs.arguments import SensitivityArguments, taken
+from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
-from trunnion.jobs.observer import SILENT
+from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
@@ -26,15 +27,7 @@ _MOST: Final = {"length": 10.0, "angle": 3600.0}
 
 
 def sensitivity(
-    nc: FilePath | Run,
-    *,
-    machine: MachineLike,
-    subprograms: Sequence[FilePath] = (),
-    zero: str | Sequence[float] | None = None,
-    tool_length: str | float | None = None,
-    length: float = DEFAULT_LENGTH,
-    angle: float = DEFAULT_ANGLE,
-    zero_at: str | Mapping[str, float] | None = "home",
+    nc: FilePath | Run, *, machine: MachineLike, observer: Observer = SILENT, **given: Unpack[SensitivityArguments]
 ) -> Sensitivity:
     """Tell how far the tip is off over a program for each geometry number of the machine that is not true.
 
@@ -58,6 +51,8 @@ def sensitivity(
         Where the rotary axes stood when the workpiece zero was set by the tool or a probe: ``home``, or their values in
         degrees, such as ``"C=0,B=30"`` or a mapping. What the error is there is then in the zero, and only the rest of
         it is at the tip. ``none`` or None: nothing was set.
+    observer
+        Receives the progress.
 
     Returns
     -------
@@ -83,10 +78,14 @@ def sensitivity(
     >>> found.numbers[0].number.name
     'gauge point X'
     """
-    _check_amount("length", length)
-    _check_amount("angle", angle)
-    run = as_run(nc, set_up_machine(as_machine(machine), zero, tool_length), subprograms)
-    found = program_sensitivity(run, _zero_pose(run.machine, zero_at), length, angle, tuple(_remarks(run)))
+    check_observer(observer)
+    stated = taken(SensitivityArguments, "sensitivity", given)
+    for name in _MOST:
+        _check_amount(name, stated.get(name))
+    run = as_run(nc, set_up_machine(as_machine(machine), stated["zero"], stated["tool_length"]), stated["subprograms"])
+    pose, off = _zero_pose(run.machine, stated["zero_at"]), (stated["length"], stated["angle"])
+    with observer.progress("sensitivity", len(run), "motions") as advance:
+        found = program_sensitivity(run, pose, *off, tuple(_remarks(run)), advance)
     if not found.motions:
         raise InputError(_without_cuts(run))
     return found

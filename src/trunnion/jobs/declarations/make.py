@@ -154,7 +154,7 @@ _PLACE: Final = job(
         stock={"help": "as simulate takes it. Seen from above it is to stay on the table that the machine states"},
         part={"help": "the finished part, for which the same holds"},
         fixtures={"help": "a fixture as the part is drawn, clamped and turned with it"},
-        libraries={"help": "tool library, as simulate takes it"},
+        tool_libraries={"help": "tool library, as simulate takes it"},
     ),
     JSON,
     Option(

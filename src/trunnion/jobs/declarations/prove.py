@@ -59,7 +59,7 @@ _VERIFY: Final = job(
         "edge", "--edge", whole("a cutting edge", "its D number, such as 1", "D"),
         "cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
     ),
-    READING.but(units={"key": "units"}, dialect={"key": "dialect"}, strict={"own": True}),
+    READING.but(units={"key": "units"}, dialect={"key": "dialect"}),
     Option(
         "frame", "--frame", Choice(("first", "absolute")),
         "whose coordinate system the program's is: the first operation's, or the CAM's absolute one", default="first",

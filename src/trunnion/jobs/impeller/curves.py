@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TypeAlias
+from typing import TypeAlias, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,7 @@ from trunnion.geometry.ends import Ends, Natural, Tangent, parse_end
 from trunnion.geometry.fitting import CurveFit, Wanted, fit
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
+from trunnion.jobs.arguments import taken
 from trunnion.jobs.inputs.arguments import check_choice, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
@@ -53,16 +54,18 @@ def read_points(points: FilePath, *, scale: float = 1.0) -> tuple[PointTable, ..
     return tuple(scaled(table, factor) for table in tables)
 
 
-def fit_curve(
-    points: PointTable | ArrayLike,
-    *,
-    start: EndLike = "natural",
-    end: EndLike = "natural",
-    parameterization: str = "chord-length",
-    tolerance: float | None = None,
-    fair: float | None = None,
-    weights: Sequence[float] | None = None,
-) -> CurveFit:
+class CurveArguments(TypedDict, total=False):
+    """Arguments of ``trunnion.fit_curve``."""
+
+    start: EndLike
+    end: EndLike
+    parameterization: str
+    tolerance: float | None
+    fair: float | None
+    weights: Sequence[float] | None
+
+
+def fit_curve(points: PointTable | ArrayLike, **given: Unpack[CurveArguments]) -> CurveFit:
     """Fit a cubic B-spline curve to points.
 
     Parameters
@@ -104,9 +107,11 @@ def fit_curve(
     ((22, 3), True)
     """
     table = points if isinstance(points, PointTable) else _as_table(points)
+    found = taken(CurveArguments, "curve", given)
+    tolerance, fair, weights = found["tolerance"], found["fair"], found["weights"]
     wanted = Wanted(
-        Ends(parse_end("start", start), parse_end("end", end)),
-        check_choice("parameterization", parameterization, PARAMETERIZATIONS),
+        Ends(parse_end("start", found["start"]), parse_end("end", found["end"])),
+        check_choice("parameterization", found["parameterization"], PARAMETERIZATIONS),
         None if tolerance is None else _positive("tolerance", tolerance),
         None if fair is None else _positive("fair", fair),
     )

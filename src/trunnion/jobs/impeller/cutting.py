@@ -2,10 +2,9 @@
 
 import io
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from operator import attrgetter
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, ClassVar, Final
+from typing import Final, NamedTuple, Unpack
 
 import numpy as np
 
@@ -15,12 +14,14 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
-from trunnion.impeller.material import Material, material_before, order_problems, side_problems
+from trunnion.impeller.material import material_before, order_problems, side_problems
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
-from trunnion.impeller.steps import MachiningStep, StepKind, file_stem
+from trunnion.impeller.steps import StepKind, file_stem
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
+from trunnion.jobs.arguments import ImpellerArguments, taken
+from trunnion.jobs.impeller.cut import CutStep, ImpellerCut
 from trunnion.jobs.impeller.files import ImpellerFiles, output_folder
 from trunnion.jobs.impeller.models import load_impeller, model_impeller
 from trunnion.jobs.impeller.settings import operation_settings, program_settings
@@ -28,7 +29,7 @@ from trunnion.jobs.impeller.windings import winding_problems
 from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, read_cl
-from trunnion.jobs.inputs.settings import Settings, check_tolerance
+from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
@@ -44,7 +45,6 @@ from trunnion.machines.spindle_range import spindle_speed_fault
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Operation, Tool, Toolpath
 from trunnion.reporting.simulation_page import render_simulation_page
-from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.meshes import picture
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.simulation.tools.library import LibraryTool
@@ -55,92 +55,13 @@ from trunnion.verification import durations
 _MODEL: Final = 0.1
 
 
-def _flanks(flanks: Sequence[tuple[float, float]]) -> list[dict[str, float]]:
-    return [{"overcut_mm": over, "undercut_mm": under} for over, under in flanks]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CutStep:
-    """A machining step as it is cut.
-
-    toolpath   its operations, one for each blade or channel, as the CL file says them
-    points     of all of them
-    seconds    of each operation on the machine, with what leads to it
-    clearance  of each part of the tool, the least that it has to a blade or the hub, or to the stock where the step
-               goes round the part. In flank milling the cutter's is that to the hub and to other blades
-    flanks     of flank milling: overcut and undercut of each side, mm
-    before     what metal stands before it, an estimate
-    cl_file    its CL file
-    programs   the subprogram of each operation; none if they are in one program, or divided further
-    """
-
-    step: Annotated[
-        MachiningStep,
-        Figure("name", take=attrgetter("name")),
-        Figure("kind", take=attrgetter("kind")),
-        Figure("published_minutes", take=lambda step: step.published_minutes or None, after="minutes"),
-    ]
-    toolpath: Annotated[Toolpath, NOT_DATA]
-    points: Annotated[int, Figure(after="programs")]
-    seconds: Annotated[tuple[float, ...], Figure("operations", take=len)]
-    clearance: Annotated[tuple[PartClearance, ...], Figure("clearances", after="published_minutes")]
-    before: Annotated[Material, Figure(after="clearances")]
-    flanks: Annotated[tuple[tuple[float, float], ...], Figure(decimals=6, take=_flanks, after="before")] = ()
-    cl_file: Path | None = None
-    programs: tuple[Path, ...] = ()
-
-    @property
-    @Figure(decimals=6, after="points")
-    def minutes(self) -> float:
-        """Of one operation, in the mean."""
-        return sum(self.seconds) / len(self.seconds) / 60.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ImpellerCut:
-    """An impeller as it is machined.
-
-    steps       in their order
-    remarks     warnings: steps that find more metal than they can take, by an estimate
-    result      of the post: the program, its proof and its files
-    cl_files    one for each step
-    simulation  what the program leaves of the stock, against the model; None: it was not simulated
-    """
-
-    SCHEMA: ClassVar[int] = 2
-
-    impeller: Annotated[Impeller, Figure("name", take=attrgetter("definition.name"))]
-    steps: Annotated[tuple[CutStep, ...], Figure(after="cl_files")]
-    result: Annotated[
-        PostResult,
-        Figure("program", take=lambda result: str(result.output)),
-        Figure("subprograms", take=attrgetter("subprograms")),
-        Figure("checks", take=lambda result: {check.key: check.passed for check in result.checks}, after="remarks"),
-    ]
-    cl_files: tuple[Path, ...]
-    simulation: Annotated[SimulationResult | None, Figure(after="checks")]
-    remarks: Annotated[tuple[Problem, ...], Figure(after="steps")] = ()
-
-    def __repr__(self) -> str:
-        """Return what matters in a notebook."""
-        return f"ImpellerCut(passed={self.passed}, {len(self.steps)} steps)"
-
-    @property
-    @Figure(after="name")
-    def passed(self) -> bool:
-        """Whether the program is proven, and what was simulated has no finding."""
-        return self.result.passed and (self.simulation is None or self.simulation.passed)
-
-
 def cut_impeller(
     impeller: Impeller | FilePath,
     *,
     machine: MachineLike,
     output: FilePath,
-    operations: Sequence[str] = (),
-    settings: Settings | None = None,
-    cell: float | None = None,
     observer: Observer = SILENT,
+    **given: Unpack[ImpellerArguments],
 ) -> ImpellerCut:
     """Machine an impeller: tool paths of all its operations, CL files, and one program for all of them, proven.
 
@@ -188,11 +109,13 @@ def cut_impeller(
     ImpellerCut(passed=True, 1 steps)
     """
     check_observer(observer)
+    stated = taken(ImpellerArguments, "impeller", given)
+    cell = stated["cell"]
     check_tolerance("cell", cell, optional=True)
     found = impeller if isinstance(impeller, Impeller) else load_impeller(impeller)
     observer.problems(found.remarks)
     definition = found.definition
-    chosen = _chosen(found, operations)
+    chosen = _chosen(found, stated["operations"])
     loaded = as_machine(machine)
     _check_speeds(found, chosen, loaded)
     remarks = tuple(order_problems(found, chosen))
@@ -200,23 +123,37 @@ def cut_impeller(
     control = load_control(loaded.control)
     stem = file_stem(definition.name)
     own = program_settings(control, definition.name, stem)
-    job = prepare(loaded, {**own, **(settings or {})}, columns=True)
+    job = prepare(loaded, {**own, **(stated["settings"] or {})}, columns=True)
     read = [*definition.files, *machine_files(machine, loaded)]
     with output_folder(output) as folder:
         files = ImpellerFiles(folder, stem, control.extension)
         files.check_own()
         try:
-            cut = _cut(found, chosen, loaded, job, files, read, cell, observer)
+            cut = _cut(_Cutting(found, chosen, loaded, files, read, cell), job, observer)
             return replace(cut, remarks=(*remarks, *cut.remarks))
         finally:
             files.remember_report()
 
 
-def _cut(
-    found: Impeller, chosen: Sequence[str], machine: Machine, job: PostJob, files: ImpellerFiles,
-    inputs: Sequence[FilePath], cell: float | None, observer: Observer,
-) -> ImpellerCut:  # fmt: skip
+class _Cutting(NamedTuple):
+    """What is cut, and where its files go.
+
+    chosen  names of the steps
+    inputs  files that are read
+    cell    of the simulation, mm; None: there is none
+    """
+
+    impeller: Impeller
+    chosen: Sequence[str]
+    machine: Machine
+    files: ImpellerFiles
+    inputs: Sequence[FilePath]
+    cell: float | None
+
+
+def _cut(cutting: _Cutting, job: PostJob, observer: Observer) -> ImpellerCut:
     """As ``cut_impeller``: all files appear when it ends."""
+    found, chosen, machine, files, inputs, cell = cutting
     definition = found.definition
     job = replace(job, papers=PaperFiles(report=files.report), can_force=False)
     with open_target(files.program, papers={"report": files.report}, inputs=inputs) as target:

@@ -88,7 +88,7 @@ def known_tools(
     """
     if unit is not None:
         check_choice("unit", unit, ("mm", "inch"))
-    read = [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]
+    read = [read_tools(path, unit or "") for path in check_paths("tool_libraries", libraries)]
     diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
     given = listed("tools", tools, ToolShape)
     stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in given]

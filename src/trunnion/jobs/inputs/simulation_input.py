@@ -41,7 +41,7 @@ class SetupInput:
     fixtures: Sequence[str | Path | TriangleMesh] = ()
     work_offset: str | None = None
     tools: Iterable[str | ToolShape] = ()
-    libraries: Sequence[FilePath] = ()
+    tool_libraries: Sequence[FilePath] = ()
     unit: str | None = None
     cl: ToolpathLike | Iterable[ToolpathLike] = ()
     subprograms: Sequence[FilePath] = ()

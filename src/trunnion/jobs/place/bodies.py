@@ -37,13 +37,13 @@ class BodiesInput:
     part: MeshLike | None = None
     stock: MeshLike | None = None
     tools: str | ToolShape | Iterable[str | ToolShape] = ()
-    libraries: Sequence[FilePath] = ()
+    tool_libraries: Sequence[FilePath] = ()
     unit: Literal["mm", "inch"] | None = None
 
     @property
     def are_given(self) -> bool:
         """Whether there are any but stock and part, which are asked for the table, too."""
-        several = (self.fixtures, self.tools, self.libraries)
+        several = (self.fixtures, self.tools, self.tool_libraries)
         return any(not isinstance(each, tuple | list) or len(each) > 0 for each in several)
 
 
@@ -124,7 +124,7 @@ def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> 
     """Return the bodies of the tools that are called, by their number in ``placed.tools``; one without a form
     is told.
     """
-    known = known_tools(given.tools, given.libraries, given.unit, placed.toolpaths)
+    known = known_tools(given.tools, given.tool_libraries, given.unit, placed.toolpaths)
     found: dict[int, ToolShape] = {}
     for number in placed.used_tools:
         called = placed.tools[number] or NO_CALL

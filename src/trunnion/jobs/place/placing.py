@@ -1,16 +1,16 @@
 """Where on the table a part may sit: the feasible places of its workpiece zero, and the best of them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path
-from typing import Final, Literal
+from typing import Final, Unpack
 
 import numpy as np
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.arguments import PlaceArguments, taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_paths
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
-from trunnion.jobs.inputs.settings import Settings, as_texts, set_up_machine
+from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine
+from trunnion.jobs.inputs.settings import as_texts, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.bodies import BodiesInput, read_bodies, stated_lengths
 from trunnion.jobs.place.inputs import read_input
@@ -24,8 +24,6 @@ from trunnion.placing.collisions.path_samples import lengths_of
 from trunnion.placing.goals import Goal
 from trunnion.placing.place_search import PlaceSearch
 from trunnion.placing.placement import Placement
-from trunnion.simulation.meshes import TriangleMesh
-from trunnion.simulation.tools.profile import ToolShape
 
 #: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
 _COLLISION_TURNS: Final = 15.0
@@ -38,20 +36,8 @@ def place(
     files: Iterable[ToolpathLike] | ToolpathLike,
     *,
     machine: MachineLike,
-    goal: str = "margin",
-    turns: float | Sequence[float] | None = None,
-    tilts: float | Sequence[float] = (),
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
-    settings: Settings | None = None,
-    subprograms: Sequence[FilePath] = (),
-    stock: str | Path | TriangleMesh | None = None,
-    part: str | Path | TriangleMesh | None = None,
-    fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
-    tools: str | ToolShape | Iterable[str | ToolShape] = (),
-    libraries: Sequence[FilePath] = (),
-    unit: Literal["mm", "inch"] | None = None,
     observer: Observer = SILENT,
+    **given: Unpack[PlaceArguments],
 ) -> Placement:
     """Find where on the table a part may sit, and where it sits best.
 
@@ -78,14 +64,14 @@ def place(
     tool_length
         Of the tool, gauge point to tip, mm; by default that of the definition, or of each tool its own where the CL
         files state all of them, or 0.
-    settings
+    settings, units, dialect
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
         Files of the subprograms that NC programs call.
     stock, part
         As ``trunnion.simulate`` has them: all of them, seen from above, is to be on the table that the definition
         states. With the goal ``"collisions"`` they are bodies, too.
-    fixtures, tools, libraries, unit
+    fixtures, tools, tool_libraries, unit
         Bodies besides those of the machine, as ``trunnion.simulate`` takes them: as the part is drawn. Fixtures are
         tilted and turned with it. With any of them the least distance at the best place is told with every goal.
     observer
@@ -116,35 +102,39 @@ def place(
     (True, 'Y')
     """
     check_observer(observer)
-    goal = check_choice("goal", goal, GOALS)
-    grid = orientations(_COLLISION_TURNS if turns is None and goal == Goal.COLLISIONS else turns, tilts)
-    texts = as_texts(settings)
-    zero = texts.pop("zero", None) if zero is None else zero
-    tool_length = texts.get("tool_length") if tool_length is None else tool_length
+    stated = taken(PlaceArguments, "place", given)
+    goal, turns = check_choice("goal", stated["goal"], GOALS), stated["turns"]
+    grid = orientations(_COLLISION_TURNS if turns is None and goal == Goal.COLLISIONS else turns, stated["tilts"])
+    texts = as_texts(stated["settings"])
+    zero = texts.pop("zero", None) if stated["zero"] is None else stated["zero"]
+    tool_length = texts.get("tool_length") if stated["tool_length"] is None else stated["tool_length"]
     loaded = set_up_machine(as_machine(machine), zero, tool_length)
     if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
         raise InputError(argument_problem("machine", Wording("PLC130", "no_limits", machine=loaded.key)))
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
     remarks: list[Problem] = []
-    standing = standing_on(loaded, stock, part, remarks)
-    given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
+    among = BodiesInput(
+        stated["fixtures"], stated["part"], stated["stock"], stated["tools"], stated["tool_libraries"], stated["unit"]
+    )
+    standing = standing_on(loaded, among.stock, among.part, remarks)
+    others = check_paths("subprograms", stated["subprograms"])
+    read = read_input(files, loaded, texts, others, observer, tilts_by_size)
     for tilt in tilts_by_size:  # what could not be said in the head of a program is told before it is searched
-        clamped_after(given.clamping, (0.0, tilt), given.rows.stretches[0].file)
+        clamped_after(read.clamping, (0.0, tilt), read.rows.stretches[0].file)
     bodies = None
-    among = BodiesInput(fixtures, part, stock, tools, libraries, unit)
     if goal == Goal.COLLISIONS or among.are_given:
-        bodies = read_bodies(among, given, loaded, is_needed=goal == Goal.COLLISIONS)
+        bodies = read_bodies(among, read, loaded, is_needed=goal == Goal.COLLISIONS)
         loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
-        given = replace(given, rows=replace(given.rows, length=lengths_of(bodies.guard.lengths, given.tool)))
-    elif loaded.tool_length is None and (own := stated_lengths(given)):
+        read = replace(read, rows=replace(read.rows, length=lengths_of(bodies.guard.lengths, read.tool)))
+    elif loaded.tool_length is None and (own := stated_lengths(read)):
         loaded = replace(loaded, tool_length=max(own.values()))
-        given = replace(given, rows=replace(given.rows, length=lengths_of(own, given.tool)))
-    problems = [*given.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
+        read = replace(read, rows=replace(read.rows, length=lengths_of(own, read.tool)))
+    problems = [*read.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
     observer.problems(problems)
-    search = PlaceSearch(loaded, given.rows, Goal(goal), grid, standing, None if bodies is None else bodies.guard)
+    search = PlaceSearch(loaded, read.rows, Goal(goal), grid, standing, None if bodies is None else bodies.guard)
     with observer.progress("placing", len(grid), "turns") as advance:
         found = search.find(advance)
-    found = replace(found, remarks=tuple(problems), toolpaths=given.toolpaths, clamping=given.clamping)
+    found = replace(found, remarks=tuple(problems), toolpaths=read.toolpaths, clamping=read.clamping)
     if bodies is None or goal == Goal.COLLISIONS:
         return found
     touching = touch_warnings(found)

@@ -1,13 +1,14 @@
 """A part at the place that was found: its CL files are posted turned, with the workpiece zero there."""
 
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.arguments import PostArguments
 from trunnion.jobs.inputs.reading import FilePath, MachineLike
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.inputs import nc_program_stays
-from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.result_output import OutputLike, paper_files
+from trunnion.jobs.result_output import OutputLike
 from trunnion.messages import Wording
 from trunnion.placing.placement import Placement
 
@@ -61,9 +62,8 @@ def post_placed(
     if found.tool_length_mm is not None:
         texts.setdefault("tool_length", str(found.tool_length_mm))
     best = found.best
-    return post_beside(
-        found.toolpaths, (),
-        machine=machine, output=output, settings={**texts, "zero": best.zero_mm}, strict=False, force=False,
-        explain=False, papers=paper_files(None, sheet, None, None, output), columns=True, subprograms=(),
-        turn=best.turn_deg, tilt=best.tilt_deg, is_placed=True, observer=observer,
-    )  # fmt: skip
+    given: PostArguments = {
+        "output": output, "settings": {**texts, "zero": best.zero_mm}, "sheet": sheet, "turn": best.turn_deg,
+        "tilt": best.tilt_deg,
+    }  # fmt: skip
+    return post_beside(found.toolpaths, machine, given, Work(is_placed=True), observer)

@@ -77,7 +77,7 @@ def _bodies(given: SimulationInput, number: int, problems: list[Problem]) -> Bod
             part = None if part is None else read_mesh(part, "part", problems).moved(pose.matrix)
         part = part if setup.part is None else setup.part
     unit: Literal["mm", "inch"] | None = "mm" if own.unit == "mm" else "inch" if own.unit == "inch" else None
-    return BodiesInput(tuple(own.fixtures), part, stock, tuple(own.tools), own.libraries, unit)
+    return BodiesInput(tuple(own.fixtures), part, stock, tuple(own.tools), own.tool_libraries, unit)
 
 
 def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:

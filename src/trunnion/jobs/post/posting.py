@@ -6,19 +6,19 @@ Out:    the program: planned, written, read back, run and compared with its tool
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import Final, Unpack
 
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.hooks.calling import Hooks
 from trunnion.hooks.files import load_hooks
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
+from trunnion.jobs.arguments import PostArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles
 from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
-from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.expected_values import expectation
 from trunnion.jobs.post.left_over_files import left_over
@@ -33,34 +33,39 @@ from trunnion.jobs.post.refusals import refused, reported_refusals
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.jobs.post.writing import write_and_read_back
-from trunnion.jobs.result_output import OutputLike, PaperFiles, Target, open_target, paper_files
+from trunnion.jobs.result_output import Target, open_target, paper_files
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 
-if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
-    from trunnion.jobs.simulate.posted import SimulationLike
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Work:
+    """The work that a post is part of.
+
+    others     its other files, none of which is written over
+    group      with whose files the program appears; None: alone
+    is_placed  the head of the program says how the part is clamped, even if that is as it is drawn
+    can_force  whether refusals speak of ``force``
+    later      takes the papers, and who gives it writes them; None: they are written
+    """
+
+    others: Sequence[FilePath] = ()
+    group: OutputGroup | None = None
+    is_placed: bool = False
+    can_force: bool = True
+    later: list[PostPapers] | None = None
+
+
+#: A post that is part of nothing.
+ALONE: Final = Work()
 
 
 def post(
     cl: ToolpathLike | Iterable[ToolpathLike],
     *,
     machine: MachineLike,
-    output: OutputLike = None,
-    settings: Settings | None = None,
-    strict: bool = False,
-    force: bool = False,
-    explain: bool = False,
-    report: FilePath | None = None,
-    sheet: FilePath | None = None,
-    listing: FilePath | None = None,
-    manifest: FilePath | None = None,
-    columns: bool = True,
-    subprograms: Sequence[FilePath] = (),
-    simulation: "SimulationLike | None" = None,
-    hooks: Sequence[FilePath] = (),
-    turn: float = 0.0,
-    tilt: float = 0.0,
     observer: Observer = SILENT,
+    **given: Unpack[PostArguments],
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
 
@@ -81,6 +86,8 @@ def post(
     settings
         As ``--set`` takes them, by the same keys: ``{"title": "BLADE", "zero": (0, 0, 80), "tcp": "off"}``; see
         docs/commands.md.
+    units, dialect, zero, tool_length, feed, max_tilt
+        Settings, too; ``units`` is the setting ``cl_units``.
     strict
         Raise an error for unknown CL statements even if the definition says what becomes of them.
     force
@@ -103,9 +110,9 @@ def post(
         Files of subprograms that exist already and that templates of the definition call. No others are opened.
     simulation
         Simulate the program too, as ``trunnion.simulate`` does, with its arguments ``stock``, ``part``, ``fixtures``,
-        ``near``, ``tools``, ``libraries``, ``unit``, ``cell`` and ``accuracy``: ``{"stock": "box:100,80,30"}``. Or the
-        path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come from
-        the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
+        ``near``, ``tools``, ``tool_libraries``, ``unit``, ``cell`` and ``accuracy``: ``{"stock": "box:100,80,30"}``. Or
+        the path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come
+        from the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
         ``gouge``; the result has it as ``simulation``.
     hooks
         Python files whose functions change what the CL files ask for (``trunnion.hooks``). They are run: name none that
@@ -143,64 +150,43 @@ def post(
     >>> result
     PostResult(passed=True, 30 motions)
     """
-    return post_beside(
-        cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
-        papers=paper_files(report, sheet, listing, manifest, output), columns=columns, subprograms=subprograms,
-        simulation=simulation, hooks=hooks, turn=turn, tilt=tilt, observer=observer,
-    )  # fmt: skip
+    return post_beside(cl, machine, given, observer=observer)
 
 
 def post_beside(
     cl: ToolpathLike | Iterable[ToolpathLike],
-    others: Sequence[FilePath],
-    *,
     machine: MachineLike,
-    output: OutputLike,
-    settings: Settings | None,
-    strict: bool,
-    force: bool,
-    explain: bool,
-    papers: PaperFiles,
-    columns: bool,
-    subprograms: Sequence[FilePath],
-    observer: Observer,
-    simulation: "SimulationLike | None" = None,
-    hooks: Sequence[FilePath] = (),
-    turn: float | None = None,
-    tilt: float | None = None,
-    is_placed: bool = False,
-    group: OutputGroup | None = None,
-    can_force: bool = True,
-    later: list[PostPapers] | None = None,
+    given: PostArguments,
+    work: Work = ALONE,
+    observer: Observer = SILENT,
 ) -> PostResult:
-    """Post CL files as ``post`` does, and write over none of the other files of the same work.
-
-    The program appears with those of the ``group``, if there is one. Where it ``is_placed``, its head says how the part
-    is clamped, even if that is as it is drawn. A refusal speaks of ``force`` where it ``can_force``. Papers are
-    written, or go into the list ``later``: who gives it writes them.
-    """
+    """Post CL files as ``post`` does, as part of some work."""
     check_observer(observer)
-    angles = checked_angles(turn, tilt)
+    found = taken(PostArguments, "post", given)
+    angles = checked_angles(found["turn"], found["tilt"])
+    papers = paper_files(found["report"], found["sheet"], found["listing"], found["manifest"], found["output"])
     loaded = as_machine(machine)
-    job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
-    existing = check_paths("subprograms", subprograms)
-    job = replace(job, beside=tuple(existing), can_force=can_force)
-    hook_files = check_paths("hooks", hooks)
-    inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *others]
-    if simulation is not None:
+    job = prepare(
+        loaded, found["settings"], force=found["force"], explain=found["explain"], papers=papers,
+        columns=found["columns"],
+    )  # fmt: skip
+    existing, hook_files = (check_paths(name, found.get(name)) for name in ("subprograms", "hooks"))
+    job = replace(job, beside=tuple(existing), can_force=work.can_force)
+    inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *work.others]
+    if (simulation := found["simulation"]) is not None:
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input
 
         read = tuple(simulation_files(simulation))
         job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
         inputs += read
-    with open_target(output, papers=papers.by_name(), inputs=inputs, group=group) as target:
+    with open_target(found["output"], papers=papers.by_name(), inputs=inputs, group=work.group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
-        toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
-        toolpaths, job = as_clamped(toolpaths, job, changes, angles, is_placed=is_placed)
+        toolpaths = load_toolpaths(cl, job, found["strict"], observer, changes.change)
+        toolpaths, job = as_clamped(toolpaths, job, changes, angles, is_placed=work.is_placed)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
-        return post_toolpaths(toolpaths, job, target, observer, later)
+        return post_toolpaths(toolpaths, job, target, observer, work.later)
 
 
 def post_toolpaths(
@@ -210,7 +196,7 @@ def post_toolpaths(
     observer: Observer,
     later: list[PostPapers] | None = None,
 ) -> PostResult:
-    """Plan, write and prove a program; errors as ``post`` raises them, ``later`` as ``post_beside`` takes it."""
+    """Plan, write and prove a program; errors as ``post`` raises them, ``later`` as ``Work`` has it."""
     subprograms = job.subprograms(target.files, target.path)
     posting = Posting(toolpaths, job, target, observer, subprograms, ProgramPlaces(target))
     with reported_refusals(posting):

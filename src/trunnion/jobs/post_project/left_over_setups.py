@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import Problem, Severity
-from trunnion.files import EarlierJob, resolve_output
+from trunnion.files import EarlierJob, OutputGroup, resolve_output
 from trunnion.jobs.post.left_over_files import first_names
 from trunnion.jobs.project.project import PostedSetup, Project
 from trunnion.messages import Wording, phrase
@@ -62,16 +62,16 @@ def left_over_setups(
     return found
 
 
-def remember_setups(project: Project, programs: Sequence[tuple[PostedSetup, Path]]) -> None:
-    """Record the programs of a project, once they are in their places, and those of which something is still there."""
+def remember_setups(group: OutputGroup, project: Project, programs: Sequence[tuple[PostedSetup, Path]]) -> None:
+    """Have the group record the programs of a project, and those before of which something is still there."""
     if project.into is not None:
         return
     record, files = _record(project), [resolve_output(file).path for _, file in programs]
     for (setup, _), file in zip(programs, files, strict=True):
-        EarlierJob(file).set_owner((str(resolve_output(project.path).path), setup.name, *setup.cl))
+        group.record_owner(file, (str(resolve_output(project.path).path), setup.name, *setup.cl))
     known = {program: EarlierJob(program) for program in record.names()}
     earlier = [program for program, job in known.items() if _is_of(project, job) and job.written()]
-    record.remember_names([*earlier, *files])
+    group.record_names(resolve_output(project.path).path, dict.fromkeys([*earlier, *files]))
 
 
 def _is_of(project: Project, job: EarlierJob) -> bool:

@@ -6,7 +6,6 @@ Out:    its programs, what the checks of the project found, and an error where o
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -115,7 +114,7 @@ def post_into(
     posted = post_setups(posting)
     found = _judged(posting, posted)
     outputs = [(setup, each.output) for setup, results in posted for each in results if each.output is not None]
-    group.afterwards(partial(remember_setups, project, outputs))
+    remember_setups(group, project, outputs)
     warnings = _reported(posting, found)
     _write_papers(posting, found)
     return ProjectResult(project, tuple(posted), found.simulation, tuple(warnings))

@@ -7,7 +7,7 @@ Out:    the programs of each set-up, each of them proven.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup
@@ -17,7 +17,7 @@ from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.papers.writing import PostPapers
 from trunnion.jobs.post.planning import load_toolpaths
 from trunnion.jobs.post.post_job import prepare
-from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post_project.operation_programs import check_tools, operation_programs
 from trunnion.jobs.post_project.replaced_files import replaced_file
@@ -133,12 +133,13 @@ class _Program:
 
 def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program: _Program) -> PostResult:
     project = posting.project
-    return post_beside(
-        program.cl, posting.inputs, machine=machine, output=program.output, settings=program.settings,
-        strict=posting.is_strict, force=False, explain=posting.options.explain, papers=program.papers,
-        columns=project.checks.longest_s is not None, hooks=project.hooks, observer=posting.observer,
-        group=posting.group, can_force=False, later=posting.later, **setup.arguments,
-    )  # fmt: skip
+    given: Any = {
+        **setup.arguments, **program.papers.by_name(), "output": program.output, "settings": program.settings,
+        "strict": posting.is_strict, "explain": posting.options.explain, "hooks": project.hooks,
+        "columns": project.checks.longest_s is not None,
+    }  # fmt: skip
+    work = Work(posting.inputs, posting.group, can_force=False, later=posting.later)
+    return post_beside(program.cl, machine, given, work, posting.observer)
 
 
 def _of_setup(problem: Problem, setup: PostedSetup) -> Problem:

@@ -51,7 +51,7 @@ def project_inputs(project: Project) -> list[FilePath]:
     ]
     released = [name for each in project.setups for name in each.released]
     named = [*project.files, *(name for each in setups for name in _named_files(each))]
-    named += library_files(dict.fromkeys(file for each in setups for file in each.libraries if _is_path(file)))
+    named += library_files(dict.fromkeys(file for each in setups for file in each.tool_libraries if _is_path(file)))
     for machine in dict.fromkeys(each.machine for each in setups if each.machine):
         named += machine_files(machine, as_machine(machine))
     stock = project.simulation.stock
@@ -80,7 +80,7 @@ def simulated_files(project: Project, number: int) -> list[FilePath]:
 
 
 def _named_files(setup: SetupInput) -> Iterator[FilePath]:
-    several: tuple[Iterable[object], ...] = setup.programs, setup.subprograms, setup.fixtures, setup.libraries
+    several: tuple[Iterable[object], ...] = setup.programs, setup.subprograms, setup.fixtures, setup.tool_libraries
     for names in (*several, listed("cl", setup.cl, Toolpath), (setup.part or None,)):
         yield from (name for name in names if _is_path(name))
 

@@ -111,7 +111,7 @@ class SetupReader:
 
     def _judged(self, table: Table, values: Mapping[str, Any], own: Mapping[str, Any]) -> Mapping[str, Any]:
         """Return the values, of which what this table states itself is tried: mistakes are told with all others."""
-        if not values["libraries"] and not self._is_elsewhere("tools", "libraries"):
+        if not values["tool_libraries"] and not self._is_elsewhere("tools", "tool_libraries"):
             for tool in own.get("tools", ()):  # libraries may have diameters that the texts leave out
                 try_value(table, parse_tool, tool)
         offset, machine = own.get("work_offset"), values["machine"]

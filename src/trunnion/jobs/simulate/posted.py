@@ -13,6 +13,7 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, Severity, argument_problem, key_subject
+from trunnion.jobs.arguments import with_present_names
 from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput
@@ -26,6 +27,9 @@ from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.groups import BODIES, CUTTING
+from trunnion.options.kinds import FileIn
+from trunnion.options.option import Level
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.setup_findings import SimulationFinding
@@ -37,9 +41,10 @@ from trunnion.wording import counted, position
 #: Arguments of ``simulate`` by their names, or the path of a project file.
 SimulationLike: TypeAlias = Mapping[str, Any] | FilePath
 
-#: Those of the whole simulation, and those of its set-up.
-_WHOLE: Final = ("stock", "cell", "accuracy", "near")
-_OF_SETUP: Final = ("part", "fixtures", "tools", "libraries", "unit")
+#: Those that it takes: of the whole simulation, and of its set-up.
+_STATED: Final = (*BODIES, *CUTTING)
+_WHOLE: Final = tuple(each.name for each in _STATED if each.level is Level.WHOLE)
+_OF_SETUP: Final = tuple(each.name for each in _STATED if each.level is not Level.WHOLE)
 
 #: Places that a check keeps.
 _MOST_PLACES: Final = 50
@@ -53,8 +58,9 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
     InputError
         If it names what is none, the project has several set-ups or is for another machine, or has no stock.
     """
-    project = given.get("project") if isinstance(given, Mapping) else given
-    stated = {name: value for name, value in given.items() if name != "project"} if isinstance(given, Mapping) else {}
+    given = with_present_names(given) if isinstance(given, Mapping) else {"project": given}
+    project = given.get("project")
+    stated = {name: value for name, value in given.items() if name != "project"}
     for name in stated:
         if name not in (*_WHOLE, *_OF_SETUP):
             names = ("project", *_WHOLE, *_OF_SETUP)
@@ -176,14 +182,14 @@ def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> Simu
 
 def simulation_files(given: SimulationLike) -> list[FilePath]:
     """Return the files that a simulation reads, none of which may be written over."""
-    project = given.get("project") if isinstance(given, Mapping) else given
+    given = with_present_names(given) if isinstance(given, Mapping) else {"project": given}
+    project = given.get("project")
     named = [] if project is None else [project, *project_files([project], ("nc",))]
-    if isinstance(given, Mapping):
-        for name in ("stock", "part", "fixtures", "libraries"):
-            value = given.get(name)
-            several = [value] if isinstance(value, str | os.PathLike) or not isinstance(value, Iterable) else value
-            files = [each for each in several if isinstance(each, str | os.PathLike)]
-            named += library_files(files) if name == "libraries" else files
+    for option in (each for each in _STATED if isinstance(each.kind, FileIn)):
+        value = given.get(option.name)
+        several = [value] if isinstance(value, str | os.PathLike) or not isinstance(value, Iterable) else value
+        files = [each for each in several if isinstance(each, str | os.PathLike)]
+        named += library_files(files) if getattr(option.kind, "leads", "") == "library" else files
     return named
 
 

@@ -18,8 +18,6 @@ from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.simulation_content import (
     DeviationBin,
-    FindingRow,
-    OperationRow,
     SimulationContent,
     StockState,
 )
@@ -27,7 +25,6 @@ from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.reporting.text import clean
 from trunnion.results import as_json, to_data
 from trunnion.simulation.meshes.picture import picture
-from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.simulation.stock.surface_points import SurfacePoints, surface_points
@@ -82,19 +79,13 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         title=clean(", ".join(dict.fromkeys(Path(program).name for program in found.programs))),
         passed=found.passed,
         facts=tuple((name, clean(value)) for name, value in facts if value),
-        findings=tuple(_finding(each) for each in sorted(found.findings, key=lambda finding: -finding.depth)),
-        near=tuple(_near(each) for each in found.near),
-        operations=tuple(
-            OperationRow(
-                clean(_where(each.setup, each.file, each.line)), clean(each.tool), each.removed, each.gouged,
-                each.seconds, each.air, each.findings,
-            )
-            for each in found.operations
-        ),
+        findings=tuple(sorted(found.findings, key=lambda finding: -finding.depth)),
+        near=found.near,
+        operations=found.operations,
         states=tuple(_state(each) for each in found.setups or (found,)),
         remarks=tuple(clean(str(remark)) for remark in found.remarks),
         data=_cleaned(to_data(found)),
-    )  # fmt: skip
+    )
 
 
 def _clamped(found: SimulationResult) -> str:
@@ -103,26 +94,6 @@ def _clamped(found: SimulationResult) -> str:
         return ""
     name = f"{found.setup}: " if found.setup else ""
     return f"{name}tilted {number(found.tilt)}°, then turned {number(found.turn)}°; places are those of the drawing"
-
-
-def _finding(each: SimulationFinding) -> FindingRow:
-    where = _where(each.setup, each.file, each.line, each.block, each.last_line)
-    cl = f"{Path(each.cl_file).name}:{each.cl_line}" if each.cl_file else ""
-    between = clean(", ".join(each.between))
-    return FindingRow(each.kind, between, clean(where), clean(cl), each.seconds, each.place, each.depth)
-
-
-def _near(each: NearMiss) -> FindingRow:
-    where = _where(each.setup, each.file, each.line, each.block, each.last_line)
-    between = clean(", ".join(each.between))
-    return FindingRow("near", between, clean(where), "", each.seconds, each.place, each.distance)
-
-
-def _where(setup: str, file: str, line: int, block: int = -1, last_line: int = 0) -> str:
-    """Return a place in a program."""
-    number = f" N{block}" if block >= 0 else ""
-    last = f" to {last_line}" if last_line > line else ""
-    return f"{setup + ': ' if setup else ''}{Path(file).name}:{line}{number}{last}"
 
 
 def _state(found: SimulationResult) -> StockState:

@@ -67,7 +67,7 @@ def prepare_setup(
     toolpaths = as_toolpaths(given.cl, None, False, observer)
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)
-    tools = _tools(runs, known_tools(given.tools, given.libraries, given.unit, toolpaths))
+    tools = _tools(runs, known_tools(given.tools, given.tool_libraries, given.unit, toolpaths))
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, machine)
     return PreparedSetup(

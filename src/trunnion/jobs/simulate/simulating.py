@@ -1,49 +1,30 @@
 """Simulation of NC programs: what they leave of the stock, what they hit, and the part that comes out."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Unpack
 
 from trunnion.errors import InputError, argument_problem
+from trunnion.jobs.arguments import SimulateArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.bodies import listed
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.simulation_input import Places, SetupInput, SimulationInput
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project, read_project
-from trunnion.jobs.project.keys import OF_ONE_SETUP
+from trunnion.jobs.project.keys import OF_ONE_SETUP, OF_PROJECT
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.messages import Wording
 from trunnion.model.run import Run
-from trunnion.simulation.meshes import TriangleMesh
-from trunnion.simulation.tools.profile import ToolShape
+
+#: Arguments of the simulation as a whole.
+_WHOLE: Final = (*(each.name for each in OF_PROJECT if each.name != "until"), "threads")
 
 
 def simulate(
-    nc: FilePath | Run | Iterable[FilePath | Run],
-    *,
-    machine: MachineLike | None = None,
-    stock: str | Path | TriangleMesh | None = None,
-    part: str | Path | TriangleMesh | None = None,
-    fixtures: Iterable[str | Path | TriangleMesh] = (),
-    near: float | None = None,
-    tools: Iterable[str | ToolShape] = (),
-    libraries: Sequence[FilePath] = (),
-    unit: Literal["mm", "inch"] | None = None,
-    cl: ToolpathLike | Iterable[ToolpathLike] = (),
-    subprograms: Sequence[FilePath] = (),
-    cell: float | None = None,
-    accuracy: float | None = None,
-    stop_at: Literal["none", "first"] | None = None,
-    until: str | int | None = None,
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
-    turn: float | None = None,
-    tilt: float | None = None,
-    threads: int | None = None,
-    observer: Observer = SILENT,
+    nc: FilePath | Run | Iterable[FilePath | Run], *, observer: Observer = SILENT, **given: Unpack[SimulateArguments]
 ) -> SimulationResult:
     """Cut stock with NC programs as the control runs them, and find what they must not do.
 
@@ -67,7 +48,7 @@ def simulate(
         Distance in mm from which on bodies are told that do not touch; by default only those that do.
     tools
         Tools as text, such as ``"3=ball:10,length=60,flutes=20"``, or as bodies; they come first.
-    libraries
+    tool_libraries
         Tool libraries, for tools that ``tools`` does not have.
     unit
         Length unit of LinuxCNC's tool tables, which state none.
@@ -115,36 +96,26 @@ def simulate(
     [('2', 2)]
     """
     check_observer(observer)
-    whole: dict[str, Any] = {
-        "stock": stock, "cell": cell, "accuracy": accuracy, "near": near, "stop_at": stop_at, "threads": threads,
-    }  # fmt: skip
-    own: dict[str, Any] = {
-        "machine": machine, "part": part, "fixtures": fixtures, "tools": tools, "libraries": libraries, "unit": unit,
-        "cl": cl, "subprograms": subprograms, "zero": zero, "tool_length": tool_length, "turn": turn, "tilt": tilt,
-    }  # fmt: skip
-    return simulate_setups(as_simulation_input(nc, whole, own, until), observer)
+    return simulate_setups(as_simulation_input(nc, given), observer)
 
 
-def as_simulation_input(
-    nc: FilePath | Run | Iterable[FilePath | Run],
-    whole: Mapping[str, Any],
-    own: Mapping[str, Any],
-    until: str | int | None = None,
-) -> SimulationInput:
-    """Return what is simulated: arguments of ``simulate`` by their names, those of the whole and those of each set-up.
+def as_simulation_input(nc: FilePath | Run | Iterable[FilePath | Run], given: SimulateArguments) -> SimulationInput:
+    """Return what is simulated: arguments of ``simulate`` by their names.
 
     Raises
     ------
     InputError
         If they contradict each other, or what a project would state is missing.
     """
+    own: dict[str, Any] = {**taken(SimulateArguments, "simulate", given)}
+    until, whole = own.pop("until"), {name: own.pop(name) for name in _WHOLE}
     programs = listed("nc", nc, Run)
     project = next((Path(each) for each in programs if not isinstance(each, Run) and is_project(Path(each))), None)
     if project is not None:
         if len(programs) > 1:
             raise InputError(argument_problem("nc", Wording("SIM111", "project_among_programs", project=project)))
-        given = [name for name, value in {**whole, **own}.items() if not _is_left_out(value)]
-        return _overruled(read_project(project, given), whole, own, until)
+        stated = [name for name, value in {**whole, **own}.items() if not _is_left_out(value)]
+        return _overruled(read_project(project, stated), whole, own, until)
     for name in ("machine", "stock"):
         if {**whole, **own}.get(name) is None:
             raise InputError(argument_problem(name, Wording("SIM110", "missing")))

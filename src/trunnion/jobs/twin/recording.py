@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Unpack
 from urllib.parse import urlsplit
 
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.extras import import_extra
+from trunnion.jobs.arguments import LiveArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.observer import SILENT, Observer
@@ -29,19 +30,15 @@ def _ignore(_names: tuple[str, ...]) -> None:
     """Nobody asked what is recorded."""
 
 
+class RecordArguments(LiveArguments, total=False):
+    """Arguments of ``record``."""
+
+    seconds: float | None
+    ready: Callable[[tuple[str, ...]], None] | None
+
+
 def record(
-    address: str,
-    *,
-    output: FilePath,
-    nodes: FilePath = "cnc",
-    seconds: float | None = None,
-    rate: float = 20.0,
-    secure: bool = False,
-    trust: str = "",
-    user: str = "",
-    password: str = "",
-    ready: Callable[[tuple[str, ...]], None] = _ignore,
-    observer: Observer = SILENT,
+    address: str, *, output: FilePath, observer: Observer = SILENT, **given: Unpack[RecordArguments]
 ) -> "RecordingSummary":
     """Record what a machine, or a twin, shows by OPC UA, until the time is over or Ctrl-C.
 
@@ -75,31 +72,21 @@ def record(
         the extra ``twin`` is not installed.
     """
     check_observer(observer)
+    found: Any = {**taken(RecordArguments, "record", given)}
+    seconds, ready = found.pop("seconds"), found.pop("ready")
     place = declared_output("record", "output", output)
     check_is_new(place)
     if seconds is not None and not 0.0 < _number("seconds", seconds) < math.inf:
         raise wrong_argument("seconds", seconds, "give a number above 0, or None: until Ctrl-C")
     if place.path.suffix.lower() == ".parquet":
         import_extra("pyarrow.parquet", "twin")
-    feed = machine_feed(
-        address, nodes=nodes, rate=rate, secure=secure, trust=trust, user=user, password=password, observer=observer
-    )
+    feed = machine_feed(address, observer=observer, **found)
     from trunnion.twin.recording.recorder import record as record_feed
 
-    return record_feed(feed, place, seconds, ready)
+    return record_feed(feed, place, seconds, ready or _ignore)
 
 
-def machine_feed(
-    address: str,
-    *,
-    nodes: FilePath = "cnc",
-    rate: float = 20.0,
-    secure: bool = False,
-    trust: str = "",
-    user: str = "",
-    password: str = "",
-    observer: Observer = SILENT,
-) -> "MachineFeed":
+def machine_feed(address: str, *, observer: Observer = SILENT, **given: Unpack[LiveArguments]) -> "MachineFeed":
     """Return a machine that can be listened to; arguments as for ``record``.
 
     Raises
@@ -108,16 +95,18 @@ def machine_feed(
         When an argument cannot be used, or the extra ``twin`` is not installed.
     """
     check_address(address)
+    found = taken(LiveArguments, "record", given)
+    rate, user, secure = found["rate"], found["user"], found["secure"]
     if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
         raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
     if user and not secure:
         raise InputError(argument_problem("user", Wording("TWN210", "user_without_encryption")))
-    listed = load_nodes(check_path("nodes", nodes))
+    listed = load_nodes(check_path("nodes", found["nodes"]))
     import_extra("asyncua", "twin")
     from trunnion.twin.recording.client import Access
     from trunnion.twin.recording.feed import MachineFeed
 
-    access = Access(address, _folder() if secure else None, trust, user, password)
+    access = Access(address, _folder() if secure else None, found["trust"], user, found["password"])
     return MachineFeed(access, listed, rate, lambda problem: observer.problems([problem]))
 
 

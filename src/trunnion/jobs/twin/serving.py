@@ -2,16 +2,17 @@
 
 import ipaddress
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Unpack
 
 from trunnion.cl import is_cl_file
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, RefusedError
 from trunnion.extras import import_extra
 from trunnion.files import atomic_file
+from trunnion.jobs.arguments import SetUpArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths, wrong_argument
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.input_files import machine_files
@@ -42,23 +43,22 @@ def _ignore(_addresses: object) -> None:
     """Nobody asked where it is served."""
 
 
-def serve_twin(
-    nc: FilePath | Run,
-    *,
-    machine: MachineLike,
-    subprograms: Sequence[FilePath] = (),
-    zero: str | Sequence[float] | None = None,
-    tool_length: str | float | None = None,
-    speed: float | None = 1.0,
-    loop: bool = False,
-    rate: float = 20.0,
-    hold: bool = False,
-    host: str = "127.0.0.1",
-    port: int = OPCUA_PORT,
-    adapter_port: int | None = MTCONNECT_PORT,
-    users: FilePath | None = None,
-    ready: "Callable[[TwinAddresses], None]" = _ignore,
-) -> None:
+class TwinArguments(SetUpArguments, total=False):
+    """Arguments of ``serve_twin``."""
+
+    subprograms: Sequence[FilePath]
+    speed: float | None
+    loop: bool
+    rate: float
+    hold: bool
+    host: str
+    port: int
+    adapter_port: int | None
+    users: FilePath | None
+    ready: "Callable[[TwinAddresses], None] | None"
+
+
+def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[TwinArguments]) -> None:
     """Serve an NC program as the machine that runs it, by OPC UA and MTConnect, until Ctrl-C.
 
     Parameters
@@ -99,24 +99,30 @@ def serve_twin(
     import_extra("asyncua", "twin")
     from trunnion.twin.serving import Ports, run_until_ended, serve_program
 
+    found = taken(TwinArguments, "twin", given)
+    speed, rate, host, adapter_port = found["speed"], found["rate"], found["host"], found["adapter_port"]
     if speed is not None and not SLOWEST <= _number("speed", speed) <= FASTEST:
         raise wrong_argument("speed", speed, "give a number from 0.1 to 1000, or None: as fast as clients can follow")
     if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
         raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
-    security = None if is_loopback(host) else _security(users)
+    security = None if is_loopback(host) else _security(found["users"])
     with ExitStack() as closing:
-        served = closing.enter_context(listen("OPC UA", host, port, "port"))
+        served = closing.enter_context(listen("OPC UA", host, found["port"], "port"))
         adapter = None
         if adapter_port is not None:
             adapter = closing.enter_context(listen("MTConnect", "127.0.0.1", adapter_port, "adapter_port"))
-        program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
-        playback = Playback(program.timed, speed=speed, loop=loop)
+        program = twin_program(
+            nc, machine=machine, subprograms=found["subprograms"], zero=found["zero"], tool_length=found["tool_length"]
+        )
+        playback = Playback(program.timed, speed=speed, loop=found["loop"])
         ports = Ports(host, served, adapter)
+        ready = found["ready"] or _ignore
         run_until_ended(
             lambda: serve_program(
-                program, playback, ports, period=rate / 1000.0, security=security, started=not hold, ready=ready
+                program, playback, ports, period=rate / 1000.0, security=security, started=not found["hold"],
+                ready=ready,
             )
-        )
+        )  # fmt: skip
 
 
 def write_device_xml(
@@ -125,7 +131,7 @@ def write_device_xml(
     machine: MachineLike,
     output: FilePath,
     subprograms: Sequence[FilePath] = (),
-    zero: str | Sequence[float] | None = None,
+    zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
 ) -> None:
     """Write the device model of a twin for an MTConnect agent.
@@ -156,7 +162,7 @@ def twin_program(
     *,
     machine: MachineLike,
     subprograms: Sequence[FilePath] = (),
-    zero: str | Sequence[float] | None = None,
+    zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
 ) -> TwinProgram:
     """Read a program, run it, and give it its times; arguments as for ``serve_twin``.

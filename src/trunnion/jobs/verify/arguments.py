@@ -1,59 +1,17 @@
 """Arguments of a verification, checked before any work."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from typing import Final
 
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError, argument_problem
+from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
-from trunnion.jobs.inputs.reading import FilePath, ToolpathLike
 from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.messages import Wording
 
 #: How far the tip may be off its CL point, mm.
 DEFAULT_TOLERANCE: Final = 0.001
-
-#: How far a recorded machine may be off its path, mm and degrees.
-DEFAULT_RECORDED_TOLERANCE: Final = 0.05
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class VerifyArguments:
-    """What ``verify`` was given, but for the program, its machine and the recording; meanings as there."""
-
-    cl: ToolpathLike | Iterable[ToolpathLike] = ()
-    tolerance: float = DEFAULT_TOLERANCE
-    span: float | None = None
-    span_tip: float | None = None
-    tool: str | int = ""
-    work_offset: str | None = None
-    edge: int | str | None = None
-    units: str | None = None
-    dialect: str | None = None
-    frame: str = "first"
-    feed: str = "programmed"
-    feed_limit: float | None = None
-    recorded_tolerance: float = DEFAULT_RECORDED_TOLERANCE
-    hooks: Sequence[FilePath] = ()
-    turn: float = 0.0
-    tilt: float = 0.0
-
-    @property
-    def is_fastest(self) -> bool:
-        """Whether feeds are those that the axes reach."""
-        return self.feed == "fastest"
-
-    @property
-    def is_absolute(self) -> bool:
-        """Whether the program's coordinate system is the CAM's absolute one."""
-        return self.frame == "absolute"
-
-    @property
-    def angles(self) -> tuple[float, float]:
-        """Turn and tilt of the part, degrees."""
-        return self.turn, self.tilt
 
 
 def checked(given: VerifyArguments) -> VerifyArguments:
@@ -64,33 +22,40 @@ def checked(given: VerifyArguments) -> VerifyArguments:
     InputError
         For the first that makes no sense, or that changes CL files where there are none.
     """
-    has_cl = not isinstance(given.cl, tuple | list) or bool(given.cl)
-    check_choice("frame", given.frame, ("first", "absolute"))
-    check_choice("feed", given.feed, ("programmed", "fastest"))
+    has_cl = not isinstance(given["cl"], tuple | list) or bool(given["cl"])
+    check_choice("frame", given["frame"], ("first", "absolute"))
+    check_choice("feed", given["feed"], ("programmed", "fastest"))
     feed_limit = _feed_limit(given)
-    if given.is_fastest and not has_cl:
+    if given["feed"] == "fastest" and not has_cl:
         raise InputError(argument_problem("feed", Wording("ARG130", "fastest_feed_without_cl")))
-    if given.units is not None:
-        check_choice("units", given.units, ("mm", "inch"))
-    tool = _tool(given.tool)
-    edge = None if given.edge is None else check_whole("edge", given.edge, 1)
+    if given["units"] is not None:
+        check_choice("units", given["units"], ("mm", "inch"))
+    tool = _tool(given["tool"])
+    edge = None if given["edge"] is None else check_whole("edge", given["edge"], 1)
     for name in ("tolerance", "span", "span_tip", "recorded_tolerance"):
-        check_tolerance(name, getattr(given, name), optional=name.startswith("span"))
-    hooks = check_paths("hooks", given.hooks)
+        check_tolerance(name, given.get(name), optional=name.startswith("span"))
+    hooks = check_paths("hooks", given["hooks"])
     if hooks and not has_cl:
         raise InputError(argument_problem("hooks", Wording("ARG130", "hooks_without_cl")))
-    turn, tilt = checked_angles(given.turn, given.tilt)
+    turn, tilt = checked_angles(given["turn"], given["tilt"])
     if (turn or tilt) and not has_cl:
         raise InputError(argument_problem("turn" if turn else "tilt", Wording("ARG130", "clamping_without_cl")))
-    return replace(given, feed_limit=feed_limit, tool=tool, edge=edge, hooks=hooks, turn=turn, tilt=tilt)
+    return {
+        **given, "feed_limit": feed_limit, "tool": tool, "edge": edge, "hooks": hooks, "turn": turn, "tilt": tilt
+    }  # fmt: skip
+
+
+def angles_of(given: VerifyArguments) -> tuple[float, float]:
+    """Return turn and tilt of the part, degrees."""
+    return given["turn"] or 0.0, given["tilt"] or 0.0
 
 
 def _feed_limit(given: VerifyArguments) -> float | None:
     """Return a feed limit, checked."""
-    limit = given.feed_limit
+    limit = given["feed_limit"]
     if limit is None:
         return None
-    if not given.is_fastest:
+    if given["feed"] != "fastest":
         raise InputError(argument_problem("feed_limit", Wording("ARG130", "only_with_fastest_feed")))
     if isinstance(limit, bool) or not isinstance(limit, int | float) or not 0.0 < limit < math.inf:
         raise InputError(argument_problem("feed_limit", Wording("ARG220", "no_feed_limit", value=repr(limit))))

@@ -1,10 +1,11 @@
 """Comparison of two NC programs by what they make the tool do."""
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, Unpack
 
 from trunnion import readers
 from trunnion.jit import compile_ahead
+from trunnion.jobs.arguments import DiffArguments, taken
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import check_tolerance
@@ -19,15 +20,7 @@ _INCH_TOLERANCE: Final = 0.0026
 
 
 def diff(
-    first: FilePath | Run,
-    second: FilePath | Run,
-    *,
-    machine: MachineLike,
-    to_machine: MachineLike | None = None,
-    subprograms: Sequence[FilePath] = (),
-    to_subprograms: Sequence[FilePath] = (),
-    tolerance: float = _DEFAULT_TOLERANCE,
-    path: bool = False,
+    first: FilePath | Run, second: FilePath | Run, *, machine: MachineLike, **given: Unpack[DiffArguments]
 ) -> Comparison:
     """Compare what two NC programs make the tool do, whatever their words.
 
@@ -64,6 +57,8 @@ def diff(
     >>> trunnion.diff(program, program, machine="yl569").same
     True
     """
+    found = taken(DiffArguments, "diff", given)
+    tolerance, to_machine = found["tolerance"], found["to_machine"]
     check_tolerance("tolerance", tolerance)
     one = as_machine(machine)
     two = one if to_machine is None else as_machine(to_machine, "to_machine")
@@ -71,11 +66,11 @@ def diff(
         readers.reader_of(each)
     compile_ahead(readers.KERNELS)
     runs = (
-        _run(first, one, subprograms, ("first", "subprograms")),
-        _run(second, two, to_subprograms, ("second", "to_subprograms")),
+        _run(first, one, found["subprograms"], ("first", "subprograms")),
+        _run(second, two, found["to_subprograms"], ("second", "to_subprograms")),
     )
     coarse = tolerance == _DEFAULT_TOLERANCE and any(run.state.inches.values.any() for run in runs)
-    return compare(*runs, _INCH_TOLERANCE if coarse else tolerance, axis_tolerance=tolerance, path=path)
+    return compare(*runs, _INCH_TOLERANCE if coarse else tolerance, axis_tolerance=tolerance, path=found["path"])
 
 
 def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], names: tuple[str, str]) -> Run:

@@ -9,9 +9,10 @@ from dataclasses import replace
 from typing import Final
 
 from trunnion.controls import Control
+from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.control_settings import default_settings
 from trunnion.jobs.inputs.settings import check_operation_names
-from trunnion.jobs.verify.arguments import DEFAULT_TOLERANCE, VerifyArguments
+from trunnion.jobs.verify.arguments import DEFAULT_TOLERANCE
 from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine
 from trunnion.model.toolpath import Operation, Toolpath
@@ -36,17 +37,17 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
     settings = {"work_offset": "G54", **usual}
     if not read.toolpaths:
         settings = {key: value for key, value in usual.items() if key not in ("work_offset", "edge")}
-    offset, of_operations = _work_offsets(given.work_offset, on.control, read.toolpaths)
-    own = {"tool": given.tool, "work_offset": offset, "edge": given.edge}
+    offset, of_operations = _work_offsets(given["work_offset"], on.control, read.toolpaths)
+    own = {"tool": given["tool"], "work_offset": offset, "edge": given["edge"]}
     settings |= {key: str(value) for key, value in own.items() if value is not None}
     by_operation = {name: {**settings, "work_offset": value} for name, value in of_operations.items()}
     return replace(
         expected_values(on.control, on.machine, settings, by_operation),
-        span=given.span,
-        span_tip=given.span_tip,
-        absolute=given.is_absolute,
-        fastest_feed=given.is_fastest,
-        feed_limit=given.feed_limit,
+        span=given["span"],
+        span_tip=given["span_tip"],
+        absolute=given["frame"] == "absolute",
+        fastest_feed=given["feed"] == "fastest",
+        feed_limit=given["feed_limit"],
         feeds_as_programmed=True,
     )
 
@@ -71,7 +72,7 @@ def tolerances(
 ) -> Tolerances | Callable[[Operation], Tolerances]:
     """How far the program may be off; by default as much more in tilted planes as is rounded there."""
     found = _in_planes(on.control, read, given)
-    if on.control is None or not given.is_fastest:
+    if on.control is None or given["feed"] != "fastest":
         return found
     digit = 0.5 * on.control.formats["feed"].five_axis.digit  # the last one of a feed that the control prints
     if isinstance(found, Tolerances):
@@ -82,9 +83,9 @@ def tolerances(
 def _in_planes(
     control: Control | None, read: ReadProgram, given: VerifyArguments
 ) -> Tolerances | Callable[[Operation], Tolerances]:
-    tolerance = given.tolerance
+    tolerance = given["tolerance"]
     chord = control.arcs.chord_tolerance if control else _READ_CHORD
-    chord = max(chord, tolerance) if given.span_tip is None else given.span_tip
+    chord = max(chord, tolerance) if given["span_tip"] is None else given["span_tip"]
     if tolerance != DEFAULT_TOLERANCE:
         return Tolerances(tip=tolerance, angle=tolerance, chord=chord)
     in_inches = bool(read.run.state.inches.values.any())

@@ -4,15 +4,15 @@ In:     a program, the machine that runs it, and the arguments of the verificati
 Out:    the run and the toolpaths; warnings about them have been reported.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.controls import Control
+from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.verify.arguments import VerifyArguments
+from trunnion.jobs.verify.arguments import angles_of
 from trunnion.jobs.verify.program_warnings import program_warnings
 from trunnion.machines import Machine
 from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
@@ -43,9 +43,7 @@ class ReadProgram:
     clamping: Clamping | None
 
 
-def read_program(
-    nc: FilePath | Run, subprograms: Sequence[FilePath], on: VerifiedMachine, given: VerifyArguments, observer: Observer
-) -> ReadProgram:
+def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments, observer: Observer) -> ReadProgram:
     """Read a program and its CL files.
 
     Raises
@@ -53,26 +51,26 @@ def read_program(
     InputError
         If a file cannot be used, or a CL file states that its part is clamped otherwise.
     """
-    toolpaths = as_toolpaths(given.cl, given.units, False, observer, given.dialect)
-    run = as_run(nc, on.machine, subprograms)
+    toolpaths = as_toolpaths(given["cl"], given["units"], given["strict"], observer, given["dialect"])
+    run = as_run(nc, on.machine, given["subprograms"])
     observer.problems(program_warnings(run))
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
-    if given.hooks:
+    if given["hooks"]:
         toolpaths = _changed_by_hooks(toolpaths, on, given)
     toolpaths = replace_unknown_statements(toolpaths, on.control, on.machine)
     stated, clamping = stated_clamping(toolpaths), None
     if toolpaths:
-        clamping = clamped_after(stated, given.angles, toolpaths[0].file)
-        toolpaths = turned_toolpaths(toolpaths, *given.angles, absolute=given.is_absolute)
+        clamping = clamped_after(stated, angles_of(given), toolpaths[0].file)
+        toolpaths = turned_toolpaths(toolpaths, *angles_of(given), absolute=given["frame"] == "absolute")
     if not isinstance(nc, Run):
         program = Path(nc)
         observer.problems(
             unlike_zero(program, on.machine)
             if clamping is None
-            else unlike_cl_files(program, Clamping(*given.angles), clamping, stated, on.machine)
+            else unlike_cl_files(program, Clamping(*angles_of(given)), clamping, stated, on.machine)
         )
         clamping = clamping or stated_place(program).clamping
     for toolpath in toolpaths:
@@ -86,9 +84,9 @@ def _changed_by_hooks(toolpaths: list[Toolpath], on: VerifiedMachine, given: Ver
     from trunnion.hooks.files import load_hooks  # few verifications have hooks
 
     settings = {
-        "tool": given.tool, "work_offset": given.work_offset, "edge": given.edge, "cl_units": given.units,
-        "dialect": given.dialect,
+        "tool": given["tool"], "work_offset": given["work_offset"], "edge": given["edge"], "cl_units": given["units"],
+        "dialect": given["dialect"],
     }  # fmt: skip
     texts = {name: str(value) for name, value in settings.items() if value not in (None, "")}
-    hooks = Hooks(load_hooks(map(Path, given.hooks)), on.machine.name, on.control.name if on.control else "", texts)
+    hooks = Hooks(load_hooks(map(Path, given["hooks"])), on.machine.name, on.control.name if on.control else "", texts)
     return hooks.change(toolpaths)

@@ -1,55 +1,31 @@
 """Verification of any NC program, with or without the CL files that it was made from."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import Literal
+from typing import Unpack
 
 from trunnion import readers, verification
 from trunnion.errors import Problem, Severity
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
+from trunnion.jobs.arguments import VerifyArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.control_settings import written_control
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.twin.recording import as_recording
-from trunnion.jobs.verify.arguments import DEFAULT_RECORDED_TOLERANCE, DEFAULT_TOLERANCE, VerifyArguments, checked
+from trunnion.jobs.verify.arguments import checked
 from trunnion.jobs.verify.expectation import expected, tolerances
 from trunnion.jobs.verify.reading import VerifiedMachine, read_program
 from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.verification import Verification
 
 
 def verify(
-    nc: FilePath | Run,
-    *,
-    machine: MachineLike,
-    cl: ToolpathLike | Iterable[ToolpathLike] = (),
-    subprograms: Sequence[FilePath] = (),
-    tolerance: float = DEFAULT_TOLERANCE,
-    span: float | None = None,
-    span_tip: float | None = None,
-    tool: str | int = "",
-    work_offset: str | None = None,
-    edge: int | str | None = None,
-    units: str | None = None,
-    dialect: str | None = None,
-    frame: Literal["first", "absolute"] = "first",
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
-    recorded: FilePath | Recording | None = None,
-    recorded_tolerance: float = DEFAULT_RECORDED_TOLERANCE,
-    feed: Literal["programmed", "fastest"] = "programmed",
-    feed_limit: float | None = None,
-    columns: bool = True,
-    hooks: Sequence[FilePath] = (),
-    turn: float = 0.0,
-    tilt: float = 0.0,
-    observer: Observer = SILENT,
+    nc: FilePath | Run, *, machine: MachineLike, observer: Observer = SILENT, **given: Unpack[VerifyArguments]
 ) -> Verification:
     """Verify an NC program: read it, run it, and compare it with the CL files that it was made from.
 
@@ -83,6 +59,8 @@ def verify(
         Length unit of the CL files, ``"mm"`` or ``"inch"``; one that states another is warned of.
     dialect
         What the CL files are written in, as ``read_cl`` has it; by default their content decides.
+    strict
+        Raise an error for unknown statements of the CL files even if the definition says what becomes of them.
     frame
         Coordinate system of the program: that of the ``first`` operation, or the CAM's ``absolute`` one.
     zero : (3,) float, mm
@@ -133,19 +111,19 @@ def verify(
     True
     """
     check_observer(observer)
-    given = checked(VerifyArguments(
-        cl, tolerance, span, span_tip, tool, work_offset, edge, units, dialect, frame, feed, feed_limit,
-        recorded_tolerance, hooks, turn, tilt,
-    ))  # fmt: skip
-    recording = None if recorded is None else as_recording(recorded)
-    on = _set_up(as_machine(machine), zero, tool_length)
-    read = read_program(nc, subprograms, on, given, observer)
-    settings = expected(on, read, given)
-    allowed = tolerances(on, read, given)
-    found = verification.verify(read.run, read.toolpaths, tolerances=allowed, settings=settings, columns=columns)
-    found = replace(found, clamping=read.clamping)
+    found = checked(taken(VerifyArguments, "verify", given))
+    recording = None if found["recorded"] is None else as_recording(found["recorded"])
+    on = _set_up(as_machine(machine), found["zero"], found["tool_length"])
+    read = read_program(nc, on, found, observer)
+    proof = verification.verify(
+        read.run, read.toolpaths, settings=expected(on, read, found), tolerances=tolerances(on, read, found),
+        columns=found["columns"],
+    )  # fmt: skip
+    proof = replace(proof, clamping=read.clamping)
     observer.problems(_without_motion(read.run))
-    return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)
+    if recording is None:
+        return proof
+    return verification.with_recording(proof, recording, found["recorded_tolerance"])
 
 
 def _set_up(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> VerifiedMachine:

@@ -23,6 +23,8 @@ from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.project.file import read_project
+from trunnion.jobs.project.keys import OF_PROJECT, OF_SETUP
+from trunnion.jobs.registry import JOBS
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
 from trunnion.messages import Wording
@@ -33,19 +35,9 @@ from trunnion.placing.program_heads import stated_place
 from trunnion.verification import Verification, restore_rapids
 
 #: Arguments of a view that a set-up of a project states; and those of the project as a whole.
-_OF_SETUP: Final = (
-    "machine",
-    "cl",
-    "subprograms",
-    "part",
-    "fixtures",
-    "tools",
-    "libraries",
-    "unit",
-    "zero",
-    "tool_length",
-)
-_OF_PROJECT: Final = ("cell", "accuracy", "near")
+_VIEWED: Final = {each.name for each in JOBS["view"].options}
+_OF_SETUP: Final = tuple(each.name for each in OF_SETUP if each.name in _VIEWED)
+_OF_PROJECT: Final = tuple(each.name for each in OF_PROJECT if each.name in _VIEWED)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -173,9 +165,8 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
         )
     found = {name: getattr(chosen, name) for name in _OF_SETUP} | {name: getattr(project, name) for name in _OF_PROJECT}
     if number:  # what an earlier set-up leaves is known to the simulation of all of them only
-        found |= dict.fromkeys((*_OF_PROJECT, "stock"))
-    else:
-        found["stock"] = project.stock or None
+        found |= dict.fromkeys(_OF_PROJECT)
+    found["stock"] = found["stock"] or None
     return {**found, **stated, "nc": programs}
 
 

@@ -23,11 +23,9 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.stock import StockView
-from trunnion.wording import position
 
 #: Arguments that mean nothing without stock.
 _OF_STOCK: Final = ("near", "cell", "accuracy")
@@ -102,18 +100,14 @@ def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
     for one in sorted(found.findings, key=lambda finding: -finding.depth):
         shown[one.kind] += 1
         if shown[one.kind] <= _MOST:
-            yield _mark(run, one.kind, one.row, f"{one.kind}: {_between(one)}, {one.depth:.3f} mm deep", one.place)
+            yield _mark(run, one.kind, one.row, str(one), one.place)
     for miss in sorted(found.near, key=lambda miss: miss.distance)[:_MOST]:
-        yield _mark(run, "near", miss.row, f"near: {_between(miss)}, {miss.distance:.3f} mm apart", miss.place)
+        yield _mark(run, "near", miss.row, str(miss), miss.place)
 
 
 def _short(problem: Problem) -> str:
     """Return a problem without the folder of its file."""
     return str(replace(problem, file=Path(problem.file).name))
-
-
-def _between(one: SimulationFinding | NearMiss) -> str:
-    return f"{' and '.join(one.between)} at {position(one.place)}"
 
 
 def _mark(run: Run, kind: str, row: int, text: str, place: tuple[float, float, float] | None) -> dict[str, Any]:

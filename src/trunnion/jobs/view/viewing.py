@@ -1,15 +1,16 @@
 """A program on its machine, as a page for a browser."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Unpack
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import atomic_file
+from trunnion.jobs.arguments import ViewArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.bodies import KnownTools, known_tools
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
+from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.settings import Settings, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
@@ -25,29 +26,12 @@ from trunnion.verification.comparison import align
 from trunnion.viewer.content import ViewContent, side_by_side, view_content
 from trunnion.viewer.page import render_view
 
+#: Arguments that a project does not state: the second program, and what the first is made with.
+_OF_VIEW: Final = ("against", "against_machine", "setup", "settings")
+
 
 def prepare_view(
-    nc: FilePath | Sequence[FilePath],
-    *,
-    machine: MachineLike | None = None,
-    against: FilePath | Sequence[FilePath] | None = None,
-    against_machine: MachineLike | None = None,
-    setup: str | None = None,
-    settings: Settings | None = None,
-    cl: ToolpathLike | Iterable[ToolpathLike] = (),
-    subprograms: Sequence[FilePath] = (),
-    stock: FilePath | None = None,
-    part: FilePath | None = None,
-    fixtures: Sequence[FilePath] = (),
-    tools: Iterable[str] = (),
-    libraries: Sequence[FilePath] = (),
-    unit: Literal["mm", "inch"] | None = None,
-    near: float | None = None,
-    cell: float | None = None,
-    accuracy: float | None = None,
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
-    observer: Observer = SILENT,
+    nc: FilePath | Sequence[FilePath], *, observer: Observer = SILENT, **given: Unpack[ViewArguments]
 ) -> ViewContent:
     """Read a program, run and verify it, and put together what a page shows; arguments as ``write_view``.
 
@@ -56,25 +40,22 @@ def prepare_view(
     InputError
         When a file or an argument cannot be used, or no reader knows the control.
     """
-    given: dict[str, Any] = {
-        "machine": machine, "cl": cl, "subprograms": subprograms, "stock": stock, "part": part, "fixtures": fixtures,
-        "tools": tools, "libraries": libraries, "unit": unit, "near": near, "cell": cell, "accuracy": accuracy,
-        "zero": zero, "tool_length": tool_length,
-    }  # fmt: skip
+    stated: dict[str, Any] = {**taken(ViewArguments, "view", given)}
+    against, against_machine, setup, settings = (stated.pop(name) for name in _OF_VIEW)
     files = [check_path("nc", nc)] if isinstance(nc, str | os.PathLike) else check_paths("nc", nc)
     if files and is_project(files[0]):
-        given = of_project(files[0], setup, given)
-        files = check_paths("nc", given.pop("nc"))
+        stated = of_project(files[0], setup, stated)
+        files = check_paths("nc", stated.pop("nc"))
     elif setup is not None:
         raise InputError(argument_problem("setup", Wording("PAG111", "setup_without_project")))
-    content, run = _prepared(files, settings, observer, **given)
+    content, run = _prepared(files, settings, observer, **stated)
     if against is None:
         if against_machine is not None:
             raise InputError(argument_problem("against_machine", Wording("PAG111", "machine_without_program")))
         return content
     alone = isinstance(against, str | os.PathLike)
     beside = [check_path("against", against)] if alone else check_paths("against", against)
-    other = given | dict.fromkeys(("stock", "near", "cell", "accuracy")) | {"cl": (), "subprograms": ()}
+    other = stated | dict.fromkeys(("stock", "near", "cell", "accuracy")) | {"cl": (), "subprograms": ()}
     if against_machine is not None:  # where the part lies is not the same there
         other |= {"machine": against_machine, "zero": None, "tool_length": None}
     second, other_run = _prepared(beside, settings, observer, **other)
@@ -90,7 +71,7 @@ def _prepared(
     if given["machine"] is None:
         raise InputError(argument_problem("machine", Wording("PAG110", "missing_machine")))
     placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
-    of_stock = ("stock", "part", "fixtures", "tools", "libraries", "unit", "near", "cell", "accuracy")
+    of_stock = ("stock", "part", "fixtures", "tools", "tool_libraries", "unit", "near", "cell", "accuracy")
     simulated = view_simulation(placed, **{name: given[name] for name in of_stock})
     others = check_paths("subprograms", given["subprograms"])
     viewed = view_program(files, placed, cl=given["cl"], subprograms=others, settings=settings, observer=observer)
@@ -100,7 +81,7 @@ def _prepared(
     around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(fixtures, 1)]
     design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     run = viewed.verification.run
-    bodies = _shown_tools(run, known_tools(given["tools"], given["libraries"], given["unit"], viewed.toolpaths))
+    bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
     content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
     if simulated is not None:
         content = with_stock(content, simulated, run, viewed.toolpaths, observer)
@@ -111,25 +92,8 @@ def write_view(
     nc: FilePath | Sequence[FilePath],
     *,
     output: FilePath,
-    machine: MachineLike | None = None,
-    against: FilePath | Sequence[FilePath] | None = None,
-    against_machine: MachineLike | None = None,
-    setup: str | None = None,
-    settings: Settings | None = None,
-    cl: ToolpathLike | Iterable[ToolpathLike] = (),
-    subprograms: Sequence[FilePath] = (),
-    stock: FilePath | None = None,
-    part: FilePath | None = None,
-    fixtures: Sequence[FilePath] = (),
-    tools: Iterable[str] = (),
-    libraries: Sequence[FilePath] = (),
-    unit: Literal["mm", "inch"] | None = None,
-    near: float | None = None,
-    cell: float | None = None,
-    accuracy: float | None = None,
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
     observer: Observer = SILENT,
+    **given: Unpack[ViewArguments],
 ) -> None:
     """Show an NC program on its machine, block by block, on a page that works offline.
 
@@ -147,7 +111,7 @@ def write_view(
         it if it is another. What differs is marked, as ``trunnion.diff`` compares programs.
     setup
         Name or number of a project's set-up, if it has several.
-    settings
+    settings, units, dialect
         For CL files, as for ``post``.
     cl
         Its CL files: the page then names the CL line of each block, and what the proof finds.
@@ -158,7 +122,7 @@ def write_view(
         what the simulation finds. Without ``stock`` nothing is simulated.
     part, fixtures
         Meshes in the workpiece frame.
-    tools, libraries, unit
+    tools, tool_libraries, unit
         Tools as ``simulate`` has them. Without ``stock``, one whose form nothing states is drawn as a needle.
     zero, tool_length
         As for ``verify``. Without a zero, the part is drawn at the machine's zero.
@@ -176,12 +140,7 @@ def write_view(
     >>> trunnion.write_view("tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569", output="view.html")
     """
     place = declared_output("view", "output", output)
-    content = prepare_view(
-        nc, machine=machine, against=against, against_machine=against_machine, setup=setup, settings=settings, cl=cl,
-        subprograms=subprograms, stock=stock, part=part,
-        fixtures=fixtures, tools=tools, libraries=libraries, unit=unit, near=near, cell=cell, accuracy=accuracy,
-        zero=zero, tool_length=tool_length, observer=observer,
-    )  # fmt: skip
+    content = prepare_view(nc, observer=observer, **given)
     if content.stock is not None:
         with observer.progress("states of the stock", len(content.stock.page_states), "states") as tell:
             content.stock.packed(tell)

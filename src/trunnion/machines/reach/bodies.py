@@ -49,14 +49,9 @@ class PoseBodies:
 def pose_bodies(machine: Machine, rotary: Floats, tool_length: float | None = None) -> PoseBodies:
     """Return the bodies that the tips of rotary positions fill.
 
-    Parameters
-    ----------
-    machine
-        Its slides have finite limits.
-    rotary : (k, 2) float64, deg
-        In the order of ``machine.rotary``.
-    tool_length
-        From the gauge point to the tip, mm; None: that of ``machine.tool_length``.
+    machine      its slides have finite limits
+    rotary       (k, 2) float64, deg: in the order of ``machine.rotary``
+    tool_length  from the gauge point to the tip, mm; None: that of ``machine.tool_length``
     """
     count, slides = len(rotary), list(machine.linear)
     joints = np.zeros((4, count, 5))

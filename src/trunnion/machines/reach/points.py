@@ -37,16 +37,11 @@ class PointReach:
 def reached_points(machine: Machine, points: Floats, axes: Floats, step: float = 5.0) -> PointReach:
     """Tell which points are reached.
 
-    Parameters
-    ----------
-    machine
-        With its limits. Slides count only where it is known how they stand: ``Machine.is_placed``.
-    points : (n, c, 3) float64, mm
-        Points of each row, workpiece coordinates, that one position of the rotary axes must reach together.
-    axes : (n, 3) float64
-        From tip to holder, in workpiece coordinates; any length but zero.
-    step
-        Most degrees between two angles that are tried first of a rotary axis that is free.
+    machine  with its limits. Slides count only where it is known how they stand: ``Machine.is_placed``
+    points   (n, c, 3) float64, mm: points of each row, workpiece coordinates, that one position of the rotary axes must
+             reach together
+    axes     (n, 3) float64: from tip to holder, in workpiece coordinates; any length but zero
+    step     most degrees between two angles that are tried first of a rotary axis that is free
     """
     axis, travel = np.zeros(len(axes), np.bool_), np.zeros(len(axes), np.bool_)
     for first in range(0, len(axes), _ROWS):

@@ -41,14 +41,9 @@ class AxisPoses:
 def axis_poses(machine: Machine, axes: Floats, step: float = 5.0) -> AxisPoses:
     """Return the rotary positions that give tool axes.
 
-    Parameters
-    ----------
-    machine
-        With the limits of its rotary axes; those of slides are ignored.
-    axes : (n, 3) float64
-        From tip to holder, in workpiece coordinates; any length but zero.
-    step
-        Most degrees between two angles of a rotary axis that is free.
+    machine  with the limits of its rotary axes; those of slides are ignored
+    axes     (n, 3) float64: from tip to holder, in workpiece coordinates; any length but zero
+    step     most degrees between two angles of a rotary axis that is free
     """
     parts = [_poses(machine, axes[k : k + _ROWS], step, k) for k in range(0, len(axes), _ROWS)]
     if not parts:

@@ -46,19 +46,12 @@ def reached_volumes(
 ) -> tuple[ReachedVolume, ReachedVolume]:
     """Return the volume of points that are reached with some tool axis, and with every one.
 
-    Parameters
-    ----------
-    bodies
-        Of k rotary positions.
-    direction : (k,) int64
-        The tool axis that each gives, from 0, increasing.
-    directions
-        How many tool axes there are.
-    levels
-        How often cells are halved.
-    between : (k,) float64, mm
-        How far the points of each body go on the way half-way to those of the next tool axis: bounds then hold for the
-        tool axes in between, too. None: these tool axes are all that is meant.
+    bodies      of k rotary positions
+    direction   (k,) int64: the tool axis that each gives, from 0, increasing
+    directions  how many tool axes there are
+    levels      how often cells are halved
+    between     (k,) float64, mm: how far the points of each body go on the way half-way to those of the next tool axis:
+                bounds then hold for the tool axes in between, too. None: these tool axes are all that is meant
     """
     solid = bodies.solid
     slack = np.zeros(len(direction)) if between is None else between

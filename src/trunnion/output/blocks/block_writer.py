@@ -191,23 +191,14 @@ class BlockWriter:
     ) -> None:
         """Write one block a row. A row with nothing to print, or only bare words, makes no block.
 
-        Parameters
-        ----------
-        columns
-            Word key -> (n,) int64 counts, ``ABSENT`` where the row lacks the word. Missing keys are absent.
-        forced
-            Word key -> (n,) 0 or 1, or one flag for all rows: write the word even if it is modal and unchanged.
-        text_before : (n,) int64, optional
-            Index into ``texts`` of a line before the row, -1 for none.
-        lines
-            Row -> a line of its own right before it, after the one of ``text_before``.
+        columns      word key -> (n,) int64 counts, ``ABSENT`` where the row lacks the word. Missing keys are absent
+        forced       word key -> (n,) 0 or 1, or one flag for all rows: write the word even if it is modal and unchanged
+        text_before  (n,) int64, optional: index into ``texts`` of a line before the row, -1 for none
+        lines        row -> a line of its own right before it, after the one of ``text_before``
 
-        Raises
-        ------
-        WordRangeError
-            If a number is beyond the limits of its word's format.
-        InputError
-            If a line brings a block number that automatic numbering gives to another block.
+        Raises ``WordRangeError`` if a number is beyond the limits of its word's format.
+
+        Raises ``InputError`` if a line brings a block number that automatic numbering gives to another block.
         """
         rows = len(next(iter(columns.values())))
         present = [k for k, key in enumerate(self._keys) if key in columns]

@@ -48,19 +48,11 @@ class GivenNumbers:
     def add(self, own: set[int], following: int, blocks: int) -> None:
         """Take up what has been written.
 
-        Parameters
-        ----------
-        own
-            The numbers that its lines bring.
-        following
-            The next automatic number behind it.
-        blocks
-            How many blocks it has at most.
+        own        the numbers that its lines bring
+        following  the next automatic number behind it
+        blocks     how many blocks it has at most
 
-        Raises
-        ------
-        InputError
-            If automatic numbering gives the number of a line to another block, before or behind it.
+        Raises ``InputError`` if automatic numbering gives the number of a line to another block, before or behind it.
         """
         numbers = self._numbers
         given = (numbers.highest - numbers.start) // numbers.step + 1

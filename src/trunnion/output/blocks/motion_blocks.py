@@ -4,7 +4,6 @@ In:     motions as they are written, row by row, with the events at them.
 Out:    blocks, through the block writer.
 """
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import BinaryIO, Final
@@ -15,19 +14,16 @@ from trunnion.arrays import Flags, Ints
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, WordRangeError
-from trunnion.errors import InputError, Problem
-from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, Phase, SpindleOn
 from trunnion.output.blocks.block_table import BlockTable
-from trunnion.output.blocks.block_writer import BLOCK_NUMBER_BYTES, CHUNK, BlockWriter
+from trunnion.output.blocks.block_writer import CHUNK, BlockWriter
 from trunnion.output.blocks.feeds import FEED_WORDS, FeedWords
+from trunnion.output.blocks.line_texts import LineTexts
 from trunnion.output.blocks.orientation import OrientationWords
 from trunnion.output.blocks.surface_normals import add_vector_lines, contact_rows
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
-from trunnion.output.shared.lines import divided_comment
-from trunnion.transliteration import lacking
 
 #: The keys of phase comments in a definition.
 _PHASE_KEYS: Final = {
@@ -94,8 +90,7 @@ class MotionBlockWriter:
         self._tool = ""
         self._length_register = 0
         self._words_to_repeat: dict[str, int] = {}
-        self._encoding = program.text_form.encoding
-        self._capitals = program.effective_setting("comments") == "capitals"
+        self._texts = LineTexts(program)
 
     # Motions
 
@@ -114,17 +109,11 @@ class MotionBlockWriter:
     def begin_motion(self, motion: Motion, tool: str, *, from_plane: bool, retracted: bool) -> None:
         """Begin a motion, with the word formats of its mode.
 
-        Parameters
-        ----------
-        motion
-            An operation, or the part of it in one plane.
-        tool
-            The tool as the program calls it.
-        from_plane
-            The tool comes from another plane of the operation, and not from home.
-        retracted
-            The tool has been retracted, so that it goes to X and Y before it goes along the tool axis: in planes, and
-            in three-axis operations on controls with ``level_approach``.
+        motion      an operation, or the part of it in one plane
+        tool        the tool as the program calls it
+        from_plane  the tool comes from another plane of the operation, and not from home
+        retracted   the tool has been retracted, so that it goes to X and Y before it goes along the tool axis: in
+                    planes, and in three-axis operations on controls with ``level_approach``
         """
         self._file = self.program.file_of(motion.operation)
         self._tool = tool
@@ -171,81 +160,15 @@ class MotionBlockWriter:
         Comments that are longer than the control can read continue in the next line; they get capitals where these are
         asked for, unless lines are to stay ``as_they_are``.
 
-        Raises
-        ------
-        InputError
-            If another line is, or has a character that the program's encoding lacks.
+        Raises ``InputError`` if another line is, or has a character that the program's encoding lacks.
         """
-        lines = lines if as_they_are else self._spelled(lines)
-        room = self.control.longest_line - BLOCK_NUMBER_BYTES
-        family = self.family
-        lines = [
-            piece
-            for line in lines
-            for piece in divided_comment(line, room, family.LINE_COMMENTS, family.escape_comment)
-        ]
-        lines = [self._ended(line) for line in lines]
-        for line in lines:
-            if len(line.encode()) > room:
-                raise InputError(
-                    Problem(
-                        self._file,
-                        0,
-                        Wording(
-                            "CTL120",
-                            "line_more_bytes",
-                            longest_line=self.control.longest_line,
-                            control=self.control.name,
-                            line=line[:60],
-                        ),
-                    )
-                )
         sign, blocks, continues = self.control.continued, list[str](), False
-        for line in lines:
+        for line in self._texts.whole(lines, self._file, as_they_are=as_they_are):
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
             continues = bool(sign) and line.endswith(sign)
         if template in self._own_templates:
             self.passages.append((*self.writer.place, tuple("\n".join(blocks).split("\n")), template))
         self.writer.write_lines(blocks)
-
-    def _ended(self, line: str) -> str:
-        """Return a line, with a point behind a character whose last byte the control would take for the continuation
-        sign.
-        """
-        sign = self.control.continued
-        if not sign or line.isascii() or line.endswith(sign):
-            return line
-        return f"{line}." if line.encode(self._encoding).endswith(sign.encode(self._encoding)) else line
-
-    def _spelled(self, lines: Sequence[str]) -> list[str]:
-        """Lines of a definition, with values that are spelled already, as the program has them."""
-        for line in lines:
-            if letter := lacking(line, self._encoding):
-                raise InputError(
-                    Problem(
-                        self._file,
-                        0,
-                        Wording(
-                            "CTL810",
-                            "definition_writes_no",
-                            control=self.control.name,
-                            line=repr(line),
-                            encoding=self._encoding,
-                            letter=repr(letter),
-                        ),
-                    )
-                )
-        return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
-
-    def _in_capitals(self, comment: re.Match[str]) -> str:
-        """Return a comment without small letters, but those whose capital is lacking in the encoding; of ß it is SS."""
-        if comment[1] is None:
-            return comment[0]
-        capitals = ((each, each if each in "µμ" else each.upper()) for each in comment[0])  # M is another unit
-        return "".join(
-            big if big.isascii() or (len(big) == 1 and not lacking(big, self._encoding)) else small
-            for small, big in capitals
-        )
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""
@@ -287,8 +210,8 @@ class MotionBlockWriter:
         """Return an index of each ``Phase`` into the phase comments, -1 for none, (9,) int64; and the comments."""
         texts = [self.control.phases.get(_PHASE_KEYS.get(phase, ""), "") for phase in Phase]
         lines = list(dict.fromkeys(text for text in texts if text))
-        spelled = self._spelled(lines)
-        return np.array([lines.index(text) if text else -1 for text in texts], np.int64), spelled
+        numbers = np.array([lines.index(text) if text else -1 for text in texts], np.int64)
+        return numbers, self._texts.spelled(lines, self._file)
 
     # Rows
 

@@ -24,14 +24,9 @@ def add_vector_lines(
 ) -> None:
     """Open blocks with a tool vector or a surface normal by ``VECTOR_LINE_WORD``; they get X, Y and Z, and the normal.
 
-    Parameters
-    ----------
-    table
-        With the tool vectors of the rows, where ``uses_vectors``.
-    moves, rows
-        Those of the table, in the order of the operation.
-    contact : (n,) bool
-        As ``contact_rows`` returns it.
+    table        with the tool vectors of the rows, where ``uses_vectors``
+    moves, rows  those of the table, in the order of the operation
+    contact      (n,) bool: as ``contact_rows`` returns it
     """
     written = table.columns[TOOL_VECTOR_WORDS[0]] != ABSENT if uses_vectors else contact
     _add_normals(table, moves, rows, written & contact, writer)

@@ -142,22 +142,13 @@ def feed_words(
 ) -> tuple[Floats, Flags, Flags]:
     """Return the F with which the tip has its feed: one over the minutes of a block, or what the control counts.
 
-    Parameters
-    ----------
-    motion
-        Of n rows.
-    feed : (n,) float64
-        Of the tip, mm/min; NaN in rapids.
-    rule
-        As ``feed_rule`` returns it.
-    number_format
-        Of F; its limits count.
+    motion         of n rows
+    feed           (n,) float64: of the tip, mm/min; NaN in rapids
+    rule           as ``feed_rule`` returns it
+    number_format  Of F; its limits count
 
-    Returns
-    -------
-    value, below, above
-        (n,) float64, moved onto the limit it exceeds; (n,) bool, below the least; (n,) bool, above the greatest. They
-        are valid only in rows in which rotary axes turn.
+    value, below, above  (n,) float64, moved onto the limit it exceeds; (n,) bool, below the least; (n,) bool, above the
+                         greatest. They are valid only in rows in which rotary axes turn
     """
     lengths: dict[str, Floats] = {
         "all_axes": motion.all_axes_length,

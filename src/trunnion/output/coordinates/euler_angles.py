@@ -8,21 +8,10 @@ from trunnion.arrays import Floats
 def tait_bryan_angles(matrix: Floats, order: tuple[int, int, int]) -> tuple[float, float, float]:
     """Return the angles of three rotations about three different axes that turn the program's axes into a plane's.
 
-    Parameters
-    ----------
-    matrix : (3, 3) float64
-        X, Y and Z of the plane as columns.
-    order
-        The axes of the rotations, 0 for X.
+    matrix  (3, 3) float64: X, Y and Z of the plane as columns
+    order   the axes of the rotations, 0 for X
 
-    Returns
-    -------
-    a, b, c
-        Degrees.
-
-    With i, j, k the order and s = 1 for X Y Z, Y Z X, Z X Y, else -1, the product of the three rotations has in row i
-    the columns i: cos b cos c, j: -s cos b sin c, k: s sin b, and in column k the rows j: -s sin a cos b, k: cos a
-    cos b. Where cos b vanishes, only the sum or the difference of a and c is determined: c is then 0.
+    a, b, c  degrees
     """
     i, j, k = order
     s = 1.0 if (j - i) % 3 == 1 else -1.0
@@ -38,19 +27,9 @@ def tait_bryan_angles(matrix: Floats, order: tuple[int, int, int]) -> tuple[floa
 def euler_zxz_angles(matrix: Floats) -> tuple[float, float, float]:
     """Return the angles of rotations about Z, the X that has turned with it, and the Z that has turned with both.
 
-    Parameters
-    ----------
-    matrix : (3, 3) float64
-        X, Y and Z of the plane as columns.
+    matrix  (3, 3) float64: X, Y and Z of the plane as columns
 
-    Returns
-    -------
-    a, b, c
-        Degrees.
-
-    The product of the three rotations has in its last column sin a sin b, -cos a sin b, cos b and in its last row
-    sin b sin c, sin b cos c, cos b. Where sin b vanishes, only the sum or the difference of a and c is determined: c is
-    then 0.
+    a, b, c  degrees
     """
     sin_b = math.hypot(matrix[0, 2], matrix[1, 2])
     b = math.atan2(sin_b, matrix[2, 2])

@@ -14,15 +14,9 @@ from trunnion.planning.holes.cycles import cycle_from_event
 def cut_extents(motions: Sequence[Motion]) -> tuple[Floats, Floats] | None:
     """Return the lower and the upper corner of the box around all cuts of the tip, rounded outwards.
 
-    Parameters
-    ----------
-    motions
-        In program coordinates.
+    motions  in program coordinates
 
-    Returns
-    -------
-    lower, upper
-        (3,) each, whole millimetres, at least 1 mm apart in every direction; None if nothing is cut.
+    lower, upper  (3,) each, whole millimetres, at least 1 mm apart in every direction; None if nothing is cut
     """
     box = _box([point for motion in motions for point in (*_cut_points(motion), *_whole_circles(motion))])
     if box is None:

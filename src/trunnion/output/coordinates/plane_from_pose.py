@@ -41,12 +41,8 @@ def with_plane_inside_limits(machine: Machine, motion: Motion, decimals: int) ->
     Where the rotary axes are too near to a limit, they keep a distance from it that covers the rounding of three
     angles, and the plane turns with them. Elsewhere it is the given motion.
 
-    Parameters
-    ----------
-    machine, motion
-        The motion, and its machine.
-    decimals
-        Of the plane's angles.
+    machine, motion  the motion, and its machine
+    decimals         of the plane's angles
     """
     if motion.plane is None or not _exceeds_limits(machine, motion.plane, motion.rotary[0], decimals):
         return motion
@@ -103,17 +99,10 @@ def plane_of_pose(machine: Machine, rotary: Floats) -> Frame:
 def tip_after_turn(machine: Machine, tip: Floats, before: Motion, after: Motion) -> Floats:
     """Return where the tip is in the next motion's plane once the rotary axes have turned to it.
 
-    Parameters
-    ----------
-    tip : (3,) float64
-        In the plane of ``before``, mm. The linear axes rest while the rotary axes turn.
-    before, after
-        Two motions in tilted planes.
+    tip            (3,) float64: in the plane of ``before``, mm. The linear axes rest while the rotary axes turn
+    before, after  two motions in tilted planes
 
-    Returns
-    -------
-    (3,) float64
-        In the plane of ``after``, mm.
+    (3,) float64  in the plane of ``after``, mm
     """
     assert before.plane is not None
     assert after.plane is not None

@@ -10,18 +10,9 @@ from trunnion.machines import Machine
 def rotary_counts(machine: Machine, axis: int, angle: Floats, decimals: int) -> Ints:
     """Return the counts of a rotary word; an axis that displays 0 to 360 degrees prints 360 as 0.
 
-    Parameters
-    ----------
-    machine, axis
-        The machine, and the index of the axis in ``Machine.axes``.
-    angle : (n,) float64
-        Degrees.
-    decimals
-        Of the word.
-
-    Returns
-    -------
-    (n,) int64
+    machine, axis  the machine, and the index of the axis in ``Machine.axes``
+    angle          (n,) float64: degrees
+    decimals       of the word
     """
     display_low = machine.axes[axis].display_low
     count = round_to_counts(np.ascontiguousarray(angle), decimals)

@@ -43,15 +43,9 @@ def first_row_at_other_pose(machine: Machine, motion: Motion, words: Sequence[Wo
     The control is taken to choose as in ``leading_axis_pose_is_planned``. The axis that decides is the one that carries
     the other; on machines with one axis in the table and one in the head it is that of the table.
 
-    Parameters
-    ----------
-    words
-        Of the motion's blocks.
+    words  of the motion's blocks
 
-    Returns
-    -------
-    int
-        -1 if there is no such row.
+    int  -1 if there is no such row
     """
     formats = {word.key: word.format for word in words}
     vector_decimals, angle_decimals = formats[TOOL_VECTOR_WORDS[0]].decimals, formats["primary"].decimals
@@ -75,22 +69,13 @@ def first_row_at_other_pose(machine: Machine, motion: Motion, words: Sequence[Wo
 def nearest_pose_is_planned(machine: Machine, vectors: Floats, rotary: Floats, before: Floats, off: float) -> Flags:
     """Return where a control that takes the nearest rotary position for a vector gets to the planned one.
 
-    Parameters
-    ----------
-    vectors : (n, 3) float64
-        As they are printed.
-    rotary : (n, 2) float64
-        The planned positions. Axes that wind have their full value; axes whose words stay within one turn may be any
-        number of turns off.
-    before : (n, 2) float64
-        Where the axes come from.
-    off
-        How far either axis may be off, degrees.
+    vectors  (n, 3) float64: as they are printed
+    rotary   (n, 2) float64: the planned positions. Axes that wind have their full value; axes whose words stay within
+             one turn may be any number of turns off
+    before   (n, 2) float64: where the axes come from
+    off      how far either axis may be off, degrees
 
-    Returns
-    -------
-    (n,) bool
-        False also where the other position is about as near, and at the pole, where an axis is free.
+    (n,) bool  false also where the other position is about as near, and at the pole, where an axis is free
     """
     solutions, pole = _rotary_solutions(machine, vectors, before)
     _move_inside_limits(machine, solutions)
@@ -116,19 +101,12 @@ def leading_axis_pose_is_planned(
     planned one must be inside them as the printed vector has it: the last digit may turn an axis beyond the limit at
     which it is planned, and a control that knows the limit takes the other position.
 
-    Parameters
-    ----------
-    vectors, rotary, before
-        As for ``nearest_pose_is_planned``.
-    leading
-        Column of the leading axis in ``rotary``.
-    placed : (n,) bool
-        Rotary words have moved the axes to ``before``; elsewhere a vector has, to its last digit.
+    vectors, rotary, before  as for ``nearest_pose_is_planned``
+    leading                  column of the leading axis in ``rotary``
+    placed                   (n,) bool: rotary words have moved the axes to ``before``; elsewhere a vector has, to its
+                             last digit
 
-    Returns
-    -------
-    (n,) bool
-        As ``nearest_pose_is_planned``.
+    (n,) bool  as ``nearest_pose_is_planned``
     """
     solutions, pole = _rotary_solutions(machine, vectors, before)
     right = np.all(np.abs(_distance_to_plan(machine, solutions, rotary)) <= 0.5 * _CLEAR_MARGIN, axis=2)

@@ -50,12 +50,8 @@ def is_clear_of_turn(machine: Machine, part: SweptPart, tip: Floats, before: Mot
 
     Only the rotary axis next to the part may, for a table, and only if the part that it turns stays away from the tool.
 
-    Parameters
-    ----------
-    part
-        In the program's coordinate system.
-    tip : (3,) float64
-        In the plane of ``before``, mm.
+    part  in the program's coordinate system
+    tip   (3,) float64: in the plane of ``before``, mm
     """
     assert before.plane is not None
     in_workpiece = before.plane.matrix() @ tip + np.array(before.plane.origin)

@@ -146,14 +146,9 @@ class _Holes:
     ) -> None:
         """Write the lines of the cycle and its holes, in the form that the lines ask for.
 
-        Parameters
-        ----------
-        lines
-            As ``FamilyWriter.cycle_call`` returned them.
-        positions
-            Counts of X and Y, (n,) int64 each.
-        comments : (n,) int64
-            Index into ``texts`` of the phase comment before each hole, -1 for none.
+        lines      as ``FamilyWriter.cycle_call`` returned them
+        positions  counts of X and Y, (n,) int64 each
+        comments   (n,) int64: index into ``texts`` of the phase comment before each hole, -1 for none
         """
         blocks, writer, codes = self._blocks, self._writer, self._control.codes
         feed_word, count = blocks.feeds.count(feed, per_rev)

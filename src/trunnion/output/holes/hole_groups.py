@@ -28,19 +28,11 @@ def write_hole_groups(
 ) -> int:
     """Write the holes from row ``first`` on; a new group begins where the printed height changes and at every event.
 
-    Parameters
-    ----------
-    heights : (n,) float64
-        Of the n holes, mm.
-    joining_events
-        Events that join the blocks of the holes.
-    phase
-        Index of the phase comment that was written last.
+    heights         (n,) float64: of the n holes, mm
+    joining_events  events that join the blocks of the holes
+    phase           index of the phase comment that was written last
 
-    Returns
-    -------
-    int
-        Index of the phase comment that was written last.
+    int  index of the phase comment that was written last
     """
     noise = 0.0 if motion.plane is None else TURNING_NOISE
     changes = [first + k for k in _changes(heights, blocks.writer.word("X").format, noise)]

@@ -12,10 +12,7 @@ from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState
 def dwell_seconds(event: Dwell, rpm: float | None) -> float:
     """Return the time of a dwell, seconds; spindle revolutions become the time that they take.
 
-    Raises
-    ------
-    UnsupportedFeatureError
-        If revolutions are asked for while the spindle is stopped.
+    Raises ``UnsupportedFeatureError`` if revolutions are asked for while the spindle is stopped.
     """
     if not event.revolutions:
         return event.amount
@@ -27,10 +24,7 @@ def dwell_seconds(event: Dwell, rpm: float | None) -> float:
 def dwell_text(amount: float, number_format: NumberFormat, factor: float = 1.0, unit: str = "s") -> str:
     """Return a dwell as it is printed: an amount of ``unit``, of which each is printed as ``factor``.
 
-    Raises
-    ------
-    UnsupportedFeatureError
-        If it is longer or shorter than the control can wait.
+    Raises ``UnsupportedFeatureError`` if it is longer or shorter than the control can wait.
     """
     least, greatest = number_format.least / factor, number_format.greatest / factor
     if not least <= amount <= greatest:
@@ -43,10 +37,7 @@ def dwell_text(amount: float, number_format: NumberFormat, factor: float = 1.0, 
 def cycle_dwell_seconds(cycle: Cycle, spindle: SpindleState | None) -> float:
     """Return the dwell at the bottom of a hole, seconds; spindle revolutions become the time that they take.
 
-    Raises
-    ------
-    HoleCycleError
-        If revolutions are asked for while the spindle is stopped.
+    Raises ``HoleCycleError`` if revolutions are asked for while the spindle is stopped.
     """
     if not cycle.dwell or not cycle.dwell_in_revolutions:
         return cycle.dwell
@@ -56,10 +47,7 @@ def cycle_dwell_seconds(cycle: Cycle, spindle: SpindleState | None) -> float:
 def running_spindle(spindle: SpindleState | None, what: str) -> SpindleState:
     """Return the spindle if it turns.
 
-    Raises
-    ------
-    HoleCycleError
-        If it does not: ``what`` needs it.
+    Raises ``HoleCycleError`` if it does not: ``what`` needs it.
     """
     if spindle is None or not (spindle.rpm > 0.0 and math.isfinite(spindle.rpm)):
         raise HoleCycleError(Wording("PLN660", "while_spindle_stands", subject=what))
@@ -69,10 +57,7 @@ def running_spindle(spindle: SpindleState | None, what: str) -> SpindleState:
 def thread(cycle: Cycle, spindle: SpindleState | None) -> tuple[float, SpindleState]:
     """Return the pitch of a thread, mm, and the spindle that cuts it, whose sense is the hand of the thread.
 
-    Raises
-    ------
-    HoleCycleError
-        If the spindle is stopped, or if the cycle has no feed.
+    Raises ``HoleCycleError`` if the spindle is stopped, or if the cycle has no feed.
     """
     running = running_spindle(spindle, "CYCLE/TAP")
     if cycle.feed is None or not cycle.feed > 0.0:

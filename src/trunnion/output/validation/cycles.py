@@ -80,14 +80,9 @@ def _check_cycle(
 ) -> Problem | None:
     """Raise ``HoleCycleError`` if the control cannot make the holes of a cycle; returns what it does to the feed.
 
-    Parameters
-    ----------
-    operation
-        Of the motion, in the coordinates of its blocks.
-    spindles
-        At the first hole of the cycle, and wherever the spindle changes among its holes.
-    along_tool
-        The tool turns from hole to hole under TCP.
+    operation   of the motion, in the coordinates of its blocks
+    spindles    at the first hole of the cycle, and wherever the spindle changes among its holes
+    along_tool  the tool turns from hole to hole under TCP
     """
     moves, row, cycle = operation.moves, event.row, cycle_from_event(event)
     if motion.mode in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP) and not along_tool:

@@ -18,12 +18,8 @@ def event_problems(
 ) -> list[Problem]:
     """Return what is wrong with an event.
 
-    Parameters
-    ----------
-    rpm
-        The spindle speed; None while it is stopped.
-    registers
-        Numbers of the tools that the motion loads, and of the registers that LOAD/TOOL names.
+    rpm        the spindle speed; None while it is stopped
+    registers  numbers of the tools that the motion loads, and of the registers that LOAD/TOOL names
     """
     control, location = program.control, (program.file_of(motion.operation), event.line)
     if isinstance(event, Dwell):

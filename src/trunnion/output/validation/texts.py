@@ -7,7 +7,7 @@ from trunnion.errors import InputError, Problem, Severity
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Insert, Message, Operation, Stop
 from trunnion.output.program import Program
-from trunnion.output.template_values import TemplateValues
+from trunnion.output.tool_calls import ToolCalls
 from trunnion.transliteration import lacking, spelled
 
 
@@ -78,7 +78,7 @@ def _called(program: Program) -> Iterator[Problem]:
     """Tools that are called by a name which would be another one."""
     calls: dict[str, Operation] = {}
     with suppress(InputError):  # what a tool is called by is another check
-        calls = {call: operation for call, _, operation in reversed(TemplateValues(program).tool_calls)}
+        calls = {call: operation for call, _, operation in reversed(ToolCalls(program).calls)}
     for call, operation in calls.items():
         if program.spelled(call) != call:
             yield Problem(

@@ -9,7 +9,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Operation, Tool
 from trunnion.output.program import Program
-from trunnion.output.template_values import TemplateValues
+from trunnion.output.tool_calls import ToolCalls
 
 #: Sizes of a tool that are compared, mm and degrees, with what two files may differ by when they write the same size:
 #: one in inches rounds to the fourth decimal.
@@ -30,22 +30,15 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
 
     The operator puts one cutter under a number or a name: the program would run with it in both operations.
 
-    Parameters
-    ----------
-    program
-        Tools of it can be called: it has passed ``check_program``.
-    uses_length_numbers
-        The program selects tool lengths by registers: two tools may not have the same one.
+    program              tools of it can be called: it has passed ``check_program``
+    uses_length_numbers  the program selects tool lengths by registers: two tools may not have the same one
 
-    Raises
-    ------
-    InputError
-        If an operation has nothing to call its tool by.
+    Raises ``InputError`` if an operation has nothing to call its tool by.
     """
     problems: list[Problem] = []
     known: dict[str, list[Operation]] = {}
     registers: dict[int, str] = {}
-    for call, register, operation in TemplateValues(program).tool_calls:
+    for call, register, operation in ToolCalls(program).calls:
         file = program.file_of(operation)
         other = registers.setdefault(register or tool_number(call) or 0, call)
         if uses_length_numbers and other != call:

@@ -86,18 +86,11 @@ def path_samples(
 ) -> PathSamples:
     """Return the moments of a path.
 
-    Parameters
-    ----------
-    machine
-        Without a workpiece zero.
-    rows
-        As the part is turned.
-    positions : (n, 2) float64
-        Of the rotary axes, degrees.
-    tool : (n,) int64
-        Of each row.
-    lengths
-        Of tools, gauge point to tip, mm; others have that of the machine.
+    machine    without a workpiece zero
+    rows       as the part is turned
+    positions  (n, 2) float64: of the rotary axes, degrees
+    tool       (n,) int64: of each row
+    lengths    of tools, gauge point to tip, mm; others have that of the machine
     """
     between = [turning_samples(rows, positions), _chord_samples(rows, positions)]
     tip = np.concatenate([rows.tip, *(one[0] for one in between)])

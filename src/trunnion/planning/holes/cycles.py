@@ -140,10 +140,7 @@ class SpindleStates:
 def cycle_from_event(event: CycleOn) -> Cycle:
     """Read a CYCLE statement.
 
-    Raises
-    ------
-    HoleCycleError
-        When the cycle is unknown, or leaves out something that it needs.
+    Raises ``HoleCycleError`` when the cycle is unknown, or leaves out something that it needs.
     """
     values, words = dict(event.values), dict(event.words)
     if any(not abs(number) < _FARTHEST for given in values.values() for number in given):

@@ -131,10 +131,8 @@ class _Holes:
 def convert_holes_to_motion(operation: Operation, conditions: HoleConditions) -> HolesAsMotion:
     """Replace cycles by motion where the conditions ask for it.
 
-    Raises
-    ------
-    HoleCycleError
-        When a cycle that would become motion leaves out something that it needs, or there are too many rows.
+    Raises ``HoleCycleError`` when a cycle that would become motion leaves out something that it needs, or there are too
+    many rows.
     """
     every = list(_holes(operation, conditions))
     converted = [holes for holes in every if holes.reason]

@@ -22,10 +22,7 @@ def normalize_cycles(operation: Operation) -> Operation:
 
     A cycle without a feed of its own is stated again where the modal feed changes.
 
-    Raises
-    ------
-    HoleCycleError
-        When AUTO stands for the height before the cycle, and no point is before it.
+    Raises ``HoleCycleError`` when AUTO stands for the height before the cycle, and no point is before it.
     """
     if not any(isinstance(event, CycleOn) for event in operation.events):
         return operation

@@ -33,10 +33,7 @@ class HoleMotions:
 def hole_motions(cycle: Cycle) -> HoleMotions:
     """Return the motions of a cycle whose retract height is known.
 
-    Raises
-    ------
-    HoleCycleError
-        When its pecks never reach the depth.
+    Raises ``HoleCycleError`` when its pecks never reach the depth.
     """
     assert cycle.retract_height is not None
     motions: list[tuple[float, Kind]] = []
@@ -61,10 +58,7 @@ def hole_motions(cycle: Cycle) -> HoleMotions:
 def peck_depths(cycle: Cycle) -> list[float]:
     """Return the depths below the point of the hole, mm, at which the pecks end.
 
-    Raises
-    ------
-    HoleCycleError
-        When the pecks never reach the depth, or there are too many.
+    Raises ``HoleCycleError`` when the pecks never reach the depth, or there are too many.
     """
     if cycle.method not in (HoleMethod.DEEP_DRILLING, HoleMethod.CHIP_BREAKING):
         return [cycle.depth]

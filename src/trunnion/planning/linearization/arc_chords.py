@@ -38,10 +38,7 @@ _PRINTED_RADIUS_ERROR: Final = 3e-4
 def arc_sweeps(operation: Operation) -> Floats:
     """Angle that the tip sweeps on each arc.
 
-    Returns
-    -------
-    (m,) float64
-        Radians, positive; 2 pi for a full circle, and whole turns count.
+    (m,) float64  radians, positive; 2 pi for a full circle, and whole turns count
     """
     arcs, tip = operation.arcs, operation.moves.tip
     start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
@@ -69,20 +66,12 @@ def arcs_a_control_takes(operation: Operation, only_about_z: bool = False, by_an
     their start or over it, because an arc whose end prints as its start becomes a full circle on the control, however
     short it really is.
 
-    Parameters
-    ----------
-    operation
-        In the coordinates of its blocks.
-    only_about_z
-        The control takes arcs about Z only.
-    by_angle
-        The control takes a helix by its angle. It then meets the end only if start and end are equally far from the
-        centre.
+    operation     in the coordinates of its blocks
+    only_about_z  the control takes arcs about Z only
+    by_angle      the control takes a helix by its angle. It then meets the end only if start and end are equally far
+                  from the centre
 
-    Returns
-    -------
-    (m,) bool
-        One entry for each arc.
+    (m,) bool  one entry for each arc
     """
     arcs, axis, tip = operation.arcs, operation.moves.axis, operation.moves.tip
     off_z = np.abs(arcs.normal[:, :2]).max(axis=1, initial=0.0)
@@ -118,15 +107,9 @@ def arcs_about_tool(operation: Operation) -> Flags:
 def single_turns(operation: Operation, keep: Flags) -> tuple[Operation, Flags]:
     """Replace arcs of several turns that stay arcs by one arc a turn, for controls that have no word for turns.
 
-    Parameters
-    ----------
-    keep : (m,) bool
-        Arcs that stay arcs.
+    keep  (m,) bool: arcs that stay arcs
 
-    Returns
-    -------
-    operation, keep
-        ``keep`` with one entry for each arc of the operation.
+    operation, keep  ``keep`` with one entry for each arc of the operation
     """
     arcs = operation.arcs
     turns = np.where(keep, arcs.full_turns, 0)
@@ -154,24 +137,13 @@ def single_turns(operation: Operation, keep: Flags) -> tuple[Operation, Flags]:
 def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) -> Operation:
     """Replace arcs by lines.
 
-    Parameters
-    ----------
-    operation
-        No arc may be its first row, as an arc starts at the row before.
-    keep : (m,) bool
-        Arcs that stay arcs.
-    chord_tolerance
-        The greatest distance between arc and line, mm.
+    operation        no arc may be its first row, as an arc starts at the row before
+    keep             (m,) bool: arcs that stay arcs
+    chord_tolerance  the greatest distance between arc and line, mm
 
-    Returns
-    -------
-    Operation
-        The tool axis turns evenly along an arc; new rows have the line number of the arc's end.
+    Operation  the tool axis turns evenly along an arc; new rows have the line number of the arc's end
 
-    Raises
-    ------
-    InputError
-        If they become more than ``MOST_LINES``.
+    Raises ``InputError`` if they become more than ``MOST_LINES``.
     """
     if bool(keep.all()):
         return operation

@@ -52,14 +52,9 @@ class DefaultPoints:
 def default_points(file: str, machine: Machine, motion: Motion, tolerance: float) -> DefaultPoints:
     """Insert points where the tool axis would leave its path farther than is allowed by default.
 
-    Parameters
-    ----------
-    file
-        CL file, for messages.
-    motion
-        With TCP.
-    tolerance
-        Of the tool axis in this operation, degrees.
+    file       CL file, for messages
+    motion     with TCP
+    tolerance  of the tool axis in this operation, degrees
     """
     moves = motion.operation.moves
     if moves.normal is not None:  # between CL points no surface normal is known

@@ -49,23 +49,14 @@ def divide_path(
 ) -> DividedPath:
     """Add the fewest points that keep the tool on its path from CL point to CL point.
 
-    Parameters
-    ----------
-    machine
-        Without ``tcp`` its workpiece zero must be that of the program.
-    tip : (n, 3) float64
-        mm, workpiece frame.
-    axis : (n, 3) float64
-        Unit vectors, workpiece frame.
-    rotary : (n, 2) float64
-        Rotary positions as they wind, degrees.
-    divisible : (n,) bool
-        Rows before which points may be added. Not the first one, and none in which the branch changes, as no points
-        help there.
-    tcp
-        The control keeps the tip on its line.
-    tip_tolerance, axis_tolerance
-        mm and degrees.
+    machine                        without ``tcp`` its workpiece zero must be that of the program
+    tip                            (n, 3) float64: mm, workpiece frame
+    axis                           (n, 3) float64: unit vectors, workpiece frame
+    rotary                         (n, 2) float64: rotary positions as they wind, degrees
+    divisible                      (n,) bool: rows before which points may be added. Not the first one, and none in
+                                   which the branch changes, as no points help there
+    tcp                            the control keeps the tip on its line
+    tip_tolerance, axis_tolerance  mm and degrees
     """
     tolerances = math.inf if tcp else USABLE_SHARE * tip_tolerance, USABLE_SHARE * math.radians(axis_tolerance)
     model = kinematic_chain(machine), kinematic_parameters(machine), tolerances

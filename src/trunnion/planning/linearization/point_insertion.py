@@ -56,14 +56,9 @@ class LinearizedMotion:
 def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMotion:
     """Insert the points that a motion needs.
 
-    Parameters
-    ----------
-    file
-        CL file, for messages.
-    motion
-        In modes other than TCP and without TCP it is returned as it is.
-    request
-        Without TCP its machine must have a workpiece zero and, if a head turns the tool, the tool's length.
+    file     CL file, for messages
+    motion   in modes other than TCP and without TCP it is returned as it is
+    request  without TCP its machine must have a workpiece zero and, if a head turns the tool, the tool's length
     """
     options, machine = request.options, request.machine
     without_tcp = motion.mode is MachiningMode.WITHOUT_TCP

@@ -54,10 +54,7 @@ def _follow_great_circle(machine: Machine, axis: Floats, positions: Floats, bran
     half a turn the azimuth of the tool axis changes by less than half a turn. The first axis turns by as much, less
     what the tilt of the second one turns the tool about the first.
 
-    Returns
-    -------
-    positions, off_path
-        (n, 2) degrees; and (n,) bool: rows into which an axis with limits turns to the other side.
+    positions, off_path  (n, 2) degrees; and (n,) bool: rows into which an axis with limits turns to the other side
     """
     first, _ = machine.rotary
     sense, pole = machine.axes[first].sense, np.array(machine.axes[first].direction)

@@ -17,10 +17,8 @@ _PARALLEL_SINE: Final = 1e-6
 def check_slides_are_known(file: str, operations: Sequence[Operation], machine: Machine) -> None:
     """Check that everything is known that slide positions depend on.
 
-    Raises
-    ------
-    InputError
-        If something is missing. Not even ``--force`` writes such positions, for they would be arbitrary.
+    Raises ``InputError`` if something is missing. Not even ``--force`` writes such positions, for they would be
+    arbitrary.
     """
     problems = []
     line = operations[0].line

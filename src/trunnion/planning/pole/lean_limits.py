@@ -73,19 +73,11 @@ def least_lean(
 ) -> tuple[Floats | None, float]:
     """First angles with limited steps under which the tool axis leans least.
 
-    Parameters
-    ----------
-    axis : (n, 3) float64
-        Tool axes of the CAM.
-    limits
-        Its targets are the first angles under which nothing leans.
-    angle
-        The most that the tool axis may lean, degrees.
+    axis    (n, 3) float64: tool axes of the CAM
+    limits  its targets are the first angles under which nothing leans
+    angle   the most that the tool axis may lean, degrees
 
-    Returns
-    -------
-    first, lean
-        (n,) float64, degrees, and the most that the tool axis leans, degrees; None and NaN if there are none.
+    first, lean  (n,) float64, degrees, and the most that the tool axis leans, degrees; None and NaN if there are none
     """
     path = np.empty((5, len(axis)))
     least = _least_lean(kinematics, axis, limits, math.radians(angle), *_fixed_angles(kinematics), path)

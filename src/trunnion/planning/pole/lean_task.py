@@ -43,12 +43,8 @@ class LeanTask:
     def exceeds_speed(self, continuous: Floats, state: Codes, share: float = 1.0) -> Flags:
         """(n,) bool: rows in which an axis would turn farther than it can; ``max_step`` counts as a ``share`` of that.
 
-        Parameters
-        ----------
-        continuous : (n, 2) float64
-            Rotary positions as they wind, degrees.
-        state : (n,) uint8
-            As in ``PlannedPoses``: rewinds are left out.
+        continuous  (n, 2) float64: rotary positions as they wind, degrees
+        state       (n,) uint8: as in ``PlannedPoses``: rewinds are left out
         """
         step = np.abs(np.diff(continuous, axis=0, prepend=continuous[:1]))
         too_far = (step > self.max_step / share + 1e-9).any(axis=1)

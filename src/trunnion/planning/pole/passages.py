@@ -56,10 +56,7 @@ def poses_through_pole(
     In these poses the first angle holds within the passages. Without ``choose_branch`` the branch in which most cuts
     begin is not preferred.
 
-    Returns
-    -------
-    poses, passages
-        The poses as they were if the others are no better; and no passages if the pole cannot be reached.
+    poses, passages  the poses as they were if the others are no better; and no passages if the pole cannot be reached
     """
     if not passages:
         return poses, passages

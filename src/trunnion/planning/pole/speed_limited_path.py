@@ -29,17 +29,10 @@ def limit_speed(
 ) -> tuple[Floats, list[PoleRegion], list[PolePassage]]:
     """Lean where an axis would be too fast: in a window around these rows or, if that fails, up to the next breaks.
 
-    Parameters
-    ----------
-    exact : (n, 2) float64
-        Positions under which nothing leans, as they wind, degrees.
-    state : (n,) uint8
-        As in ``PlannedPoses``.
+    exact  (n, 2) float64: positions under which nothing leans, as they wind, degrees
+    state  (n,) uint8: as in ``PlannedPoses``
 
-    Returns
-    -------
-    positions, regions, passages
-        (n, 2); the regions, solved or not; and what remains of passages that are not solved.
+    positions, regions, passages  (n, 2); the regions, solved or not; and what remains of passages that are not solved
     """
     leaned, regions, done = exact.copy(), list[PoleRegion](), 0
     too_fast = task.exceeds_speed(exact, state)

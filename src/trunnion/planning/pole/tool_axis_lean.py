@@ -67,12 +67,8 @@ class _LeanedPath:
 def lean_tool_axis(task: LeanTask, poses: PlannedPoses, strategy: PoleStrategy) -> LeanedMoves:
     """Apply a strategy.
 
-    Parameters
-    ----------
-    poses
-        Those under the CAM's tool axes.
-    strategy
-        Any but OFF.
+    poses     those under the CAM's tool axes
+    strategy  any but OFF
     """
     too_fast = task.exceeds_speed(continuous_positions(task.machine, poses.rotary), poses.state)
     if not too_fast.any():

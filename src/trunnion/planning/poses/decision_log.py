@@ -100,12 +100,8 @@ def _at_pole(chosen: ChosenPoses, rows: Ints) -> Flags:
 def pose_decisions(chosen: ChosenPoses, changes: Ints, rewinds: dict[int, str]) -> list[Decision]:
     """Return the log: start, changes, and a comparison with the nearest neighbour.
 
-    Parameters
-    ----------
-    changes
-        As in ``PlannedPoses``.
-    rewinds
-        Why each rewind is needed, by its row.
+    changes  as in ``PlannedPoses``
+    rewinds  why each rewind is needed, by its row
     """
     log = [_start(chosen)]
     count, last, *rows = changes.tolist()

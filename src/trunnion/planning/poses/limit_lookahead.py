@@ -78,15 +78,9 @@ def first_limit_hit(
 def continue_in_branch(machine: Machine, moves: Moves, rows: slice | Ints, branch: int, last: Floats) -> Floats:
     """Rotary values of consecutive rows in one branch, each the shorter way from the one before.
 
-    Parameters
-    ----------
-    last : (2,) float64
-        The positions before, degrees.
+    last  (2,) float64: the positions before, degrees
 
-    Returns
-    -------
-    (k, 2) float64
-        Degrees, as they wind.
+    (k, 2) float64  degrees, as they wind
     """
     solutions = inverse(machine, moves.tip[rows], moves.axis[rows])
     values = solutions.joints[branch][:, list(machine.rotary)]

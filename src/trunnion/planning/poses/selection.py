@@ -117,12 +117,8 @@ def _traced(backpointers: Codes, end: int) -> Codes:
 def choose_poses(machine: Machine, moves: Moves, keep_slide_limits: bool) -> PlannedPoses:
     """Choose the cheapest poses, from the home position of the rotary axes on.
 
-    Parameters
-    ----------
-    machine
-        Its limits are checked; those of the slides only with ``keep_slide_limits``.
-    moves
-        In the workpiece frame.
+    machine  its limits are checked; those of the slides only with ``keep_slide_limits``
+    moves    in the workpiece frame
     """
     return choose_poses_in_one_pass(machine, moves, keep_slide_limits) or poses_of_states(
         machine, moves, choose_states(machine, moves, keep_slide_limits), keep_slide_limits

@@ -41,10 +41,8 @@ class Clearance:
     def retract_distance(self, tip: Floats, axis: Floats) -> float:
         """How far to retract, mm; infinite if the tool axis does not lead to the clearance.
 
-        Parameters
-        ----------
-        tip, axis : (3,) float64
-            In the cut, in the program's coordinate system: mm, and the unit vector from tip to holder.
+        tip, axis  (3,) float64: in the cut, in the program's coordinate system: mm, and the unit vector from tip to
+                   holder
         """
         if self.surface is ClearanceSurface.DISTANCE:
             return self.value

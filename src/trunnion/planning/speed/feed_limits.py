@@ -40,14 +40,9 @@ def limit_feeds(
 ) -> FeedResult:
     """Lower feeds as the options ask.
 
-    Parameters
-    ----------
-    prepared
-        With the tool axes that the machine will have.
-    rewinds
-        Those that will be inserted: the rotary axes turn off the part there.
-    deviations
-        Those so far.
+    prepared    with the tool axes that the machine will have
+    rewinds     those that will be inserted: the rotary axes turn off the part there
+    deviations  those so far
     """
     operation = prepared.operation
     off_part = OffPartTurns(

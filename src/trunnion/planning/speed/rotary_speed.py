@@ -73,14 +73,9 @@ def tip_speeds(operation: Operation) -> Floats:
 def find_fastest_row(machine: Machine, operation: Operation, rotary: Floats, off_part: OffPartTurns) -> FastestRow:
     """Find where the rotary axes would have to be fastest.
 
-    Parameters
-    ----------
-    operation
-        In the program's coordinate system.
-    rotary : (n, 2) float64
-        Displayed positions, degrees.
-    off_part
-        Turns that take place outside of the rows.
+    operation  in the program's coordinate system
+    rotary     (n, 2) float64: displayed positions, degrees
+    off_part   turns that take place outside of the rows
     """
     share = np.empty((0, 2))
     return FastestRow(*_speed_shares(*_kernel_arguments(machine, operation, rotary), off_part, share))
@@ -99,13 +94,9 @@ def speed_shares(machine: Machine, operation: Operation, rotary: Floats, off_par
 def max_rotary_steps(machine: Machine, operation: Operation) -> tuple[Floats, Flags]:
     """How far each rotary axis can turn in each row.
 
-    Returns
-    -------
-    max_step : (n, 2) float64
-        Degrees.
-    unbound : (n,) bool
-        Rows whose duration no feed fixes: rapids, rows in which the tip rests, and the first one, as the axes are
-        brought there beforehand.
+    max_step  (n, 2) float64: Degrees
+    unbound   (n,) bool: Rows whose duration no feed fixes: rapids, rows in which the tip rests, and the first one, as
+              the axes are brought there beforehand
     """
     moves = operation.moves
     length = np.linalg.norm(np.diff(moves.tip, axis=0, prepend=moves.tip[:1]), axis=1)
@@ -124,15 +115,9 @@ def lower_feeds(
 ) -> tuple[Moves, Ints]:
     """Lower feeds so that no rotary axis exceeds its rapid speed.
 
-    Parameters
-    ----------
-    together : (n,) int64
-        Ascending; rows with the same number are pieces of one arc and get one feed.
+    together  (n,) int64: ascending; rows with the same number are pieces of one arc and get one feed
 
-    Returns
-    -------
-    moves, rows
-        The moves, and the rows (k,) whose feed is lower now.
+    moves, rows  the moves, and the rows (k,) whose feed is lower now
     """
     moves = operation.moves
     share = speed_shares(machine, operation, rotary, off_part).max(axis=1)

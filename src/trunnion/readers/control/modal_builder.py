@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from trunnion.model.feed_path import FeedPath
-from trunnion.model.run import ORIENTATION_FROM_WORDS, ModalState
+from trunnion.model.run import ORIENTATION_FROM_WORDS
+from trunnion.model.run_columns import ModalState
 from trunnion.readers.control.row_buffer import StepColumnBuilder
 
 

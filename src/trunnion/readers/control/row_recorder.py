@@ -34,8 +34,8 @@ from trunnion.model.run import (
     RunEvent,
     SpindleHole,
     SpindleWork,
-    SurfaceNormals,
 )
+from trunnion.model.run_columns import SurfaceNormals
 from trunnion.model.splines import SplineRows, Splines
 from trunnion.model.toolpath import Arcs, Kind
 from trunnion.readers.control.affine_map import affine_matrix

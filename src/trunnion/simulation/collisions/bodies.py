@@ -67,17 +67,10 @@ class Body:
 def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = None) -> tuple[Body, ...]:
     """Return the bodies of a machine's definition; meshes are read now.
 
-    Parameters
-    ----------
-    machine
-        The machine.
-    warn
-        Takes what is odd about meshes, and that the definition does not say where the spindle nose stands.
+    machine  the machine
+    warn     takes what is odd about meshes, and that the definition does not say where the spindle nose stands
 
-    Raises
-    ------
-    InputError
-        If a mesh cannot be used, with file and line of the definition that names it.
+    Raises ``InputError`` if a mesh cannot be used, with file and line of the definition that names it.
     """
     found, problems = [], []
     for body in machine.bodies:
@@ -124,16 +117,10 @@ def part_body(mesh: TriangleMesh, machine: Machine) -> Body:
 def tool_bodies(shape: ToolShape, machine: Machine, name: str, length: float) -> tuple[Body, ...]:
     """Return cutter, shank and holder of a tool in the spindle.
 
-    Parameters
-    ----------
-    shape
-        The tool.
-    machine
-        In whose spindle it is.
-    name
-        The tool as the run calls it.
-    length
-        From the tip to the gauge point, mm.
+    shape    the tool
+    machine  in whose spindle it is
+    name     the tool as the run calls it
+    length   from the tip to the gauge point, mm
     """
     axis, pose = np.array(machine.spindle_direction), tool_pose(machine, length)
     bodies = []

@@ -36,34 +36,20 @@ def check_collisions(
 ) -> list[Collision]:
     """Find which bodies touch while a program runs, or come near each other.
 
-    Parameters
-    ----------
-    run
-        The program, read with the workpiece zero of the set-up where bodies of the machine are among the bodies.
-    bodies
-        Of machine, fixtures and part: ``machine_bodies``, ``fixture_body``, ``part_body``.
-    tools
-        The tools in the spindle, by their names in ``run.tools``. A tool without a length has that of the machine.
-    near
-        Distance in mm from which on two bodies are told that do not touch.
-    step
-        Between bodies nearer to each other than this, the motion is looked at in such steps, mm.
-    end
-        The first row that is left out; None: all are checked.
-    pairs_told
-        Is told how many pairs of bodies are checked against each other.
-    progress
-        Is told how many rows are done.
+    run         the program, read with the workpiece zero of the set-up where bodies of the machine are among the bodies
+    bodies      of machine, fixtures and part: ``machine_bodies``, ``fixture_body``, ``part_body``
+    tools       the tools in the spindle, by their names in ``run.tools``. A tool without a length has that of the
+                machine
+    near        distance in mm from which on two bodies are told that do not touch
+    step        between bodies nearer to each other than this, the motion is looked at in such steps, mm
+    end         the first row that is left out; None: all are checked
+    pairs_told  is told how many pairs of bodies are checked against each other
+    progress    is told how many rows are done
 
-    Returns
-    -------
-    list of Collision
-        In the order of the program.
+    list of Collision  in the order of the program
 
-    Raises
-    ------
-    InputError
-        If a tool of the run is not among ``tools``, or the workpiece zero or a tool's length is needed and not known.
+    Raises ``InputError`` if a tool of the run is not among ``tools``, or the workpiece zero or a tool's length is
+    needed and not known.
     """
     lengths = _tool_lengths(run, bodies, tools)
     everything = list(bodies)

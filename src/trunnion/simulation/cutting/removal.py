@@ -50,29 +50,18 @@ def measure(
     The stock is changed. It may have some tiles only: no tile looks at another one. ``rows_cut`` makes of the chunks
     what each row did.
 
-    Parameters
-    ----------
-    stock
-        The material.
-    run
-        The program.
-    tools
-        The pieces of each tool, by its index in ``run.tools``. Rows of a tool that is not there are not simulated.
-    tolerance
-        How far motions may be off, mm.
-    idle
-        Rows that must not cut, (n,): rapids, and those in which the spindle stands.
-    design
-        The finished part as spans of the same lattice.
-    offset
-        What is added to the numbers of rows in ``Tile.rows``.
-    start, end
-        The row at which to begin, which the stock must have been cut up to, and the one at which to end; by default
-        after the last one.
-    threads
-        How many tiles are cut at a time; by default as many as there are processors.
-    progress
-        Is called with rows done and rows in all.
+    stock       the material
+    run         the program
+    tools       the pieces of each tool, by its index in ``run.tools``. Rows of a tool that is not there are not
+                simulated
+    tolerance   how far motions may be off, mm
+    idle        rows that must not cut, (n,): rapids, and those in which the spindle stands
+    design      the finished part as spans of the same lattice
+    offset      what is added to the numbers of rows in ``Tile.rows``
+    start, end  the row at which to begin, which the stock must have been cut up to, and the one at which to end; by
+                default after the last one
+    threads     how many tiles are cut at a time; by default as many as there are processors
+    progress    is called with rows done and rows in all
     """
     end = len(run) if end is None else end
     cutter = Cutter(stock, design, tolerance)

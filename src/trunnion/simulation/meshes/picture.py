@@ -53,16 +53,10 @@ def picture(
 ) -> bytes:
     """Draw a mesh.
 
-    Parameters
-    ----------
-    mesh
-        With at least one facet, seen from outside; its Z points up in the picture.
-    colours
-        Of its vertices, (n, 3), red, green and blue from 0 to 1; by default plain metal.
-    azimuth, elevation
-        From where it is seen: 0 is from +X, 90 from +Y; 90 is from above.
-    size
-        Width and height in pixels.
+    mesh                with at least one facet, seen from outside; its Z points up in the picture
+    colours             of its vertices, (n, 3), red, green and blue from 0 to 1; by default plain metal
+    azimuth, elevation  from where it is seen: 0 is from +X, 90 from +Y; 90 is from above
+    size                width and height in pixels
     """
     width, height = size[0] * _FINER, size[1] * _FINER
     seen = mesh.vertices @ _view(azimuth, elevation).T

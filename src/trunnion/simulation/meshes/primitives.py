@@ -34,14 +34,10 @@ def cylinder_mesh(
 def revolved_mesh(outline: Floats, name: str = "", excess: float = ROUND_EXCESS) -> TriangleMesh:
     """Return a solid of revolution about Z.
 
-    Parameters
-    ----------
-    outline : (k, 2) float64, mm
-        Radii and heights from the axis at the bottom, going up, back to the axis: the first and the last radius are 0.
-    name
-        Of the mesh.
-    excess
-        Its sides touch the round body from outside, and stand out by at most this, mm.
+    outline  (k, 2) float64, mm: radii and heights from the axis at the bottom, going up, back to the axis: the first
+             and the last radius are 0
+    name     of the mesh
+    excess   its sides touch the round body from outside, and stand out by at most this, mm
     """
     sides = _sides(float(outline[:, 0].max()), excess)
     about = 2.0 * np.pi * np.arange(sides) / sides

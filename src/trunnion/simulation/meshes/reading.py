@@ -73,30 +73,17 @@ def load_mesh(
 ) -> TriangleMesh:
     """Read a mesh.
 
-    Parameters
-    ----------
-    path
-        A file whose name ends in one of ``MESH_FORMATS``.
-    unit
-        Of its numbers; None: what the format says (3MF states one, GLB counts in m), else mm. STEP states its own.
-    name
-        What messages call it; empty: the name of the file.
-    closed
-        Refuse a mesh with open edges, which has no inside, and one that seems to be in metres.
-    deviation
-        How far facets may be off the surfaces of a STEP file, mm.
-    warn
-        Takes what is odd and does not stop the work.
+    path       A file whose name ends in one of ``MESH_FORMATS``
+    unit       of its numbers; None: what the format says (3MF states one, GLB counts in m), else mm. STEP states its
+               own
+    name       what messages call it; empty: the name of the file
+    closed     refuse a mesh with open edges, which has no inside, and one that seems to be in metres
+    deviation  how far facets may be off the surfaces of a STEP file, mm
+    warn       takes what is odd and does not stop the work
 
-    Returns
-    -------
-    TriangleMesh
-        In mm; facets without area are left out.
+    TriangleMesh  in mm; facets without area are left out
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is damaged, too large, empty or, with ``closed``, leaks.
+    Raises ``InputError`` if the file cannot be read, is damaged, too large, empty or, with ``closed``, leaks.
     """
     file = Path(path)
     label = str(path)

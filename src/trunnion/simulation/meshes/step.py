@@ -44,19 +44,11 @@ result.close()
 def read_step(data: bytes, label: str, deviation: float) -> tuple[Floats, Ints]:
     """Read a STEP file.
 
-    Parameters
-    ----------
-    data
-        Its bytes.
-    label
-        What messages call it.
-    deviation
-        How far facets may be off the surfaces, mm.
+    data       its bytes
+    label      what messages call it
+    deviation  how far facets may be off the surfaces, mm
 
-    Raises
-    ------
-    InputError
-        If it is damaged or names other files, or the extra ``cad`` is not installed.
+    Raises ``InputError`` if it is damaged or names other files, or the extra ``cad`` is not installed.
     """
     if importlib.util.find_spec("cascadio") is None:
         import_extra("cascadio", "cad")

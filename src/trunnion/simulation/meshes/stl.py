@@ -17,10 +17,7 @@ _HEADER: Final = 84
 def read_stl(data: bytes, label: str, max_facets: int) -> Floats:
     """Return the corners of all facets, (3 m, 3), in the unit of the file.
 
-    Raises
-    ------
-    InputError
-        If the file is cut short, holds something else, or too many facets.
+    Raises ``InputError`` if the file is cut short, holds something else, or too many facets.
     """
     count = int.from_bytes(data[80:84], "little") if len(data) >= _HEADER else -1
     if count >= 0 and len(data) == _HEADER + count * _FACET.itemsize:

@@ -38,10 +38,7 @@ class _Object:
 def read_three_mf(data: bytes, label: str, max_bytes: int, max_facets: int) -> tuple[Floats, Ints, float]:
     """Return the vertices in the unit of the file, the faces and that unit in mm, of all items that the file builds.
 
-    Raises
-    ------
-    InputError
-        If the file is damaged or unpacks to more than ``max_bytes``.
+    Raises ``InputError`` if the file is damaged or unpacks to more than ``max_bytes``.
     """
     try:
         model = _unpacked(data, label, max_bytes)

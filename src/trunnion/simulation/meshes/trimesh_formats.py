@@ -21,10 +21,7 @@ _GUESSERS: Final = frozenset({"charset_normalizer", "chardet"})
 def read_by_trimesh(data: bytes, ending: str, label: str, extra: str = "simulate") -> tuple[Floats, Ints]:
     """Read a file.
 
-    Raises
-    ------
-    InputError
-        If it is damaged, or trimesh is not installed, which comes with ``extra``.
+    Raises ``InputError`` if it is damaged, or trimesh is not installed, which comes with ``extra``.
     """
     trimesh = import_extra("trimesh", extra)
     try:

@@ -41,19 +41,11 @@ def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os
 
     Lengths are mm, in GLB metres with Y upwards, as that format wants them. STL, PLY and GLB have single precision.
 
-    Parameters
-    ----------
-    mesh
-        With at least one facet.
-    path
-        The file; an older one stays if the new one cannot be written whole.
-    inputs
-        Files that are read: none of them is written over.
+    mesh    with at least one facet
+    path    the file; an older one stays if the new one cannot be written whole
+    inputs  files that are read: none of them is written over
 
-    Raises
-    ------
-    InputError
-        If the ending is another, the mesh is empty, or the file cannot be written.
+    Raises ``InputError`` if the ending is another, the mesh is empty, or the file cannot be written.
     """
     check_mesh_name(path)
     ending = Path(path).suffix.lower()

@@ -92,10 +92,7 @@ def stock_shape(
 
     ``warn`` takes what is odd about a mesh; facets of exact surfaces are off them by ``deviation`` at most, mm.
 
-    Raises
-    ------
-    InputError
-        If it states none, with the cure.
+    Raises ``InputError`` if it states none, with the cure.
     """
     if isinstance(text, TriangleMesh):
         low, high = text.bounds

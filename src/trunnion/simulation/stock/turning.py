@@ -70,19 +70,11 @@ def _cosine_and_sine(angle: float) -> tuple[float, float]:
 def turned_stock(stock: Stock, pose: Pose, cell: float) -> tuple[Lattice, tuple[Spans, Spans, Spans]]:
     """Return stock in the next workpiece frame: its lattice and the spans of the three bundles.
 
-    Parameters
-    ----------
-    stock
-        What the last set-up has left.
-    pose
-        Where it lies now.
-    cell
-        Width of the cells where the rays cannot be turned, mm.
+    stock  what the last set-up has left
+    pose   where it lies now
+    cell   width of the cells where the rays cannot be turned, mm
 
-    Raises
-    ------
-    InputError
-        If nothing is left of the stock.
+    Raises ``InputError`` if nothing is left of the stock.
     """
     if stock.volume <= 0.0:
         raise InputError(Problem("stock", 0, Wording("SIM135", "nothing_left_next")))

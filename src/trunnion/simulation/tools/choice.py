@@ -50,21 +50,12 @@ def choose_tools(
 ) -> dict[str, ToolShape]:
     """Return the body of each tool that a program calls, by the word of the program.
 
-    Parameters
-    ----------
-    called
-        Numbers and names as programs write them; the empty name is no tool.
-    stated
-        Tools that were stated for this run; they come first.
-    libraries
-        In their order.
-    cl_tools
-        Tools of the CL files, where nothing else has one.
+    called     numbers and names as programs write them; the empty name is no tool
+    stated     tools that were stated for this run; they come first
+    libraries  in their order
+    cl_tools   tools of the CL files, where nothing else has one
 
-    Raises
-    ------
-    InputError
-        If nothing describes a tool, or nothing settles its form; with all of them.
+    Raises ``InputError`` if nothing describes a tool, or nothing settles its form; with all of them.
     """
     sources: tuple[Callable[[int | None, str], ToolShape | None], ...] = (
         lambda number, name: _stated(stated, number, name),

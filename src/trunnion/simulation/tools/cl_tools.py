@@ -26,10 +26,7 @@ def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, diale
     file, line  where it is described, for messages
     dialect     that of the CL file, ``Toolpath.dialect``
 
-    Raises
-    ------
-    InputError
-        If the CL file does not say all of its form, or says it in a way whose meaning is not settled.
+    Raises ``InputError`` if the CL file does not say all of its form, or says it in a way whose meaning is not settled.
     """
     name = tool.name if number is None else number
     called = phrase("tool_called", name=name) if name != "" else phrase("its_tool")

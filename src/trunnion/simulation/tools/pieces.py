@@ -12,7 +12,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats2, Ints
+from trunnion.arrays import Flags, Floats2, Ints, make_read_only
 from trunnion.simulation.tools.profile import Point, ProfileArc, ProfileLine, Role, Section, ToolShape
 
 #: The centre of an arc nearer to the tool axis than this, mm, is on it.
@@ -58,10 +58,7 @@ def revolved_pieces(shape: ToolShape, tolerance: float) -> tuple[RevolvedPieces,
     An arc that is not about the tool axis becomes frusta, half within it and half outside, no farther off than
     ``tolerance`` (mm). Everything else is exact. A section is divided at each reflex corner of its outline.
 
-    Raises
-    ------
-    ValueError
-        If ``tolerance`` is not above 0.
+    Raises ``ValueError`` if ``tolerance`` is not above 0.
     """
     if not tolerance > 0.0:
         raise ValueError("the tolerance of a tool's pieces is not above 0")
@@ -85,8 +82,7 @@ def _as_arrays(shape: ToolShape, pieces: list[list[_Row]], owners: list[int]) ->
         bounds=np.array([(rows[0][0], rows[-1][1], max(map(_widest, rows))) for rows in pieces], np.float64),
         elements=np.array([row for rows in pieces for row in rows], np.float64),
     )
-    for array in arrays:
-        array.setflags(write=False)
+    make_read_only(*arrays)
     return arrays
 
 

@@ -60,10 +60,7 @@ def bull(diameter: float, corner_radius: float, **body: Unpack[BodySizes]) -> To
 def tool_shape(sizes: ToolSizes, number: int | None = None, name: str = "", description: str = "") -> ToolShape:
     """Return the body of a tool.
 
-    Raises
-    ------
-    InputError
-        If sizes are impossible, with all of them.
+    Raises ``InputError`` if sizes are impossible, with all of them.
     """
     if faults := shape_faults(sizes):
         raise InputError([argument_problem(size, wording) for size, wording in faults])

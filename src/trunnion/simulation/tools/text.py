@@ -75,17 +75,10 @@ class _TextError(Exception):
 def parse_tool(text: str, diameters: Mapping[int, float] | None = None) -> ToolShape:
     """Return the tool that a text describes.
 
-    Parameters
-    ----------
-    text
-        ``NUMBER=KIND:SIZES`` or ``NAME=KIND:SIZES``, mm and degrees.
-    diameters
-        Diameters of tools by their number, mm, for those that the text does not state.
+    text       ``NUMBER=KIND:SIZES`` or ``NAME=KIND:SIZES``, mm and degrees
+    diameters  diameters of tools by their number, mm, for those that the text does not state
 
-    Raises
-    ------
-    InputError
-        If the text is none of a tool, with everything that is wrong.
+    Raises ``InputError`` if the text is none of a tool, with everything that is wrong.
     """
     shown = text if len(text) <= 60 else text[:57] + "..."
     try:

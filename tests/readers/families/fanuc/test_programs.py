@@ -293,7 +293,7 @@ def test_cycles_that_lack_something_are_named(run: Runner) -> None:
 def test_loops_jumps_and_conditions(run: Runner) -> None:
     got = fanuc(
         run,
-        "O1\n#1=0\nWHILE[#1LT3]DO1\n#1=#1+1\nIF[#1EQ2]GOTO5\nG0 X#1\nN5\nEND1\nIF[#9 EQ #0] THEN #2=7\n"
+        "O1\n#100=#0\n#1=0\nWHILE[#1LT3]DO1\n#1=#1+1\nIF[#1EQ2]GOTO5\nG0 X#1\nN5\nEND1\nIF[#9 EQ #0] THEN #2=7\n"
         "G0 X[#2+SIN[30]*2]\nGOTO 20\nX99.\nN20 X[ROUND[2.5]+FIX[-1.5]+#100]\nY[10MOD4*2]\nZ#9\nM30\n",
     )
     assert got.errors == ()
@@ -303,7 +303,7 @@ def test_loops_jumps_and_conditions(run: Runner) -> None:
 
 def test_macros_have_variables_of_their_own(run: Runner) -> None:
     files = {"O9010.nc": "%\nO9010\nG91 G0 X#24 Y#1\n#100=#100+1\nM99\n%\n"}
-    got = fanuc(run, "#24=50.\nG65 P9010 L2 A1. X2.5\nG90 G0 Z#100\nX#24\nM30\n", files=files)
+    got = fanuc(run, "#24=50.\n#100=0\nG65 P9010 L2 A1. X2.5\nG90 G0 Z#100\nX#24\nM30\n", files=files)
     assert got.errors == ()
     close(slides(got), [[2.5, 1, 0], [5, 2, 0], [5, 2, 2], [50, 2, 2]])
 

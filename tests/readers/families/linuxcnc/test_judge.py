@@ -222,7 +222,7 @@ class Writer:
         lines = self.draw(
             st.sampled_from(
                 [
-                    ["#1=3 #2=[#1*2+1]", "#3=#1", "G0 X#2 Y[#1/2] Z-#3"],
+                    ["#1=1", "#1=3 #2=[#1*2+1]", "#3=#1", "G0 X#2 Y[#1/2] Z-#3"],
                     ["#<deep>=-4.5", "G0 X#<deep> Y[ABS[#<deep>]**2] Z[7 MOD 4]"],
                     ["G0 X[SIN[30]*10] Y[ATAN[1]/[2]] Z[SQRT[2]+EXP[1]]", "G0 X[FIX[-2.5]] Y[FUP[2.1]] Z[ROUND[2.5]]"],
                     ["G0 X[2+3*4**2-1] Y[10/4-[1-2]] Z[1 GT 2 OR 3 EQ 3]", "G0 X[-3 MOD 5] Y[ACOS[.5]] Z[LN[10]]"],
@@ -232,7 +232,7 @@ class Writer:
                     ["#7=2", "o5 if [#7 EQ 1]", "G0 X1", "o5 elseif [#7 EQ 2]", "G0 X2", "o5 else", "G0 X3",
                      "o5 endif"],
                     ["o<hop> call [4] [5]", "G0 Z#<_value>"],
-                    ["#9=1", "#9=5 G0 X#9", "G0 Y#9", "G0 X#[8+1] Z##9"],
+                    ["#5=2", "#9=1", "#9=5 G0 X#9", "G0 Y#9", "G0 X#[8+1] Z##9"],
                     ["o6 while [1]", "G0 Z1", "o6 break", "o6 endwhile"],
                     ["G0 X[#5420+1] Y[#5421-#5422] Z#5220", "G0 X[EXISTS[#<nobody>]]"],
                 ]

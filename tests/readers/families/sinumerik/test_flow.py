@@ -30,7 +30,6 @@ def xs(result: Run) -> list[float]:
         ("X1\nGOTO ENDE\nX2\nENDE:\nX3", [1, 3]),
         ("R1=0\nAGAIN: R1=R1+1\nX=R1\nIF R1<3 GOTOB AGAIN", [1, 2, 3]),
         ("R1=0\nN10 R1=R1+1\nX=R1\nIF R1<3 GOTO N10", [1, 2, 3]),
-        ("R1=R1+1\nX=R1\nIF R1<3 GOTOS", [1, 2, 3]),
         ("X1\nGOTOC NOWHERE\nX2", [1, 2]),
         ('DEF STRING[8] _T="ENDE"\nGOTOF _T\nX1\nENDE: X2', [2]),
         ("CASE(4+3) OF 7 GOTOF SEVEN DEFAULT GOTOF OTHER\nOTHER: X1\nM30\nSEVEN: X7", [7]),
@@ -38,9 +37,9 @@ def xs(result: Run) -> list[float]:
         ("CASE 5 OF 7 GOTOF N70 5 GOTOF N50\nN70 X7\nN50 X5", [5]),
         ("DEF INT _I\nFOR _I=1 TO 3\nX=_I\nENDFOR\nX9", [1, 2, 3, 9]),
         ("FOR R1=3 TO 1\nX=R1\nENDFOR\nX9", [9]),
-        ("WHILE R1<2\nR1=R1+1\nX=R1\nENDWHILE\nX9", [1, 2, 9]),
-        ("REPEAT\nR1=R1+1\nX=R1\nUNTIL R1>=2\nX9", [1, 2, 9]),
-        ("LOOP\nR1=R1+1\nX=R1\nIF R1==3 GOTOF OUT\nENDLOOP\nOUT:\nX9", [1, 2, 3, 9]),
+        ("R1=0\nWHILE R1<2\nR1=R1+1\nX=R1\nENDWHILE\nX9", [1, 2, 9]),
+        ("R1=0\nREPEAT\nR1=R1+1\nX=R1\nUNTIL R1>=2\nX9", [1, 2, 9]),
+        ("R1=0\nLOOP\nR1=R1+1\nX=R1\nIF R1==3 GOTOF OUT\nENDLOOP\nOUT:\nX9", [1, 2, 3, 9]),
         ("FOR R1=1 TO 2\nFOR R2=1 TO 2\nX=10*R1+R2\nENDFOR\nENDFOR", [11, 12, 21, 22]),
         ("N10 IF TRUE ; why not\nN20 X1\nN30 ENDIF", [1]),
         ("X1\nM2\nX2", [1]),
@@ -112,8 +111,13 @@ def test_blocks_behind_a_return_that_no_jump_reaches_are_told(run: Runner) -> No
     result = run("EARLY\nEARLY\n/EARLY P2\nX9", files=SUB)
     assert xs(result) == [3, 3, 3, 3, 9]
     assert [(error.code, error.line, Path(error.file).name) for error in result.errors] == [("NC161", 4, "EARLY.SPF")]
-    assert xs(run("CHOICE\nR1=1\nCHOICE", files=SUB)) == [5, 6]
-    assert run("CHOICE\nR1=1\nCHOICE", files=SUB).errors == ()
+    assert xs(run("R1=0\nCHOICE\nR1=1\nCHOICE", files=SUB)) == [5, 6]
+    assert run("R1=0\nCHOICE\nR1=1\nCHOICE", files=SUB).errors == ()
+
+
+def test_gotos_goes_to_the_start_of_its_program(run: Runner) -> None:
+    files = {"AGAIN.SPF": "R1=R1+1\nX=R1\nIF R1<3 GOTOS\nRET\n"}
+    assert xs(run("R1=0\nAGAIN\nX9", files=files)) == [1, 2, 3, 9]
 
 
 def test_variables_of_a_subprogram_are_its_own(run: Runner) -> None:

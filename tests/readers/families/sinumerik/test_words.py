@@ -232,7 +232,7 @@ def test_work_offsets(run: Runner) -> None:
         ("X", "a number is missing"),
         ("X=", "a value is missing"),
         ("X=5+", "a value is missing"),
-        ("X=R1/0", "divides by zero"),
+        ("X=1/0", "divides by zero"),
         ("X=(((1)", "expected )"),
         ("X=SQRT(-1)", "SQRT"),
         ("X=NOBODY", "NOBODY has no value"),

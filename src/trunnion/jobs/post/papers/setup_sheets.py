@@ -19,7 +19,7 @@ from trunnion.model.run import NO_OFFSET, Run
 from trunnion.model.toolpath import CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
-from trunnion.output.template_values import TemplateValues
+from trunnion.output.tool_calls import ToolCalls
 from trunnion.reporting.content import collect_content
 from trunnion.reporting.html_text import format_number
 from trunnion.reporting.path_drawing import DrawnBody, path_drawing
@@ -53,7 +53,7 @@ def setup_sheet(
     content = collect_content(replace(verification, program=Path(verification.program).name), program.control.name)
     shown = tuple(displayed_extent(*each) for each in zip(machine.axes, content.axes, strict=True))
     content = replace(content, axes=shown)
-    calls = TemplateValues(program).tool_calls
+    calls = ToolCalls(program).calls
     operations = tuple(_operations(program, verification, content.operations, [call for call, *_ in calls]))
     rotary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
     return SetupSheet(

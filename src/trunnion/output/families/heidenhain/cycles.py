@@ -72,23 +72,13 @@ def cycle_definition(
 ) -> list[str]:
     """Return the lines of a CYCL DEF; each but the last ends with the continuation sign.
 
-    Parameters
-    ----------
-    cycle
-        With a retract height and a feed.
-    top
-        Z of the hole points, mm.
-    spindle
-        None while it is stopped.
-    formats
-        ``coordinate``, ``feed``, ``dwell`` and ``angle`` of the control.
-    side
-        The side to which the tool moves off the wall of a bore, as Q214 numbers them; empty if it is not set.
+    cycle    with a retract height and a feed
+    top      Z of the hole points, mm
+    spindle  None while it is stopped
+    formats  ``coordinate``, ``feed``, ``dwell`` and ``angle`` of the control
+    side     the side to which the tool moves off the wall of a bore, as Q214 numbers them; empty if it is not set
 
-    Raises
-    ------
-    HoleCycleError
-        If the control cannot make the cycle.
+    Raises ``HoleCycleError`` if the control cannot make the cycle.
     """
     define = _DEFINITIONS.get(cycle.method)
     if define is None:

@@ -21,21 +21,12 @@ def cycle_lines(cycle: Cycle, top: float, spindle: SpindleState | None, formats:
 
     R is where the feed begins. G99 retracts to R; G98 to where the tool was when the cycle began.
 
-    Parameters
-    ----------
-    cycle
-        With a retract height.
-    top
-        Z of the hole points, mm.
-    spindle
-        None while it is stopped.
-    formats
-        ``coordinate``, ``dwell`` and ``pitch`` of the control.
+    cycle    with a retract height
+    top      Z of the hole points, mm
+    spindle  None while it is stopped
+    formats  ``coordinate``, ``dwell`` and ``pitch`` of the control
 
-    Raises
-    ------
-    HoleCycleError
-        If the control cannot make the cycle.
+    Raises ``HoleCycleError`` if the control cannot make the cycle.
     """
     assert cycle.retract_height is not None
     number = formats["coordinate"].text

@@ -62,23 +62,13 @@ def cycle_statement(
 ) -> str:
     """Return the call of a cycle, as it follows MCALL.
 
-    Parameters
-    ----------
-    cycle
-        With a retract height.
-    top
-        Z of the hole points, mm.
-    spindle
-        None while it is stopped.
-    lift
-        How far BORE,NODRAG lifts off along X after the spindle was oriented, mm; None if it is not set.
-    formats
-        ``coordinate``, ``angle``, ``pitch``, ``feed``, ``feed_per_rev`` and ``dwell`` of the control.
+    cycle    with a retract height
+    top      Z of the hole points, mm
+    spindle  None while it is stopped
+    lift     how far BORE,NODRAG lifts off along X after the spindle was oriented, mm; None if it is not set
+    formats  ``coordinate``, ``angle``, ``pitch``, ``feed``, ``feed_per_rev`` and ``dwell`` of the control
 
-    Raises
-    ------
-    HoleCycleError
-        If the control cannot make the cycle.
+    Raises ``HoleCycleError`` if the control cannot make the cycle.
     """
     assert cycle.retract_height is not None
     number = formats["coordinate"].text

@@ -14,6 +14,7 @@ from trunnion.readers.families.fanuc.flow import ActiveProgram, Flow, ModalMacro
 from trunnion.readers.families.fanuc.settings import Settings, settings_of
 from trunnion.readers.families.fanuc.text import SUFFIXES, FanucText
 from trunnion.readers.families.fanuc.variables import Variables
+from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block, Number
@@ -39,7 +40,8 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         self.jump_words = _jump_words(settings_of(machine))
         super().__init__(path, machine, options)
-        self._variables = Variables(self._system_value, self._set_system_value)
+        declared = DeclaredVariables(self.control.settings.variables, self._note)
+        self._variables = Variables(self._system_value, self._set_system_value, declared)
         self._flow = Flow(self._note, self._variables)
         # The program and the line of the present block.
         self._here: tuple[ActiveProgram, int]

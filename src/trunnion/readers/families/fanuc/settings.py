@@ -1,11 +1,13 @@
 """Settings of a Fanuc: how numbers without a decimal point count."""
 
-from collections.abc import Collection
-from dataclasses import dataclass
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
 from trunnion.machines import Machine
 from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
+from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number, g_code_text
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
@@ -24,6 +26,10 @@ HIGHEST_EXTENDED: Final = 300
 _INCH_PART: Final = 0.1
 _FEEDS: Final = {(94, False): 1.0, (94, True): 0.01, (95, False): 0.01, (95, True): 0.0001}
 _SECONDS: Final = 0.001
+
+
+#: Common variables.
+_VARIABLE: Final = re.compile(r"#[1-9][0-9]{2}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +51,7 @@ class Settings:
     kept_by  what decides which modes the end of a program ends, as messages say it
     extended_offsets  the highest P of G54.1, or of the word that the control has in its place
     whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
+    variables  values of common variables that the control has when a program starts
     """
 
     calculator: bool = False
@@ -62,6 +69,7 @@ class Settings:
     home_takes_all: bool = False
     kept_by: str = KEPT_BY
     extended_offsets: int = HIGHEST_EXTENDED
+    variables: Mapping[str, float] = field(default_factory=dict)
 
     def length(self, inches: bool) -> float:
         """Return the unit of whole numbers that are lengths, in mm or inches."""
@@ -141,6 +149,7 @@ def settings_of(machine: Machine) -> Settings:
         home_ends_length=table.flag("home_ends_length", False),
         home_takes_all=table.flag("home_takes_all", False),
         kept_by=table.text("kept_by", KEPT_BY),
+        variables=read_variables(table, _VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
     )
     table.report_unread_keys()

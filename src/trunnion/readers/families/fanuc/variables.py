@@ -1,10 +1,15 @@
-"""Variables of macros, and their arithmetic. Unset variables are empty, and so is #0."""
+"""Variables of macros, and their arithmetic. Unset local variables are empty, and so is #0.
+
+Common variables keep what earlier programs and the operator have written: what neither the program nor the definition
+sets is not known.
+"""
 
 import math
 from collections.abc import Callable
 from typing import Final
 
 from trunnion.messages import Wording
+from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.rs274.expressions import (
     COMMON_FUNCTIONS,
     COMMON_OPERATORS,
@@ -74,14 +79,19 @@ class Variables:
 
     system_value       returns a system variable, None for one that is not simulated
     set_system_value   acts on a value that a program gives a system variable; returns whether it is one that acts
+    declared           the values that the definition declares
     """
 
     def __init__(
-        self, system_value: Callable[[int], float | None], set_system_value: Callable[[int, Value], bool]
+        self,
+        system_value: Callable[[int], float | None],
+        set_system_value: Callable[[int, Value], bool],
+        declared: DeclaredVariables,
     ) -> None:
         self._system_value = system_value
         self._set_system_value = set_system_value
-        self._common: dict[int, float] = {}
+        self._declared = declared
+        self._common: dict[int, Value] = {}
         self._local: list[dict[int, float]] = [{}]
 
     def value(self, key: int | str) -> Value:
@@ -93,10 +103,19 @@ class Variables:
         if key <= LOCAL_COUNT:
             return self._local[-1].get(key)
         if COMMON_FROM <= key < SYSTEM_FROM:
-            return self._common.get(key)
+            return self._common_value(key)
         value = self._system_value(key)
         if value is None:
             raise BlockError(Wording("NC222", "only_control_knows", key=key))
+        return value
+
+    def _common_value(self, key: int) -> Value:
+        """Return the value of a common variable; the operator or another program has set those that are not ours."""
+        if key in self._common:
+            return self._common[key]
+        value = self._declared.get(f"#{key}")
+        if value is None:
+            raise BlockError(Wording("NC223", "no_value_in_program", name=f"#{key}"))
         return value
 
     def is_set(self, key: int | str) -> bool:
@@ -109,11 +128,12 @@ class Variables:
             return
         if isinstance(key, str) or not (0 < key <= LOCAL_COUNT or COMMON_FROM <= key < SYSTEM_FROM):
             raise BlockError(Wording("NC223", "variable_not_set_by_programs", key=key))
-        table = self._local[-1] if key <= LOCAL_COUNT else self._common
-        if value is None:
-            table.pop(key, None)
+        if key > LOCAL_COUNT:
+            self._common[key] = value
+        elif value is None:
+            self._local[-1].pop(key, None)
         else:
-            table[key] = value
+            self._local[-1][key] = value
 
     @property
     def depth(self) -> int:

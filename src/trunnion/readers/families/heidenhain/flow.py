@@ -111,7 +111,8 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
             self._note(Wording("NC132", "missing_program", name=name[:80]), Severity.ERROR)
             return
         self._check_depth()
-        parameters = Parameters(self._stack[-1].parameters)
+        outer = self._stack[-1].parameters
+        parameters = Parameters(outer.declared, outer)
         source, file = self._open_subprogram(path)
         assert isinstance(source, KlartextText)
         self._stack.append(ActiveProgram(source, file, parameters=parameters))

@@ -20,12 +20,14 @@ from trunnion.readers.families.heidenhain.flow import ActiveProgram, FlowInterpr
 from trunnion.readers.families.heidenhain.fn_functions import ASSIGNED, assign
 from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, Line, split_line, words
 from trunnion.readers.families.heidenhain.machine_functions import MFunctions, tool_block
-from trunnion.readers.families.heidenhain.parameters import KlartextError
+from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
 from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
 from trunnion.readers.families.heidenhain.plane_blocks import plane_block, tcpm_block
 from trunnion.readers.families.heidenhain.scan_kernel import read_blocks
+from trunnion.readers.families.heidenhain.settings import variables_of
 from trunnion.readers.families.heidenhain.text import KlartextText
 from trunnion.readers.families.heidenhain.words import BLOCKS_NOT_SIMULATED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
+from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 
@@ -85,7 +87,8 @@ class HeidenhainInterpreter(FlowInterpreter):
 
     def _main_program(self, source: SourceText) -> ActiveProgram:
         assert isinstance(source, KlartextText)
-        self._main = ActiveProgram(source, 0)
+        declared = DeclaredVariables(variables_of(self._machine), self._note)
+        self._main = ActiveProgram(source, 0, parameters=Parameters(declared))
         return self._main
 
     def _may_scan(self, source: SourceText) -> bool:

@@ -8,6 +8,7 @@ from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.control.worded_error import WordedError
+from trunnion.readers.program.declared_variables import NOTHING_DECLARED, DeclaredVariables
 
 #: How deep parentheses and signs may nest.
 MAX_NESTING: Final = 40
@@ -23,9 +24,14 @@ class KlartextError(WordedError):
 
 
 class Parameters:
-    """The parameters of a program: Q and QR are shared by all programs, QL are local to each."""
+    """The parameters of a program: Q and QR are shared by all programs, QL are local to each.
 
-    def __init__(self, shared: "Parameters | None" = None) -> None:
+    declared   the values that the definition declares
+    """
+
+    def __init__(self, declared: DeclaredVariables = NOTHING_DECLARED, shared: "Parameters | None" = None) -> None:
+        self.declared = declared
+        self._forgotten: set[str] = set() if shared is None else shared._forgotten
         self._values: dict[str, float] = {} if shared is None else shared._values
         self._local: dict[str, float] = {}
 
@@ -34,7 +40,8 @@ class Parameters:
 
     def get(self, name: str) -> float | None:
         """Return the value of a parameter, None if it is not known."""
-        return self._table(name).get(name)
+        value = self._table(name).get(name)
+        return value if value is not None or name in self._forgotten else self.declared.get(name)
 
     def __getitem__(self, name: str) -> float:
         value = self.get(name)
@@ -48,6 +55,8 @@ class Parameters:
     def forget(self, name: str) -> None:
         """Mark the value of a parameter as not known."""
         self._table(name).pop(name, None)
+        if name in self.declared:
+            self._forgotten.add(name)
 
 
 def checked(value: float) -> float:

@@ -5,6 +5,7 @@ from typing import Final
 
 from trunnion.readers.families.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.readers.families.heidenhain.own_words import is_own_word
+from trunnion.readers.families.heidenhain.settings import variables_of
 from trunnion.readers.families.heidenhain.words import (
     M_CALL,
     M_CALL_MODAL,
@@ -53,4 +54,5 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     smoothing=re.compile(r"CYCL[ \t]+DEF[ \t]+32(?![0-9])"),
     lost_smoothing={"cycle32": ("cycle 32", "see the setting tolerance=…")},
+    check_reading=variables_of,
 )

@@ -1,5 +1,6 @@
 """The virtual control of LinuxCNC: its offsets, and machine positions under TCP."""
 
+import re
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -15,6 +16,7 @@ from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.families.linuxcnc.words import is_own_word
+from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
@@ -31,14 +33,18 @@ _COARSE: Final = 0.5
 #: Axes within this of zero, degrees, carry no length sideways; directions within this are parallel.
 _STILL: Final = 1e-9
 
+#: Parameters that keep their values from one program to the next.
+_PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
 
-def settings_of(machine: Machine) -> tuple[str, WordMeanings]:
-    """Read the unit and the own words of a machine's control; InputError if they are wrong."""
+
+def settings_of(machine: Machine) -> tuple[str, WordMeanings, dict[str, float]]:
+    """Read the unit, own words and declared parameters of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
     unit, words = unit_of(table), read_word_meanings(table, is_own_word)
+    variables = read_variables(table, _PARAMETER, "#100")
     table.report_unread_keys()
     table.raise_problems()
-    return unit, words
+    return unit, words, variables
 
 
 @dataclass(slots=True)
@@ -61,6 +67,7 @@ class LinuxcncControl(Rs274Control):
     axis_offset_active whether it counts
     axis_offset_known  whether this program has set or cleared it
     own_words          words that the control has in place of the family's
+    declared           values of parameters that the control has when a program starts
     """
 
     # M2 and M30 set all others back: G54, G17, G90, G94, G40, G80 (docs/reader-linuxcnc.md).
@@ -74,7 +81,7 @@ class LinuxcncControl(Rs274Control):
         self.axis_offset = np.zeros(6)
         self.axis_offset_active = False
         self.axis_offset_known = False
-        unit, self.own_words = settings_of(machine)
+        unit, self.own_words, self.declared = settings_of(machine)
         self.count_in(unit)
 
     def left_on(self) -> Wording | None:

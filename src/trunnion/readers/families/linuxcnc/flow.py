@@ -10,8 +10,10 @@ from typing import NamedTuple
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.readers.families.linuxcnc.control import LinuxcncControl
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC, LOCAL_COUNT, Parameters
 from trunnion.readers.families.linuxcnc.text import SUFFIXES, LinuxcncText, Structure
+from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274 import interpreter
 from trunnion.readers.rs274.block import block_reader, split_line
@@ -58,13 +60,15 @@ class OWord(NamedTuple):
 class OWordInterpreter(WordInterpreter[ActiveProgram]):
     """Executes branches, loops and subprograms."""
 
+    control: LinuxcncControl
+
     source_type = LinuxcncText
     suffixes = SUFFIXES
     jump_words = re.compile(rb"\bO[ \t]*(?:<[^<>\n]*>|[0-9]+)[ \t]*(?:IF|WHILE|DO|REPEAT)", re.IGNORECASE)
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
-        self._parameters = Parameters(self._system_value)
+        self._parameters = Parameters(self._system_value, DeclaredVariables(self.control.declared, self._note))
         self._returned: float | None = None
         self._handlers: dict[str, Callable[[OWord], None]] = {
             "SUB": lambda word: word.jump(word.structure.end + 1),

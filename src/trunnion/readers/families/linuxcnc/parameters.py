@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Final
 
 from trunnion.messages import Wording
+from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.rs274.expressions import COMMON_FUNCTIONS, COMMON_OPERATORS, Arithmetic, BlockError, Value
 
 #: The highest parameter.
@@ -52,18 +53,23 @@ ARITHMETIC: Final = Arithmetic(
 class Parameters:
     """The parameters of a running program: numbered, named local, named global (with an underscore), and system ones.
 
+    Numbered ones keep what earlier programs have written, but for the arguments of a subprogram: what neither the
+    program nor the definition sets is not known.
+
     system_value   returns a parameter that the control sets, None for one that is not simulated
+    declared       the values that the definition declares
     """
 
-    def __init__(self, system_value: Callable[[int | str], float | None]) -> None:
+    def __init__(self, system_value: Callable[[int | str], float | None], declared: DeclaredVariables) -> None:
         self._system_value = system_value
+        self._declared = declared
         self._numbers: dict[int, float] = {}
         self._global: dict[str, float] = {}
         self._local: list[dict[str, float]] = [{}]
         self._kept: list[dict[int, float]] = []
 
     def value(self, key: int | str) -> Value:
-        """Return the value of a parameter; an unset numbered one is 0."""
+        """Return the value of a parameter; an argument that a call leaves out is 0."""
         found = self._find(key)
         if found is not None:
             return found
@@ -73,7 +79,12 @@ class Parameters:
             raise BlockError(Wording("NC215", "number_out_of_range", key=key, most=MAX_NUMBER))
         if key > 5000:
             raise BlockError(Wording("NC222", "only_control_knows", key=key))
-        return 0.0
+        if self._kept and key <= LOCAL_COUNT:
+            return 0.0
+        declared = self._declared.get(f"#{key}")
+        if declared is None:
+            raise BlockError(Wording("NC223", "no_value_in_program", name=f"#{key}"))
+        return declared
 
     def is_set(self, key: int | str) -> bool:
         """Whether a parameter exists (EXISTS)."""

@@ -57,7 +57,8 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         if call.repeats < 1:
             return
         self._check_depth()
-        variables = Variables(self._stack[-1].variables)
+        outer = self._stack[-1].variables
+        variables = Variables(outer.declared, outer)
         # The PROC line reads the arguments when it is executed.
         variables.pass_arguments(call.arguments)
         source, file = self._open_subprogram(path)

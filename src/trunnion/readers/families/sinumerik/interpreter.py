@@ -28,6 +28,7 @@ from trunnion.readers.families.sinumerik.expressions import ExpressionError, Exp
 from trunnion.readers.families.sinumerik.flow import ActiveProgram
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement, state_of_frame
 from trunnion.readers.families.sinumerik.polynomials import move_along_polynomials
+from trunnion.readers.families.sinumerik.settings import settings_of
 from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenKind, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
@@ -56,6 +57,7 @@ from trunnion.readers.families.sinumerik.words import (
     WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT,
 )
+from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -92,7 +94,8 @@ class SinumerikInterpreter(CallInterpreter):
 
     def _main_program(self, source: SourceText) -> ActiveProgram:
         assert isinstance(source, SinumerikText)
-        return ActiveProgram(source, 0, variables=Variables())
+        declared = DeclaredVariables(settings_of(self._machine).variables, self._note)
+        return ActiveProgram(source, 0, variables=Variables(declared))
 
     def _may_scan(self, source: SourceText) -> bool:
         control = self.control

@@ -1,14 +1,20 @@
 """How a Sinumerik is set: the table ``[control.reading]`` of its definition."""
 
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
 from trunnion.machines import Machine
+from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of
 
 #: Whether the length of the edge in force counts in positions of the machine (G53, G153, SUPA).
 WITH_LENGTH: Final = "with_length"
 WITHOUT_LENGTH: Final = "without_length"
+
+#: R parameters, variables of the control (GUD) and system variables, in capitals, with their index.
+_VARIABLE: Final = re.compile(r"R(?:0|[1-9][0-9]{0,4})|\$?[A-Z_][A-Z0-9_]+(?:\[[0-9]{1,5}(?:,[0-9]{1,5})*\])?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,10 +23,12 @@ class Settings:
 
     cycles_along_tool  cycles turn the frame along the tool while TCP is on
     machine_positions  ``WITH_LENGTH`` or ``WITHOUT_LENGTH``; empty: the definition does not say
+    variables          values of variables that the control has when a program starts
     """
 
     cycles_along_tool: bool = False
     machine_positions: str = ""
+    variables: Mapping[str, float] = field(default_factory=dict)
 
 
 def settings_of(machine: Machine) -> Settings:
@@ -29,6 +37,7 @@ def settings_of(machine: Machine) -> Settings:
     settings = Settings(
         cycles_along_tool=table.flag("cycles_along_tool", False),
         machine_positions=table.text("machine_positions", "", one_of=("", WITH_LENGTH, WITHOUT_LENGTH)),
+        variables=read_variables(table, _VARIABLE, "R100"),
     )
     table.report_unread_keys()
     table.raise_problems()

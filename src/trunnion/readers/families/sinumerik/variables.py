@@ -6,6 +6,7 @@ from typing import Final
 from trunnion.messages import Wording
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, Value, whole
 from trunnion.readers.families.sinumerik.words import CONSTANTS
+from trunnion.readers.program.declared_variables import NOTHING_DECLARED, DeclaredVariables
 
 #: The elements of a variable by index; () if it is no array.
 Elements = dict[tuple[int, ...], Value]
@@ -21,9 +22,11 @@ class Variables:
     """The variables of a running program or subprogram; R parameters and global variables are shared.
 
     arguments   of the call, for the PROC line
+    declared    the values that the definition declares
     """
 
-    def __init__(self, shared: "Variables | None" = None) -> None:
+    def __init__(self, declared: DeclaredVariables = NOTHING_DECLARED, shared: "Variables | None" = None) -> None:
+        self.declared = declared
         self._local: dict[str, Elements] = {}
         self._types: dict[str, str] = {}
         self._places: dict[str, tuple[int, int]] = {}
@@ -37,9 +40,11 @@ class Variables:
         self.arguments = arguments
 
     def parameter(self, number: int) -> float:
-        """Return an R parameter; an unset one is 0."""
+        """Return an R parameter; it keeps what earlier programs have written until this one sets it."""
         self._check_index(number)
-        return self._parameters.get(number, 0.0)
+        if number in self._parameters:
+            return self._parameters[number]
+        return self._declared_value(f"R{number}")
 
     def set_parameter(self, number: int, value: float) -> None:
         """Set an R parameter."""
@@ -101,9 +106,16 @@ class Variables:
             return "" if self._types[name] == "STRING" else 0.0
         if name in CONSTANTS and not index:
             return float(CONSTANTS[name])
+        place = f"[{','.join(map(str, index))}]" if index else ""
+        return self._declared_value(f"{name}{place}")
+
+    def _declared_value(self, name: str) -> float:
+        value = self.declared.get(name)
+        if value is not None:
+            return value
         if name.startswith("$"):
             raise ExpressionError(Wording("NC222", "system_variable", name=name))
-        raise ExpressionError(Wording("NC223", "no_value", name=name))
+        raise ExpressionError(Wording("NC223", "no_value_in_program", name=name))
 
     @staticmethod
     def _check_index(number: int) -> None:

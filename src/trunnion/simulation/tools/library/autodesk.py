@@ -40,10 +40,7 @@ _SAME: Final = 1e-3
 def read_autodesk(file: str, root: Mapping[str, Any]) -> ToolLibrary:
     """Return the tools of a library; ``root`` is what its JSON holds.
 
-    Raises
-    ------
-    InputError
-        If there is no list of tools in it, or an entry of it is none.
+    Raises ``InputError`` if there is no list of tools in it, or an entry of it is none.
     """
     library = JsonObject(root)
     entries = library.children("data", _MOST_TOOLS)

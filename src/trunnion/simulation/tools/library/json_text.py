@@ -21,10 +21,8 @@ class _JsonError(ValueError):
 def parse_json(file: str, data: bytes) -> object:
     """Return what a JSON text holds.
 
-    Raises
-    ------
-    InputError
-        If it is too long, no JSON or nests too deeply; if a number is not finite, or an object has a key twice.
+    Raises ``InputError`` if it is too long, no JSON or nests too deeply; if a number is not finite, or an object has a
+    key twice.
     """
     if len(data) > MAX_BYTES:
         raise InputError(Problem(file, 0, Wording("SIM172", "more_mb_tools", max_bytes=MAX_BYTES >> 20)))

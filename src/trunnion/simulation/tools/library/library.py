@@ -59,10 +59,7 @@ class ToolLibrary:
     def find(self, number: int | None = None, name: str = "") -> ToolShape | None:
         """Return the body of the tool of a number, or if there is none, of a name; None if there is none of both.
 
-        Raises
-        ------
-        InputError
-            If there are several, or one that has no body.
+        Raises ``InputError`` if there are several, or one that has no body.
         """
         for called, what in ((number, "number"), (name or None, "name")):
             if called is None:
@@ -93,10 +90,7 @@ class ToolLibrary:
     def tool(self, number: int | None = None, name: str = "") -> ToolShape:
         """Return the body of the tool of a number, or if there is none, of a name.
 
-        Raises
-        ------
-        InputError
-            If there is none, or several, or one that has no body.
+        Raises ``InputError`` if there is none, or several, or one that has no body.
         """
         found = self.find(number, name)
         if found is not None:

@@ -32,17 +32,10 @@ _WHAT: Final = "a tool library"
 def read_tools(path: str | Path, unit: str = "") -> ToolLibrary:
     """Read a tool library of any kind.
 
-    Parameters
-    ----------
-    path
-        The file. Its name tells TOML (``.toml``) and a tool table (``.tbl``), its content all others.
-    unit
-        ``mm`` or ``inch``: the unit of a tool table, which does not say it.
+    path  the file. Its name tells TOML (``.toml``) and a tool table (``.tbl``), its content all others
+    unit  ``mm`` or ``inch``: the unit of a tool table, which does not say it
 
-    Raises
-    ------
-    InputError
-        If it cannot be read; for TOML and tool tables, with every mistake in it and its line.
+    Raises ``InputError`` if it cannot be read; for TOML and tool tables, with every mistake in it and its line.
     """
     file = Path(path)
     if problem := unusable_file(file, _WHAT):

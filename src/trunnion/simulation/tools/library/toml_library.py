@@ -29,10 +29,7 @@ _PIECES: Final = ("shank", "holder")
 def read_toml_library(path: Path) -> ToolLibrary:
     """Read a tool library in TOML.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, with every mistake in it and its line.
+    Raises ``InputError`` if it cannot be read, with every mistake in it and its line.
     """
     return read_library_table(library_table(path), path)
 
@@ -40,10 +37,7 @@ def read_toml_library(path: Path) -> ToolLibrary:
 def library_table(path: Path) -> Table:
     """Return the table of a library and of all that it extends, unread.
 
-    Raises
-    ------
-    InputError
-        If a file is no TOML, or cannot be read.
+    Raises ``InputError`` if a file is no TOML, or cannot be read.
     """
     return load_table(path, files(__package__), kind="tool library")
 

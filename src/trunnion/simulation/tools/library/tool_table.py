@@ -20,19 +20,11 @@ _LETTERS: Final = frozenset("TPDXYZABCUVWIJQ")
 def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
     """Return the diameters of a tool table.
 
-    Parameters
-    ----------
-    file
-        For messages.
-    text
-        Of the table.
-    unit
-        mm to a unit of the table.
+    file  for messages
+    text  of the table
+    unit  mm to a unit of the table
 
-    Raises
-    ------
-    InputError
-        If it is no tool table, with every mistake and its line.
+    Raises ``InputError`` if it is no tool table, with every mistake and its line.
     """
     diameters: dict[int, float] = {}
     seen: set[int] = set()

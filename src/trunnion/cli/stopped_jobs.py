@@ -1,0 +1,50 @@
+"""Before a command reads or writes anything: what jobs that were stopped have left in its folders."""
+
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from trunnion.cli.results import tell_problem
+from trunnion.cli.wording import problem_line
+from trunnion.errors import TrunnionError
+from trunnion.files import settle_dead_jobs
+from trunnion.jobs.job import Given
+from trunnion.options.kinds import FileIn, FileOut
+from trunnion.options.option import Option
+
+
+def settle_stopped_jobs(given: Given) -> None:
+    """Finish or roll back what is found in the folders of a command, and say which."""
+    for problem in settle_dead_jobs(_folders(given)):
+        tell_problem(problem_line(problem))
+
+
+def _folders(given: Given) -> Iterator[Path]:
+    """Yield the folders of all files that a command is given, and of those that a project writes."""
+    for option in given.job.options:
+        if not isinstance(option.kind, FileIn | FileOut):
+            continue
+        value = given.values[option.name]
+        for name in value if isinstance(value, list) else [value]:
+            if isinstance(name, str) and name not in ("", "-") and "\0" not in name:
+                yield from _of_name(option, name)
+
+
+def _of_name(option: Option, name: str) -> Iterator[Path]:
+    path = Path(os.path.realpath(name))
+    if path.is_dir():
+        yield path
+        return
+    yield path.parent
+    if name.endswith(".toml") and "PROJECT" in option.value_name and path.is_file():
+        yield from _of_project(path)
+
+
+def _of_project(path: Path) -> Iterator[Path]:
+    from trunnion.jobs.project.file import load_project  # most commands are about none
+
+    with suppress(TrunnionError, OSError):
+        for setup in load_project(path).setups:
+            for file in (setup.output, *setup.papers.by_name().values()):
+                yield Path(os.path.realpath(file)).parent

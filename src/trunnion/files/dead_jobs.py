@@ -1,0 +1,97 @@
+"""What jobs have left that were stopped before they could tidy up: a power failure, ``kill -9``, a closed computer.
+
+In:     folders.
+Out:    each file in them that was on its way is the new one, with all others of its job, or as before; hidden folders
+        of jobs that nobody holds any more are gone; and what was done.
+"""
+
+import logging
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Final
+
+from trunnion.errors import Problem, Severity
+from trunnion.files.hidden_folders import hidden_folders_in, remove_folder
+from trunnion.files.journal import Outcome, read_journal
+from trunnion.files.locks import LOCK, FolderLock, hold
+from trunnion.messages import Wording
+
+_MOST_NAMED: Final = 5
+
+_log: Final = logging.getLogger(__name__)
+
+
+def settle_dead_jobs(folders: Iterable[Path]) -> list[Problem]:
+    """Finish or roll back what is found in folders, and say which; they need not exist."""
+    found: list[Problem] = []
+    for folder in dict.fromkeys(folders):
+        for hidden in hidden_folders_in(folder):
+            found += _settle(hidden)
+    return found
+
+
+def settle_and_log(folders: Iterable[Path]) -> None:
+    """Settle as above where nobody prints problems: they go to the log."""
+    for problem in settle_dead_jobs(folders):
+        _log.warning("%s", problem)
+
+
+def remove_temporary_folders() -> None:
+    """Remove the folders of dead jobs that wrote into streams."""
+    for hidden in hidden_folders_in(Path(tempfile.gettempdir())):
+        if hidden.name.startswith("trunnion-") and (lock := hold(hidden)) is not None:
+            lock.release()
+            remove_folder(hidden)
+
+
+def _settle(hidden: Path) -> list[Problem]:
+    """Settle the job of a hidden folder, if it is dead."""
+    lock = hold(hidden)
+    if lock is None:
+        return []
+    locks = [lock]
+    try:
+        return _settle_held(hidden, locks)
+    except (OSError, ValueError) as error:
+        what = Wording("FIL290", "not_settled", name=hidden.name, error=error)
+        return [Problem(str(hidden.parent), 0, what, severity=Severity.WARNING)]
+    finally:
+        for each in locks:
+            each.release()
+
+
+def _settle_held(hidden: Path, locks: list[FolderLock]) -> list[Problem]:
+    """Settle a job of which this process holds a folder, and add the locks of its other folders."""
+    journal = read_journal(hidden)
+    folders = [hidden, *(folder for folder in journal.folders if folder != hidden)] if journal else [hidden]
+    for folder in folders[1:]:
+        if (lock := hold(folder)) is None:
+            if (folder / LOCK).exists():
+                return []  # another command is at it
+        else:
+            locks.append(lock)
+    outcome = None if journal is None else journal.settle()
+    for lock in locks:
+        lock.release()
+    for folder in folders:
+        remove_folder(folder)
+    return _told(hidden.parent, outcome)
+
+
+def _told(folder: Path, outcome: Outcome | None) -> list[Problem]:
+    """Return what is said of a job."""
+    if outcome is None:
+        return [Problem(str(folder), 0, Wording("FIL290", "removed"), severity=Severity.WARNING)]
+    names = _names(outcome.files)
+    told = [Wording("FIL290", "finished" if outcome.finished else "rolled_back", names=names)]
+    if outcome.changed:
+        told.append(Wording("FIL290", "changed_since", names=_names(outcome.changed)))
+    return [Problem(str(folder), 0, each, severity=Severity.WARNING) for each in told]
+
+
+def _names(files: Iterable[Path]) -> str:
+    """Return the names of the first files, and how many more there are."""
+    names = [file.name for file in files]
+    more = [f"{len(names) - _MOST_NAMED} more"] if len(names) > _MOST_NAMED else []
+    return ", ".join([*names[:_MOST_NAMED], *more])

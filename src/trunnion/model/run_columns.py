@@ -1,0 +1,63 @@
+"""Columns of a run that have no row for each motion: modal values by their changes, and surface normals."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints, make_read_only
+from trunnion.model.columns import StepColumn
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceNormals:
+    """Surface normals that blocks program: ``row`` (k,), ascending, and ``vector`` (k, 3) in the workpiece frame.
+
+    The vectors keep the length that they have in the program.
+    """
+
+    row: Ints
+    vector: Floats
+
+    def __post_init__(self) -> None:
+        make_read_only(self.row, self.vector)
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @staticmethod
+    def empty() -> "SurfaceNormals":
+        """Return a table without normals."""
+        return SurfaceNormals(np.zeros(0, np.int64), np.zeros((0, 3)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModalState:
+    """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
+
+    xyz_is_tip  ``Run.xyz`` is the tool tip, not the positions of the linear axes
+    plane       the row of ``Run.planes`` in whose coordinates words are; -1: in none of them
+    compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
+    radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
+    machine_steps  in coordinates of the machine: bits of the linear axes that a block moves from where they are (G91)
+    feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
+    """
+
+    file: StepColumn
+    feed: StepColumn
+    feed_mode: StepColumn
+    rpm: StepColumn
+    spindle: StepColumn
+    tool: StepColumn
+    edge: StepColumn
+    compensation: StepColumn
+    radius: StepColumn
+    compensation_plane: StepColumn
+    work_offset: StepColumn
+    tcp: StepColumn
+    machine_frame: StepColumn
+    machine_steps: StepColumn
+    inches: StepColumn
+    orientation: StepColumn
+    xyz_is_tip: StepColumn
+    plane: StepColumn
+    feed_path: StepColumn

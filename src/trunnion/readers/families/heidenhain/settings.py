@@ -1,0 +1,20 @@
+"""How a TNC is set: the table ``[control.reading]`` of its definition."""
+
+import re
+from typing import Final
+
+from trunnion.machines import Machine
+from trunnion.readers.program.declared_variables import read_variables
+from trunnion.readers.program.settings import reading_of
+
+#: Parameters that all programs share.
+_VARIABLE: Final = re.compile(r"QR?(?:0|[1-9][0-9]{0,3})")
+
+
+def variables_of(machine: Machine) -> dict[str, float]:
+    """Return the values of parameters that a machine's control has when a program starts; InputError if wrong."""
+    table = reading_of(machine)
+    variables = read_variables(table, _VARIABLE, "Q1600")
+    table.report_unread_keys()
+    table.raise_problems()
+    return variables
