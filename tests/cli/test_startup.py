@@ -18,16 +18,17 @@ FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(
 
 def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> None:
     script = (
-        "import sys\nfrom trunnion.cli.parser import parse\n"
+        "import sys\nfrom trunnion.cli.command_line.parser import parse\n"
         "parse(['post', 'a.cls', '--machine', 'yl569'])\n"
         "print(*(name for name in sys.modules if name in ('numpy', 'numba') or name.startswith('trunnion.')))"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert set(done.stdout.split()) == {
         "trunnion.cli",
-        "trunnion.cli.help_texts",
-        "trunnion.cli.parser",
-        "trunnion.cli.post_mistakes",
+        "trunnion.cli.command_line",
+        "trunnion.cli.command_line.help_texts",
+        "trunnion.cli.command_line.parser",
+        "trunnion.cli.command_line.post_mistakes",
         "trunnion.cli.process",
         "trunnion.cli.terminal_text",
         "trunnion.dialect_names",
@@ -49,6 +50,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.options.limits",
         "trunnion.options.option",
         "trunnion.options.words",
+        "trunnion.version",
         "trunnion.wording",
     }
 

@@ -7,7 +7,7 @@ import pytest
 
 from tests.support.locations import DOCS, YL569
 from trunnion.cli import main
-from trunnion.cli.parser import parse
+from trunnion.cli.command_line.parser import parse
 from trunnion.controls.loading import shipped_controls
 
 PROGRAM = str(YL569 / "2_hub_rough.expected.mpf")

@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.projects import OUT_OF_REACH, PROJECT, TWO, contents, operation, project
 from trunnion.cli import main
-from trunnion.cli.parser import parse
+from trunnion.cli.command_line.parser import parse
 from trunnion.cli.process import Ended
 from trunnion.cli.watch import follow
 from trunnion.jobs.post_project.posting import ProjectResult, post_into

@@ -24,7 +24,7 @@ def data_of(verification: Verification, folder: Path) -> Any:
 
 def test_the_data_hold_what_the_page_says(tmp_path: Path) -> None:
     said = data_of(blade(), tmp_path)
-    assert (said["schema"], said["passed"], said["program"]) == (1, False, "3_blade_finish.mpf")
+    assert (said["schema"], said["passed"], said["program"]) == (2, False, "3_blade_finish.mpf")
     assert said["machine"] == {"key": "yl569", "name": "Yalong YL569"}
     assert said["motions"] == 154
     assert [check["key"] for check in said["checks"]] == [check.key for check in CHECKS]

@@ -2,13 +2,13 @@
 
 import re
 
-_PASSED = re.compile(r"^[a-z]+ +ok +.*\n", re.MULTILINE)
+_PASSED = re.compile(r"^(?:[a-z]+ +(?:ok|not checked) +|Passed: ).*\n", re.MULTILINE)
 _UNSTATED = re.compile(r"^\w+: warning: (?:travel|home) of [XYZABC, ]+ is not stated: .*\n", re.MULTILINE)
 _OF_BUILDER = re.compile(r"^.* belongs to the machine: what it does is not known; .*\n", re.MULTILINE)
 
 
 def unproven(err: str) -> str:
-    """The stderr of ``trunnion post`` without the lines of passed checks, of which there must be some.
+    """The stderr of ``trunnion post`` without the lines of checks that found nothing, of which there must be some.
 
     Warnings about what the machine's definition leaves open, or does not declare, are left out too.
     """

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from tests.support.locations import GOLDEN
-from trunnion.cli.parser import parse
+from trunnion.cli.command_line.parser import parse
 from trunnion.jobs.job import Job
 from trunnion.jobs.registry import JOBS
 from trunnion.options.kinds import Choice, FileIn, FileOut, Setting, Switch, Text

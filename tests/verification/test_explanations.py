@@ -18,7 +18,7 @@ def key_places(tree: ast.Module) -> dict[str, int]:
         node.name: [argument.arg for argument in node.args.args].index("key")
         for node in ast.walk(tree)
         if isinstance(node, ast.FunctionDef) and isinstance(node.returns, ast.Name) and node.returns.id == "Check"
-        if "key" in [argument.arg for argument in node.args.args]
+        if "key" in (names := [argument.arg for argument in node.args.args]) and "self" not in names
     }
 
 
@@ -38,10 +38,16 @@ def stated(tree: ast.Module) -> Iterator[str]:
     }
     places = SHARED | key_places(tree)
     for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(".check") and len(node.args) == 3:
+            # A collector makes it: ``Faults.check``.
+            key = node.args[0]
+            found = key.value if isinstance(key, ast.Constant) else constants.get(ast.unparse(key))
+            if isinstance(found, str):
+                yield found
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in places:
             key = node.args[places[node.func.id]]
             found = key.value if isinstance(key, ast.Constant) else constants.get(ast.unparse(key))
-            assert isinstance(found, str) or ast.unparse(key) == "key", ast.unparse(node)
+            assert isinstance(found, str) or ast.unparse(key) in ("key", "self.key"), ast.unparse(node)
             if isinstance(found, str):
                 yield found
 

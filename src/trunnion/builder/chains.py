@@ -40,19 +40,11 @@ _SLIDES: Final = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.
 def chain_text(chain: str, name: str, control: str) -> str:
     """Return a whole definition with an order of axes; what only the machine can tell is left out or marked.
 
-    Parameters
-    ----------
-    chain
-        A name of ``CHAINS``.
-    name
-        Of the machine.
-    control
-        A shipped control.
+    chain    a name of ``CHAINS``
+    name     of the machine
+    control  a shipped control
 
-    Raises
-    ------
-    InputError
-        If there is no such chain.
+    Raises ``InputError`` if there is no such chain.
     """
     if chain not in CHAINS:
         near = meant_word(chain, CHAINS)

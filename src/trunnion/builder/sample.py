@@ -15,6 +15,7 @@ from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.post.result import ProofFailedError
 from trunnion.machines import Machine
+from trunnion.results import to_data
 from trunnion.verification import Check
 
 #: So many lines are shown; the proof is always that of the whole program.
@@ -46,29 +47,20 @@ def shipped_sample() -> bytes:
 def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[str]) -> dict[str, Any]:
     """Post and prove a CL file, and mark what differs from an earlier program.
 
-    Parameters
-    ----------
-    machine
-        The machine.
-    cl
-        The CL file; None: the shipped one.
-    name
-        Of the CL file, for messages.
-    before
-        Lines of the earlier program; none: nothing is marked.
+    machine  the machine
+    cl       the CL file; None: the shipped one
+    name     of the CL file, for messages
+    before   lines of the earlier program; none: nothing is marked
 
-    Returns
-    -------
-    dict
-        ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
-        and ``problems``; ``passed``.
+    dict  ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
+          and ``problems``; ``passed``
     """
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
     except ProofFailedError as error:
-        return _without_program(error.result.problems, error.result.checks)
+        return without_program(error.result.problems, error.result.checks)
     except TrunnionError as error:
-        return _without_program(error.problems, ())
+        return without_program(error.problems, ())
     lines = (result.text or "").splitlines()
     changed, removed = _changes(before, lines)
     return {
@@ -79,18 +71,26 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
         "checks": list(map(_check, result.checks)),
         "problems": [_problem(each) for each in result.problems],
         "passed": result.passed,
+        "standing": result.standing and to_data(result.standing),
     }
 
 
+<<<<<<< HEAD
 def _without_program(problems: Sequence[Problem], checks: Sequence[Check]) -> dict[str, Any]:
     """Return the answer for a CL file that cannot be posted, or whose program fails its proof."""
     told = [_problem(each) for each in problems if each.code != _NOTHING_WRITTEN]
+=======
+def without_program(problems: Sequence[Problem] = (), checks: Sequence[Check] = ()) -> dict[str, Any]:
+    """Return the answer where there is no program: the CL file cannot be posted, or it fails its proof."""
+    told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
+>>>>>>> main
     shown = list(map(_check, checks))
-    return {"lines": [], "changed": [], "removed": 0, "checks": shown, "problems": told, "passed": False, "all": 0}
+    none = {"lines": [], "changed": [], "removed": 0, "all": 0, "standing": None}
+    return {**none, "checks": shown, "problems": told, "passed": False}
 
 
 def _check(check: Check) -> dict[str, Any]:
-    return {"key": check.key, "passed": check.passed, "summary": check.summary}
+    return {"key": check.key, "state": check.state, "summary": check.told}
 
 
 def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]:

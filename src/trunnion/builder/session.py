@@ -25,7 +25,7 @@ from trunnion.builder.document import (
     without_value,
 )
 from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
-from trunnion.builder.sample import sample_data
+from trunnion.builder.sample import sample_data, without_program
 from trunnion.builder.saved_file import check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
 from trunnion.definitions.value_marks import without_mark
@@ -56,17 +56,11 @@ class BuilderSession:
     def start(self, file: str = "") -> dict[str, Any]:
         """Return what the page begins with: the text of the file, and what a new definition can start from.
 
-        Parameters
-        ----------
-        file
-            Name of another file of the folder, which a page has saved; empty: the one that was opened.
+        file  name of another file of the folder, which a page has saved; empty: the one that was opened
 
-        Raises
-        ------
-        InputError
-            If the file cannot be read.
-        RequestError
-            If no file of the folder has such a name.
+        Raises ``InputError`` if the file cannot be read.
+
+        Raises ``RequestError`` if no file of the folder has such a name.
         """
         name = file or self.name
         text = ""
@@ -86,10 +80,7 @@ class BuilderSession:
     def answer(self, what: str, given: Mapping[str, Any]) -> dict[str, Any] | None:
         """Answer a request; None: there is no such request.
 
-        Raises
-        ------
-        RequestError
-            If it is not made as the page makes it.
+        Raises ``RequestError`` if it is not made as the page makes it.
         """
         match what:
             case "begin":
@@ -163,7 +154,7 @@ class BuilderSession:
         if not isinstance(before, list) or not all(isinstance(line, str) for line in before):
             raise RequestError
         if draft.machine is None or draft.problems:
-            return {"lines": [], "changed": [], "removed": 0, "checks": [], "problems": [], "passed": False, "all": 0}
+            return without_program()
         return sample_data(draft.machine, _cl(given.get("cl")), _text(given, "clName")[:200], before)
 
     def _save(self, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def _show_log() -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    from trunnion.cli.parser import parse
+    from trunnion.cli.command_line.parser import parse
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # Windows consoles and pipes are not UTF-8 by default

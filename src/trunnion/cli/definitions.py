@@ -2,12 +2,10 @@
 
 from collections.abc import Sequence
 from pathlib import Path, PurePath
-from typing import Final
+from typing import Any, Final
 
 from trunnion.cli.controls import control_lines
-from trunnion.cli.data import plain_data
-from trunnion.cli.machine_list import machine_list
-from trunnion.cli.machine_text import machine_data, machine_lines
+from trunnion.cli.machine_text import machine_data, machine_lines, machine_list
 from trunnion.cli.results import print_result, show
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
@@ -15,6 +13,7 @@ from trunnion.controls.loading import shipped_controls, with_control
 from trunnion.definitions import load_table
 from trunnion.definitions.messages import meant_word
 from trunnion.definitions.resolved import resolved_text
+from trunnion.definitions.source_lines import LocatedValue
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.describe.controls import describe_control
 from trunnion.jobs.describe.definition_checks import all_problems, machine_problems, stand_in
@@ -39,7 +38,7 @@ def machines(given: Given) -> int:
     if given.name and given.json is not None:
         load_machine(given.name)
         definition = with_control(load_table(given.name, machine_library(), kind="machine"))
-        show(given, lambda: plain_data(definition), [resolved_text(definition)])
+        show(given, lambda: _plain_data(definition), [resolved_text(definition)])
         return 0
     if given.resolved:
         load_machine(given.name)
@@ -99,6 +98,7 @@ def _check_is_known(name: str) -> None:
     known = [*shipped_machines(), *shipped_controls()]
     if name in known or name.endswith(".toml") or Path(name).exists():
         return
+<<<<<<< HEAD
     near = meant_word(name, known)
     raise InputError(
         Problem(
@@ -109,3 +109,19 @@ def _check_is_known(name: str) -> None:
             else Wording("DEF110", "nothing_shipped", known=tuple(known)),
         )
     )
+=======
+    near = did_you_mean(name, known)
+    cure = f"{near} " if near else ""
+    cure += f"write the path of a .toml file, or one of {', '.join(known)}"
+    raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure, code="DEF110"))
+
+
+def _plain_data(located: LocatedValue) -> Any:
+    """Return the values of a definition, without their places."""
+    value = located.value
+    if isinstance(value, dict):
+        return {key: _plain_data(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_plain_data(each) if isinstance(each, LocatedValue) else each for each in value]
+    return value
+>>>>>>> main

@@ -1,13 +1,15 @@
-"""What a machine's definition means, as text and as data for ``trunnion check``."""
+"""What a machine's definition means, as text and as data for ``trunnion check``; and all of them, a line each."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from trunnion.cli.wording import in_command_words
+from trunnion.controls import load_control
 from trunnion.jobs.describe.machines import MachineDescription
 from trunnion.machines import Axis, Machine
 from trunnion.machines.jog_table import AxisJog, JogTable, RotaryPose, named_direction, number_text
-from trunnion.machines.machine import Vector
+from trunnion.machines.machine import Mount, Vector
 from trunnion.results import to_data
 
 _LEGEND: Final = (
@@ -15,6 +17,8 @@ _LEGEND: Final = (
     "the head what carries the tool. With Z up and -Y towards the operator what goes to +Z rises, and -Y is the front.",
     'An axis that goes the other way at the machine wants positive = "reversed" (a rotary one), or another direction.',
 )
+
+_PART: Final = {Mount.PART: "table", Mount.TOOL: "head"}
 
 
 def machine_lines(found: MachineDescription) -> Iterator[str]:
@@ -121,3 +125,38 @@ def _values(pose: RotaryPose) -> str:
 
 def _point(vector: Vector) -> str:
     return f"({', '.join(number_text(part, 3) for part in vector)})"
+
+
+def machine_list(machines: Sequence[Machine]) -> Iterator[str]:
+    """Key, where the rotary axes are, what all axes reach, control and name, in columns."""
+    rows = [_cells(machine) for machine in machines]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        yield "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+
+
+def _cells(machine: Machine) -> tuple[str, ...]:
+    rotary = [axis for axis in machine.axes if axis.is_rotary]
+    slides = [axis for axis in machine.axes if not axis.is_rotary]
+    # As they are spoken of: from the tool to the workpiece where both are told.
+    kind = "/".join(_PART[axis.mount] for axis in reversed(rotary))
+    return (
+        machine.key,
+        kind,
+        ", ".join(_turn_text(axis) for axis in reversed(rotary)),
+        _slide_travel(sorted(slides, key=lambda each: each.name)),
+        load_control(machine.control.unread_copy()).name,
+        machine.name,
+    )
+
+
+def _turn_text(axis: Axis) -> str:
+    if axis.endless:
+        return f"{axis.name} endless"
+    return f"{axis.name} {axis.low:g} to {axis.high:g}°" if math.isfinite(axis.high - axis.low) else axis.name
+
+
+def _slide_travel(slides: Sequence[Axis]) -> str:
+    stated = [axis for axis in slides if math.isfinite(axis.high - axis.low)]
+    told = ", ".join(f"{axis.name} {axis.high - axis.low:g}" for axis in stated)
+    return f"{told} mm" if stated else "travel not stated"

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Final
 
 from trunnion.arrays import Floats
 from trunnion.cli.cl_reading import as_read
-from trunnion.cli.place_bodies import body_lines, gain_text, touch_line
 from trunnion.cli.results import print_result, show, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
@@ -19,7 +18,7 @@ from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
 from trunnion.messages import Wording
 from trunnion.model.clamping import are_one_angle, number
-from trunnion.placing.placement import AxisUse, Limit, PartPlace, Placement, RotaryUse, TurnMargin
+from trunnion.placing.placement import AxisUse, BodyDistance, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
 from trunnion.placing.table_limits import KEPT
 from trunnion.wording import counted, format_duration
@@ -32,6 +31,9 @@ _FREE_STEP: Final = 15.0
 
 #: Turns out of reach that are told one by one.
 _MOST: Final = 3
+
+#: What differs by less is printed as the same, mm.
+_SAME: Final = 0.0005
 
 
 def run(given: Given) -> int:
@@ -63,6 +65,7 @@ def run(given: Given) -> int:
         tool_length=length,
         settings=settings,
         subprograms=given.subprograms,
+        hooks=given.hooks,
         fixtures=given.fixtures or stated.fixtures,
         part=given.part or stated.part,
         stock=given.stock or stated.stock,
@@ -81,7 +84,13 @@ def run(given: Given) -> int:
         settings = settings if length is None else {**settings, "tool_length": length}
         output = output_place(given.apply)
         posted = post_placed(
-            found, machine=machine, output=output, settings=settings, sheet=given.sheet, observer=Terminal()
+            found,
+            machine=machine,
+            output=output,
+            settings=settings,
+            sheet=given.sheet,
+            hooks=given.hooks,
+            observer=Terminal(),
         )
         use = None if posted.run is None else other_positions(found, posted.run)
         if use is not None:
@@ -119,7 +128,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
         for turn in sorted(found.turns, key=lambda each: abs(each.tilt_deg))[:_MOST]:
             yield f"  {_clamped(turn)}: {turn.obstacle}"
         return
-    if (touching := touch_line(found)) is not None:
+    if (touching := _touch_line(found)) is not None:
         yield touching
         yield f"  the place with the largest margin is {_point(best)}, {_clamped(best)}"
     elif not best.fits:
@@ -135,7 +144,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
     for rotary in best.rotary:
         yield f"  {_rotary_use(rotary)}"
     yield from (f"  {line}" for line in _table(found, best))
-    yield from (f"  {line}" for line in body_lines(found))
+    yield from (f"  {line}" for line in _body_lines(found))
     if found.limits:
         what = _held(found, best)
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
@@ -143,7 +152,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
         state += _beyond_table(present)
-        gained = "" if found.goal != "margin" else f"; the best place{_where(best)} has {gain_text(gain)}"
+        gained = "" if found.goal != "margin" else f"; the best place{_where(best)} has {_gain_text(gain)}"
         yield f"  present zero {_point(present)}{_where(best, present)}: {state}{gained}"
     if found.goal not in ("margin", "collisions") and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
@@ -314,3 +323,44 @@ def _limit(limit: Limit) -> str:
             else f"the table's edge at {edge} {limit.limit_mm:g}"
         )
     return f"{limit.axis} at {limit.limit_mm:g} ({limit.file}:{limit.line})"
+
+
+def _body_lines(found: Placement) -> Iterator[str]:
+    """How far bodies are apart at the best place, at the present one, and wherever the part sits."""
+    best, present = found.best, found.present
+    if best is not None and best.nearest is not None:
+        now = "" if present is None or present.nearest is None else f"; at the present zero {_apart(present.nearest)}"
+        yield f"nearest to each other: {_apart(best.nearest)}{now}{_gain(found)}"
+    if found.most_distance_mm is not None and not found.touching:
+        yield f"no place at the turns that were tried keeps bodies farther apart than {found.most_distance_mm:.3f} mm"
+    if found.nearest_anywhere is not None:
+        yield f"wherever the part sits: {_apart(found.nearest_anywhere)}"
+
+
+def _touch_line(found: Placement) -> str | None:
+    """Return what is said first where bodies touch everywhere; None where they do not."""
+    if found.goal != "collisions" or found.touching is None:
+        return None
+    return f"{found.machine}: bodies touch wherever the part sits: {_apart(found.touching)}"
+
+
+def _apart(nearest: BodyDistance) -> str:
+    """Two bodies in words."""
+    one, other = nearest.between
+    apart = "touch" if nearest.touches else f"are {nearest.distance_mm:.3f} mm apart"
+    return f"{one} and {other} {apart} ({nearest.file}:{nearest.line})"
+
+
+def _gain(found: Placement) -> str:
+    """How much farther apart bodies are at the best place than at the present one."""
+    best, present = found.best, found.present
+    if best is None or present is None or best.nearest is None or present.nearest is None:
+        return ""
+    return f"; the best place has {_gain_text(best.nearest.distance_mm - present.nearest.distance_mm)}"
+
+
+def _gain_text(gain: float) -> str:
+    """How much more the best place has than the present one, mm."""
+    if abs(gain) < _SAME:
+        return "the same"
+    return f"{abs(gain):.3f} mm {'more' if gain > 0.0 else 'less'}"

@@ -76,7 +76,7 @@ def post(
         if observer is None:
             print_summary(target, result)
     if given.json is not None and observer is None:
-        show(given, lambda: {"schema": 1, "programs": results}, ())
+        show(given, lambda: {"schema": 2, "programs": results}, ())
     return 0 if all(result.passed for result in results) else 1
 
 

@@ -31,7 +31,7 @@ def run(given: Given) -> int:
         )
     _print_files(result)
     if given.json is not None:
-        show(given, lambda: {"schema": 1, "programs": result.results}, ())
+        show(given, lambda: {"schema": 2, "programs": result.results}, ())
     return 0
 
 

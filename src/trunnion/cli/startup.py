@@ -1,7 +1,7 @@
 """``trunnion post``: CL files, a project, or either of them again and again."""
 
+from trunnion.cli.command_line.post_mistakes import names_project
 from trunnion.cli.post_files import post_files
-from trunnion.cli.post_mistakes import names_project
 from trunnion.jobs.job import Given
 
 

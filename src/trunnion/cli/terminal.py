@@ -51,7 +51,7 @@ class Terminal(Observer):
     def verified(self, verification: Verification) -> None:
         """Print one line a check, the places of failed checks, and times."""
         places = place_lines(verification, failed_only=True)
-        tell(*check_lines(verification), *places, *time_lines(verification))
+        tell(*check_lines(verification), *places, *time_lines(verification), verification.standing.told)
         if not self._explained and _exceeds_rotary_speed(verification):
             what = "a rotary axis cannot follow the feed everywhere; --explain says where, and what helps"
             tell(f"{verification.program}: {what}")

@@ -1,8 +1,9 @@
 """``trunnion verify``: an NC program, read back by an independent reader, run, and compared with its CL files."""
 
-from typing import Final
+import io
+import json
+from typing import Any, Final
 
-from trunnion.cli.data import report_data
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
@@ -10,7 +11,7 @@ from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
 from trunnion.jobs.post.papers.manifests import verify_manifest
-from trunnion.jobs.verify.reports import write_report
+from trunnion.jobs.verify.reports import add_report, write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.messages import Wording
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
@@ -36,8 +37,10 @@ def run(given: Given) -> int:
     )
     if hint := _control_hint(verification):
         tell(hint)
-    lines = (*check_lines(verification), *place_lines(verification), *time_lines(verification))
-    show(given, lambda: report_data(verification), lines)
+    lines = (
+        *check_lines(verification), *place_lines(verification), *time_lines(verification), verification.standing.told,
+    )  # fmt: skip
+    show(given, lambda: _report_data(verification), lines)
     if given.report is not None:
         write_report(verification, given.report)
     return 0 if verification.passed else 1
@@ -74,3 +77,10 @@ def _control_hint(verification: Verification) -> str:
         f"{verification.program}: is this a {control} program? {counted(errors, 'line')} of it not understood;"
         f" --machine names the machine that runs it, and {machine.key} has this control"
     )
+
+
+def _report_data(verification: Verification) -> Any:
+    """Return what a report of the verification has, as data (docs/report.md)."""
+    sink = io.BytesIO()
+    add_report(verification, sink, "report.json", ())
+    return json.loads(sink.getvalue())

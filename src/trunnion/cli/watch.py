@@ -6,9 +6,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Protocol
 
+from trunnion.cli.command_line.post_mistakes import names_project
 from trunnion.cli.post import files_by_target, simulation_of
 from trunnion.cli.post_files import post_files
-from trunnion.cli.post_mistakes import names_project
 from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of

@@ -17,7 +17,8 @@ from trunnion.arrays import Floats, Ints
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
 from trunnion.messages import Wording
-from trunnion.model.run import Run, SpindleHole, SpindleTask
+from trunnion.model.run import Run
+from trunnion.model.spindle_work import SpindleHole, SpindleTask
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, Kind, Sense, SpindleOff, SpindleOn
 
 #: A tool within this distance of the axis of a hole, mm, is on it; heights within it are the same.

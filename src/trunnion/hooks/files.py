@@ -43,10 +43,7 @@ class HookFile:
 def load_hooks(paths: Iterable[Path]) -> tuple[HookFile, ...]:
     """Run files of hooks, in their order.
 
-    Raises
-    ------
-    InputError
-        If a file is none, fails, or has no hooks, at its line.
+    Raises ``InputError`` if a file is none, fails, or has no hooks, at its line.
     """
     return tuple(_load(path) for path in paths)
 

@@ -133,6 +133,7 @@ class DiffArguments(TypedDict, total=False):
 class SimulateArguments(BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, total=False):
     """Arguments of ``trunnion.simulate``."""
 
+    hooks: Sequence[FilePath]
     machine: MachineLike | None
     cl: ToolpathLike | Iterable[ToolpathLike]
     subprograms: Sequence[FilePath]
@@ -144,6 +145,7 @@ class SimulateArguments(BodyArguments, CuttingArguments, SetUpArguments, Clampin
 class PlaceArguments(BodyArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.place``."""
 
+    hooks: Sequence[FilePath]
     units: Literal["mm", "inch"] | None
     dialect: str | None
     goal: str
@@ -153,9 +155,19 @@ class PlaceArguments(BodyArguments, SetUpArguments, total=False):
     subprograms: Sequence[FilePath]
 
 
+class PlacedArguments(TypedDict, total=False):
+    """Arguments of ``trunnion.post_placed``."""
+
+    output: OutputLike
+    settings: Settings | None
+    sheet: FilePath | None
+    hooks: Sequence[FilePath]
+
+
 class ReachArguments(SetUpArguments, total=False):
     """Arguments of ``trunnion.reach``."""
 
+    hooks: Sequence[FilePath]
     cl: ToolpathLike | Iterable[ToolpathLike]
     part: FilePath | None
     lean: float
@@ -165,6 +177,7 @@ class ReachArguments(SetUpArguments, total=False):
 class FitArguments(SetUpArguments, total=False):
     """Arguments of ``trunnion.fit``."""
 
+    hooks: Sequence[FilePath]
     machines: str | Iterable[MachineLike]
     machine: MachineLike | None
     subprograms: Sequence[FilePath]
@@ -183,6 +196,7 @@ class SensitivityArguments(SetUpArguments, total=False):
 class ViewArguments(BodyArguments, CuttingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.write_view``."""
 
+    hooks: Sequence[FilePath]
     machine: MachineLike | None
     against: FilePath | Sequence[FilePath] | None
     against_machine: MachineLike | None

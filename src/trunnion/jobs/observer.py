@@ -47,6 +47,35 @@ class Observer:
         return nullcontext(_ignore)
 
 
+class Remembering(Observer):
+    """Hands on what it hears to another one, and keeps the problems."""
+
+    def __init__(self, other: Observer) -> None:
+        self._other = other
+        self.found: list[Problem] = []
+
+    def setup(self, name: str) -> None:
+        """Hand on whose set-up comes next."""
+        self._other.setup(name)
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """Keep problems, and hand them on."""
+        self.found += problems
+        self._other.problems(problems)
+
+    def planned(self, plan: Plan) -> None:
+        """Hand on a plan."""
+        self._other.planned(plan)
+
+    def verified(self, verification: Verification) -> None:
+        """Hand on a verification."""
+        self._other.verified(verification)
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        """Hand on progress."""
+        return self._other.progress(stage, total, unit)
+
+
 def _ignore(more: int) -> None:
     """Receive progress and do nothing."""
 

@@ -14,8 +14,13 @@ from typing import Final, NamedTuple
 from trunnion.definitions import Table, definition_names, load_table
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.definitions.marked_values import marked_in
+<<<<<<< HEAD
 from trunnion.definitions.messages import meant_word
 from trunnion.definitions.value_marks import MARKS
+=======
+from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.value_marks import ASSUMED, MARKS
+>>>>>>> main
 from trunnion.errors import InputError, Problem
 from trunnion.machines.body_tables import read_bodies
 from trunnion.machines.chain_checks import check_chain
@@ -34,6 +39,9 @@ from trunnion.messages import Wording, phrase
 
 #: Version of the schema of machine definitions; a new one makes changes to old files necessary.
 SCHEMA: Final = 1
+
+#: What a definition may demand that a proof stands on.
+DEMANDS: Final = ("zero", "tool_length", "dynamics", "measured")
 
 _AXIS_NAME: Final = "[A-Za-z][A-Za-z0-9_]{0,7}"
 
@@ -113,6 +121,7 @@ def read_machine(table: Table, key: str) -> Machine:
     control = table.table("control")
     cl = table.table("cl")
     words = cl.table("words")
+    proof = table.table("proof")
     axis_tables = table.tables("axis", required=True)
     spindle_direction = _direction(spindle, "direction", (0.0, 0.0, 1.0))
     spindle_point = _vector(spindle.vector("gauge_point_mm", 3, (0.0, 0.0, 0.0)))
@@ -123,10 +132,11 @@ def read_machine(table: Table, key: str) -> Machine:
     axes = tuple(_axis(entry) for entry in axis_tables)
     if "axis" in table and axis_tables:
         check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
+    demands = _demands(proof)
     bodies = read_bodies(table, [axis.name for axis in axes])
     cl_words = {word: words.text(word) for word in words.names()}
     report_duplicates(words, statement_form)
-    for part in (spindle, workpiece, words, cl, table):
+    for part in (spindle, workpiece, words, cl, proof, table):
         part.report_unread_keys()
     table.raise_problems()
     return Machine(
@@ -145,7 +155,18 @@ def read_machine(table: Table, key: str) -> Machine:
         bodies=bodies,
         spindle_point_is_stated="gauge_point_mm" in spindle,
         unmeasured=tuple(map(str, marked_in(table.content, MARKS))),
+        assumed=tuple(map(str, marked_in(table.content, ASSUMED))),
+        demands=demands,
     )
+
+
+def _demands(proof: Table) -> tuple[str, ...]:
+    """Return what a proof must stand on."""
+    names = proof.texts("require", ())
+    for name in names:
+        if name not in DEMANDS:
+            proof.add_problem("require", Wording("DEF330", "no_basis", name=name, known=DEMANDS))
+    return tuple(name for name in DEMANDS if name in names)
 
 
 def _axis(entry: Table) -> Axis:

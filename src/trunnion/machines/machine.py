@@ -188,6 +188,8 @@ class Machine:
     bodies              the iron on its links, as the simulation sees it; nothing else looks at it
     spindle_point_is_stated  the definition states the gauge point; else it is assumed to be in the machine's zero
     unmeasured          values that the definition marks as still to be measured or entered, with their places
+    assumed             values that it marks as assumptions, with their places
+    demands             what a proof must stand on: ``zero``, ``tool_length``, ``dynamics``, ``measured``
     """
 
     key: str
@@ -206,6 +208,16 @@ class Machine:
     bodies: tuple[MachineBody, ...] = ()
     spindle_point_is_stated: bool = True
     unmeasured: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
+    demands: tuple[str, ...] = ()
+
+    @property
+    def nobody_measured(self) -> tuple[str, ...]:
+        """What counts although nobody has measured it: marked values of its motion, and what is assumed if unstated."""
+        bodies = tuple(f"{body.name} " for body in self.bodies)
+        marked = (value for value in (*self.unmeasured, *self.assumed) if not value.startswith(bodies))
+        homes = (f"home of {axis.name}" for axis in self.axes if not axis.home_is_stated)
+        return (*marked, *homes, *(() if self.spindle_point_is_stated else ("gauge point",)))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -9,10 +9,9 @@ Frame: the workpiece frame of the machine, whose origin is the zero set by the w
 tilted planes are already transformed into it.
 """
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields
-from enum import IntEnum, IntFlag, StrEnum
+from enum import IntEnum, IntFlag
 from functools import cached_property
 from typing import TypeVar
 
@@ -27,6 +26,7 @@ from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.run_columns import ModalState, SurfaceNormals
+from trunnion.model.spindle_work import SpindleHole
 from trunnion.model.splines import Splines
 from trunnion.model.toolpath import Arcs
 
@@ -113,51 +113,6 @@ class RunEvent:
     value: EventValue = None
     file: int = 0
     tcp: bool = False
-
-
-class SpindleTask(StrEnum):
-    """What the spindle does in a hole besides turning, by the words of ``CYCLE``."""
-
-    TAP = "TAP"
-    STOP = "BORE,DRAG"
-    LIFT = "BORE,NODRAG"
-    MANUAL = "BORE,MANUAL"
-
-
-@dataclass(frozen=True, slots=True)
-class SpindleWork:
-    """How a cycle drives the spindle: motions alone do not make such a hole.
-
-    pitch        of a thread, mm; NaN: it follows from feed and speed
-    hand         of a thread: 1 right, -1 left, 0 that of the spindle
-    rpm          0: the programmed speed
-    floating     the cycle is for a compensating chuck
-    stroke       a thread in strokes of this length, mm; 0: in one
-    full         between strokes the tool leaves the hole
-    clearance    from the surface of the hole up to where the feed begins, mm
-    after        sense in which the spindle turns after it: 1, -1, 0 for standing; None: as before
-    """
-
-    task: SpindleTask
-    pitch: float = math.nan
-    hand: int = 0
-    rpm: float = 0.0
-    floating: bool = False
-    stroke: float = 0.0
-    full: bool = False
-    clearance: float = 0.0
-    after: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class SpindleHole:
-    """A hole whose cycle drives the spindle: rows ``first`` to ``end`` (exclusive); ``file`` as in ``Run.file``."""
-
-    first: int
-    end: int
-    line: int
-    file: int
-    work: SpindleWork
 
 
 #: ``Run.work_offset`` where work offsets are suppressed and positions count from the machine's zero (G500).

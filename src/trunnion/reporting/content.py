@@ -28,6 +28,7 @@ from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
 from trunnion.results import Figure, OptionalText
+from trunnion.verification import Standing
 from trunnion.verification.results import Check, Place, Verification, durations, moving_seconds
 
 #: Units of a program by whether they are inches.
@@ -42,14 +43,14 @@ class ReportContent:
     does not: its lengths are mm.
     """
 
-    SCHEMA: ClassVar[int] = 1
+    SCHEMA: ClassVar[int] = 2
 
     program: str
     machine_key: Annotated[str, Figure("key", within="machine")]
     machine: Annotated[str, Figure("name", within="machine")]
     control: OptionalText
     made: OptionalText
-    passed: bool
+    standing: Annotated[Standing, Figure("passed", take=attrgetter("passed")), Figure(after="passed")]
     checks: tuple[Check, ...]
     motions: int
     seconds: Annotated[float, Figure(within="time")] = 0.0
@@ -92,7 +93,7 @@ def collect_content(
         machine=clean(machine.name),
         control=clean(control or _control_name(machine)),
         made=clean(made),
-        passed=verification.passed,
+        standing=verification.standing,
         checks=tuple(map(_clean_check, verification.checks)),
         motions=len(run),
         seconds=math.fsum(seconds),
@@ -132,7 +133,7 @@ def refused_content(machine: Machine, program: str, problems: Sequence[Problem])
         machine=clean(machine.name),
         control=clean(_control_name(machine)),
         made="",
-        passed=False,
+        standing=Standing(passed=False, ok=0, failed=1, not_checked=0, warnings=len(problems) - len(errors)),
         checks=(_clean_check(check),),
         motions=0,
     )
@@ -155,6 +156,7 @@ def _clean_check(check: Check) -> Check:
         title=clean(check.title),
         summary=clean(check.summary),
         unit=clean(check.unit),
+        missing=tuple(wording.changed(clean) for wording in check.missing),
         places=places,
     )
 

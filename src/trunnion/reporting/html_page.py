@@ -26,7 +26,7 @@ _ASSETS = files("trunnion.reporting")
 def render_page(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
     """Yield the page, piece by piece."""
     parts = [series] if content.recorded is None else [content.recorded.series, series]
-    verdict = "passed" if content.passed else "FAILED"
+    verdict = "passed" if content.standing.passed else "FAILED"
     yield from plot_page(
         f"{content.program}: {verdict}", page_body(content), parts, pictures=content.simulation is not None
     )

@@ -5,6 +5,7 @@ Out:    HTML, with all text from outside escaped.
 """
 
 from collections.abc import Sequence
+from typing import Final
 
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
@@ -19,11 +20,18 @@ from trunnion.reporting.html_text import (
 )
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
-from trunnion.verification.results import Check, Place
+from trunnion.verification.results import Check, Place, State
 from trunnion.wording import counted, format_duration
 
 #: Places that the page shows for each check; the JSON report has all of them.
 MAX_PLACES = 12
+
+#: The class of what shows a check of each state, and its word.
+_STATES: Final = {
+    State.OK: ("good", "✓ passed"),
+    State.FAIL: ("bad", "✗ failed"),
+    State.NOT_CHECKED: ("open", "– not checked"),
+}
 
 _AXIS_HEADINGS = ("Axis", "#From", "at", "#To", "at", "#Limits", "#Margin")
 
@@ -37,17 +45,16 @@ def page_body(content: ReportContent) -> str:
 
 
 def _title(content: ReportContent) -> str:
-    failed = sum(not check.passed for check in content.checks)
-    count = len(content.checks)
-    if not content.passed:
-        mark, word, more = "✗", "Failed", f"{failed} of {counted(count, 'check')}; the program must not run as it is"
+    said, count = content.standing.said(), len(content.checks)
+    if not content.standing.passed:
+        mark, word, more = "✗", "Failed", f"{said}; the program must not run as it is"
     elif count:
-        mark, word, more = "✓", "Passed", f"{counted(count, 'check')}, all passed"
+        mark, word, more = "✓", "Passed", said
         if content.simulation is not None and not content.simulation.passed:
             more += "; the simulation warns, see below"
     else:
         mark, word, more = "–", "Nothing checked", ""
-    state = "bad" if not content.passed else "good" if count else "none"
+    state = "bad" if not content.standing.passed else "good" if count else "none"
     items = [
         ("Machine", content.machine),
         ("Control", content.control),
@@ -68,7 +75,7 @@ def _title(content: ReportContent) -> str:
     )
     return f"""<header>
 <div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span><div><strong>{word}</strong>
-<span>{more}</span></div></div>
+<span>{escape(more)}</span></div></div>
 <h1><bdi>{escape(content.program)}</bdi></h1>
 <dl>{entries}</dl>
 {untimed}</header>
@@ -79,17 +86,17 @@ def _checks(checks: Sequence[Check]) -> str:
     if not checks:
         return ""
     rows = [
-        f'<tr class="{"good" if check.passed else "bad"}">'
+        f'<tr class="{_STATES[check.state][0]}">'
         f"<td>{_result(check)}</td><th scope=row>{capitalised(check.title)}</th>"
         f"<td class=n>{with_unit(check.worst, check.unit)}</td><td class=n>{with_unit(check.limit, check.unit)}</td>"
-        f"<td>{escape(check.summary)}</td></tr>"
+        f"<td>{escape(check.told)}</td></tr>"
         for check in checks
     ]
     return _section("Checks", _table(("Result", "Check", "#Worst", "#Limit", "Summary"), rows, "tight"))
 
 
 def _result(check: Check) -> str:
-    return '<span class="tag">✓ passed</span>' if check.passed else '<span class="tag">✗ failed</span>'
+    return f'<span class="tag">{_STATES[check.state][1]}</span>'
 
 
 def _worst_places(checks: Sequence[Check]) -> str:
@@ -110,7 +117,7 @@ def _check_places(check: Check) -> str:
     more = len(check.places) - MAX_PLACES
     note = f'<p class="note">and {more} more, in the JSON report</p>' if more > 0 else ""
     headings = ("#Value", "#Block", "#NC line", "#CL line", "What", "-")
-    state = "good" if check.passed else "bad"
+    state = _STATES[check.state][0]
     return (
         f'<h3 class="{state}">{_result(check)} {capitalised(check.title)}</h3>{_table(headings, rows, "tight")}{note}'
     )

@@ -108,7 +108,7 @@ class SheetFile:
 
 #: What the data of a sheet says of axes and checks.
 _OF_AXIS: Final = ("name", "unit", "used", "limits", "endless", "placed", "margin")
-_OF_CHECK: Final = ("key", "title", "passed", "summary", "worst", "limit", "unit")
+_OF_CHECK: Final = ("key", "title", "state", "missing", "summary", "worst", "limit", "unit")
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +128,7 @@ class SetupSheet:
     untimed     what the times leave out, in words; empty: nothing
     """
 
-    SCHEMA: ClassVar[int] = 2
+    SCHEMA: ClassVar[int] = 3
 
     content: Annotated[
         ReportContent,
@@ -142,7 +142,8 @@ class SetupSheet:
         Figure("seconds", take=attrgetter("seconds"), after="coordinates"),
         Figure("cutting_seconds", take=attrgetter("cutting_seconds")),
         Figure("axes", take=lambda content: to_data(content.axes, only=_OF_AXIS), after="operations"),
-        Figure("checks", take=lambda content: to_data(content.checks, only=_OF_CHECK), after="to_check"),
+        Figure("standing", take=attrgetter("standing"), after="to_check"),
+        Figure("checks", take=lambda content: to_data(content.checks, only=_OF_CHECK)),
     ]
     version: Annotated[str, Figure("made_by", after="control")]
     part: Annotated[str, Figure(none="", after="program")]

@@ -20,8 +20,11 @@ from trunnion.reporting.html_text import (
 )
 from trunnion.reporting.setup_sheet import Range, SetupSheet, SheetOperation, SheetTool
 from trunnion.results import as_json, to_data
-from trunnion.verification.results import Check
-from trunnion.wording import counted, format_duration
+from trunnion.verification.results import Check, State
+from trunnion.wording import format_duration
+
+#: What stands before a check of each state.
+_MARKS: Final = {State.OK: "✓", State.FAIL: "✗ FAILED", State.NOT_CHECKED: "– not checked"}
 
 #: Who signs.
 _SIGNATURES: Final = ("Programmed by", "Set up by", "First part released by")
@@ -58,12 +61,12 @@ def sheet_json(sheet: SetupSheet) -> bytes:
 
 def _title(sheet: SetupSheet) -> str:
     content = sheet.content
-    failed, checks = sum(not check.passed for check in content.checks), counted(len(content.checks), "check")
+    standing, said = content.standing, escape(content.standing.said())
     if sheet.may_run:
         warning = "<br>THE SIMULATION WARNS: see To be checked" if sheet.simulated is False else ""
-        verdict = f'<div class="verdict">Proven<small>{checks}, all passed{warning}</small></div>'
+        verdict = f'<div class="verdict">Proven<small>{said}{warning}</small></div>'
     else:
-        why = f"{failed} of {checks} failed" if failed else "refused, and written by force"
+        why = said if standing.failed else f"refused, and written by force; {said}"
         verdict = f'<div class="verdict bad">MUST NOT RUN AS IT IS<small>{why}</small></div>'
     zero = (
         "not told"
@@ -189,8 +192,8 @@ def _to_check(sheet: SetupSheet) -> str:
 
 def _checks(checks: Sequence[Check]) -> str:
     rows = [
-        f'<tr class="{"" if check.passed else "bad"}"><td>{"✓" if check.passed else "✗ FAILED"}</td>'
-        f"<td>{capitalised(check.title)}</td><td>{escape(check.summary)}</td></tr>"
+        f'<tr class="{"bad" if check.state is State.FAIL else ""}"><td>{_MARKS[check.state]}</td>'
+        f"<td>{capitalised(check.title)}</td><td>{escape(check.told)}</td></tr>"
         for check in checks
     ]
     return _section("What was proven", _table(("", "Check", "Result"), rows), "small")

@@ -13,11 +13,13 @@ from trunnion.verification.results import (
     Check,
     OperationRows,
     Place,
+    State,
     Verification,
     durations,
     rows_from_starts,
     without_columns,
 )
+from trunnion.verification.standing import Standing
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines
 from trunnion.verification.verifier import reachable_feeds, verify, with_recording
 
@@ -32,6 +34,8 @@ __all__ = [
     "OperationSettings",
     "Place",
     "PrintedDigits",
+    "Standing",
+    "State",
     "Tolerances",
     "Verification",
     "check_lines",

@@ -45,6 +45,7 @@ class ExpectedValues:
     feed_limit             greatest feed of cuts then, in place of those of the CL files, mm/min; None: theirs
     feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
+    demands                what the proof must stand on besides what the machine's definition demands
     """
 
     tool: str = ""
@@ -67,6 +68,7 @@ class ExpectedValues:
     feed_limit: float | None = None
     feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
+    demands: tuple[str, ...] = ()
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""

@@ -1,18 +1,22 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Lines
+from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
+from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
     from trunnion.verification.recorded.compared import RecordedComparison
@@ -57,30 +61,80 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
+class Coverage:
+    """Which motions of a program a check has looked at.
+
+    checked   how many of the ``motions`` that there are
+    left_out  the first of the others, each with why
+    """
+
+    checked: int
+    motions: int
+    left_out: tuple[Place, ...] = ()
+
+    def wordings(self) -> Iterator[Wording]:
+        """Yield what is said of it."""
+        yield phrase("motions_checked", checked=self.checked, motions=self.motions)
+        if self.left_out:
+            first = self.left_out[0]
+            yield phrase("motions_left_out", block=first.block_name, why=first.told)
+
+
+class State(StrEnum):
+    """What a check says of a program."""
+
+    OK = "ok"
+    FAIL = "FAIL"
+    NOT_CHECKED = "not checked"
+
+
+def _texts(wordings: Sequence[Wording]) -> list[str]:
+    return [wording.what for wording in wordings]
+
+
+@dataclass(frozen=True, slots=True)
 class Check:
     """One question about a program, and its answer.
 
     key       stable name, such as ``tip`` or ``travel``; each has a section in docs/checks.md
     title     the question in a few words
-    passed    False: the program must not run as it is
+    passed    nothing wrong was found; False: the program must not run as it is. See ``state``
     summary   the answer in one line: the worst value, where it is, and what is allowed
     worst     the worst value in ``unit``, None where the check does not measure
     limit     what is allowed, None where there is no limit
     places    the worst places, worst first
+    missing   what nobody has stated, so that the question was not answered, or only in part
+    coverage  which motions it has looked at; None: it is no question of single motions
     """
 
     key: str
     title: str
-    passed: bool
+    passed: Annotated[bool, NOT_DATA]
     summary: str
     worst: float | None = None
     limit: float | None = None
     unit: str = ""
     places: tuple[Place, ...] = ()
+    missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
+    coverage: Coverage | None = None
+
+    @property
+    @Figure(after="title")
+    def state(self) -> State:
+        """``ok`` only where the whole question was answered."""
+        if not self.passed:
+            return State.FAIL
+        return State.NOT_CHECKED if self.missing else State.OK
+
+    @property
+    def told(self) -> str:
+        """``summary`` as it is printed: behind what is missing."""
+        covered = () if self.coverage is None else tuple(self.coverage.wordings())
+        return "; ".join(filter(None, (*_texts(self.missing), self.summary, *_texts(covered))))
 
     def __str__(self) -> str:
-        """Return the line that the command prints: key, ``ok`` or ``FAIL``, summary."""
-        return f"{self.key:<{_KEY_WIDTH}}  {'ok  ' if self.passed else 'FAIL'}  {self.summary}"
+        """Return the line that the command prints: key, state, summary."""
+        return f"{self.key:<{_KEY_WIDTH}}  {self.state:<4}  {self.told}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +167,7 @@ class Verification:
     ``clamping`` is how the part is clamped, as far as somebody said it; None: nobody did.
 
     ``operations`` divide the rows among them; there are none without CL files. ``recorded`` compares the machine as it
-    was recorded; None: it was not.
+    was recorded; None: it was not. ``remarks`` are the warnings that were given on the way.
     """
 
     program: str
@@ -127,16 +181,31 @@ class Verification:
     recorded: "RecordedComparison | None" = None
     waiting: Floats = field(default_factory=lambda: np.zeros(0))
     clamping: Clamping | None = None
+    remarks: tuple[Problem, ...] = ()
 
     @property
     def passed(self) -> bool:
-        """Whether all checks passed."""
+        """Whether no check failed; ``standing`` says what that stands on."""
         return all(check.passed for check in self.checks)
+
+    @property
+    def standing(self) -> Standing:
+        """What the word that is said of the program stands on."""
+        states = [check.state for check in self.checks]
+        severities = [remark.severity for remark in self.remarks]
+        return Standing(
+            passed=self.passed and Severity.ERROR not in severities,
+            ok=states.count(State.OK),
+            failed=states.count(State.FAIL),
+            not_checked=states.count(State.NOT_CHECKED),
+            warnings=severities.count(Severity.WARNING),
+            not_measured=self.machine.nobody_measured,
+        )
 
     def __repr__(self) -> str:
         """Return what matters in a notebook: the columns would fill pages."""
         failed = ", ".join(check.key for check in self.checks if not check.passed)
-        result = f"failed: {failed}" if failed else f"{len(self.checks)} checks"
+        result = f"failed: {failed}" if failed else self.standing.said()
         return f"Verification(passed={self.passed}, {result}, {len(self.run)} motions)"
 
 

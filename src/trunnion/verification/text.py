@@ -5,13 +5,22 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.model.toolpath import Kind
-from trunnion.verification.results import Check, Place, Verification, moving_seconds
+from trunnion.verification.results import Check, Place, State, Verification, moving_seconds
 from trunnion.wording import format_duration
 
 
 def check_lines(verification: Verification) -> Iterator[str]:
-    """One line for each check."""
-    return map(str, verification.checks)
+    """One line for each check; one for all of which nothing is known but what is missing."""
+    alike: dict[str, list[str]] = {}
+    for check in verification.checks:
+        if check.state is State.NOT_CHECKED and not check.summary:
+            alike.setdefault(check.told, []).append(check.key)
+    for check in verification.checks:
+        keys = alike.get(check.told, []) if check.state is State.NOT_CHECKED else []
+        if len(keys) < 2:
+            yield str(check)
+        elif check.key == keys[0]:
+            yield f"{', '.join(keys)}: {check.state}, {check.told}"
 
 
 def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:

@@ -14,7 +14,7 @@ from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification.checks.table import Compared, Measured, all_checks
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.declared_deviations import accept_deviations
-from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors
+from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors, SpanLimits
 from trunnion.verification.deviations.point_deviations import PointDeviations
 from trunnion.verification.deviations.reached_rows import with_feeds_of_program, worthwhile_feeds
 from trunnion.verification.expected.path import ExpectedPath
@@ -199,7 +199,7 @@ def _linearization_errors(context: Context, tolerances: Sequence[Tolerances]) ->
     axis = None if settings.span is None else settings.span + rounding
     by_default = None if settings.span is not None else DefaultLimits(settings.axis_tolerance, rounding)
     path = (context.expected, context.matching) if isinstance(context, ComparedContext) else (None, None)
-    return LinearizationErrors(context.run, MAX_PLACES, tip, axis, tolerance, *path, by_default=by_default)
+    return LinearizationErrors(context.run, MAX_PLACES, SpanLimits(tip, axis, tolerance, by_default), *path)
 
 
 def _add_rows(run: Run, *collectors: AxisMotionAnalyzer | PointDeviations | LinearizationErrors | None) -> None:

@@ -141,9 +141,15 @@ def view_content(
         "events": [*_events(run), *_rewinds(run)],
         "findings": [*_findings(verification.checks, run), *_diagnostics(run)],
         "timed": bool(len(seconds)),
-        "checks": [{"key": one.key, "passed": one.passed, "summary": one.summary} for one in verification.checks],
+        **proof_scene(verification),
     }
     return ViewContent(scene, columns, tuple(text.encode() for text in (*texts, *cl_texts.values())))
+
+
+def proof_scene(verification: Verification) -> dict[str, Any]:
+    """Return what the page says of the proof."""
+    checks = [{"key": one.key, "state": one.state, "summary": one.told} for one in verification.checks]
+    return {"checks": checks, "standing": verification.standing.told}
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:

@@ -6,7 +6,7 @@ from typing import Final
 from trunnion.arrays import Codes
 from trunnion.machines import Axis, Machine
 from trunnion.messages import foreign
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.work_offsets import WorkOffsetWords, first_number

@@ -31,7 +31,7 @@ def test_a_sound_program_is_written_and_says_what_it_cuts(tmp_path: Path, capsys
     assert main([*command, "--stock", STOCK, "--cell", "1"]) == 0
     told = capsys.readouterr().err
     assert "\nremoval       ok    " in told
-    assert "\ncollision     ok    nothing was checked" in told
+    assert "\ncollision     not checked  neither fixtures given, nor zero" in told
     assert f"{tmp_path / 'two.mpf'}: warning: the bodies of the machine are not checked" in told
     assert ".two.mpf." not in told
 

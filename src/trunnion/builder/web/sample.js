@@ -16,8 +16,9 @@ export class Sample {
     this.lines = [];
   }
 
-  /** @param {{lines: string[], all: number, changed: number[], removed: number, checks: {key: string, passed: boolean, summary: string}[],
-   *   problems: {what: string, cure: string, line: number, error: boolean, code: string}[], passed: boolean}} found
+  /** @param {{lines: string[], all: number, changed: number[], removed: number, checks: {key: string, state: string, summary: string}[],
+   *   problems: {what: string, cure: string, line: number, error: boolean, code: string}[], passed: boolean,
+   *   standing: {checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[]} | null}} found
    * @param {number} marks values that are still to be entered */
   show(found, marks) {
     if (found.lines.length) this.lines = found.lines;
@@ -31,13 +32,14 @@ export class Sample {
     this.list.querySelector(".new")?.scrollIntoView({ block: "center" });
     const lines = (/** @type {string[]} */ texts, /** @type {string} */ kind) => texts.filter(Boolean).map((text) => Object.assign(document.createElement("div"), { textContent: text, className: kind }));
     const told = (/** @type {boolean} */ isError) => found.problems.filter((each) => each.error === isError).map((each) => `${each.what}${each.cure ? "; " + each.cure : ""} [${each.code}]`);
-    const checked = (/** @type {boolean} */ isPassed) => found.checks.filter((each) => each.passed === isPassed).map((each) => `${each.key}: ${each.summary}`);
-    const open = [...told(false), marks ? say("toEnter", marks) : ""];
-    const head = found.passed ? say("passed", found.checks.length) : found.checks.length ? say("failed") : say("refused");
+    const checked = (/** @type {string} */ state) => found.checks.filter((each) => each.state === state).map((each) => `${each.key}: ${each.summary}`);
+    const unchecked = checked("not checked").map((each) => `${say("notChecked")}: ${each}`);
+    const open = [...unchecked, ...told(false), marks ? say("toEnter", marks) : ""];
+    const head = found.passed && found.standing ? this.#said(found.standing) : found.checks.length ? say("failed") : say("refused");
     const moved = found.changed.length + found.removed ? say("moved", found.changed.length, found.removed) : "";
     const cut = found.all > found.lines.length ? say("shown", found.lines.length, found.all) : "";
-    this.verdict.replaceChildren(...lines([head], found.passed ? (open.some(Boolean) ? "warn" : "good") : "bad"), ...lines([...checked(false), ...told(true)], "bad"), ...lines(open, "warn"), ...lines([moved, cut], ""));
-    this.#showChecks(checked(true));
+    this.verdict.replaceChildren(...lines([head], found.passed ? (open.some(Boolean) ? "warn" : "good") : "bad"), ...lines([...checked("FAIL"), ...told(true)], "bad"), ...lines(open, "warn"), ...lines([moved, cut], ""));
+    this.#showChecks(checked("ok"));
   }
 
   /** @param {string} why there is none */
@@ -45,6 +47,18 @@ export class Sample {
     this.list.replaceChildren();
     this.verdict.textContent = why;
     this.#showChecks([]);
+  }
+
+  /**
+   * What "passed" stands on.
+   * @param {{checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[]}} standing
+   */
+  #said(standing) {
+    const parts = [say("passed", standing.ok, standing.checks)];
+    if (standing.not_checked) parts.push(`${standing.not_checked} ${say("notChecked")}`);
+    if (standing.warnings) parts.push(say("warnings", standing.warnings));
+    if (standing.not_measured.length) parts.push(say("notMeasured", standing.not_measured.length));
+    return parts.join("; ");
   }
 
   /** @param {string[]} passed */

@@ -12,7 +12,6 @@ from trunnion.controls.template import Printing, Template, Value
 from trunnion.controls.texts import filters, tree
 from trunnion.controls.texts.sandbox import SANDBOX
 from trunnion.controls.texts.syntax_faults import syntax_fault
-from trunnion.controls.texts.value_faults import value_fault
 from trunnion.controls.texts.values import ABSENT, MOST_CHARACTERS, Fault, Length, Rendering, as_number
 from trunnion.controls.words import WordRangeError
 from trunnion.errors import InputError, Problem
@@ -26,6 +25,27 @@ _TAG: Final = re.compile(r"\{%.*?%\}|\{#.*?#\}|\{\{.*?\}\}", re.DOTALL)
 _STATEMENT_LINE: Final = re.compile(r"\{[%#]")
 _PRINTED: Final = re.compile(r"\{\{-?\s*([A-Za-z_]\w*)\s*(?:\|\s*([A-Za-z_]\w*)\s*)?-?\}\}")
 
+<<<<<<< HEAD
+=======
+_NOT_UNDERSTOOD: Final = "docs/templates.md has the language"
+
+#: Types of values, as people call them.
+_KINDS: Final = {
+    "str": "a text",
+    "int": "a number",
+    "float": "a number",
+    "Length": "a number",
+    "bool": "a condition",
+    "NoneType": "an absent value",
+    "tuple": "a list",
+    "list": "a list",
+    "Record": "a tool or an operation",
+}
+
+_COMPARED: Final = re.compile(r"'([<>]=?)' not supported between instances of '(\w+)' and '(\w+)'")
+_SEARCHED: Final = re.compile(r"argument of type '(\w+)' is not (?:iterable|a container)")
+
+>>>>>>> main
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TextTemplate(Template):
@@ -130,7 +150,7 @@ class TextTemplate(Template):
                 line = trace.tb_lineno
             trace = trace.tb_next
         file, at = self.place_of(max(line, 1) - 1)
-        fault = error if isinstance(error, Fault) else value_fault(error)
+        fault = error if isinstance(error, Fault) else _value_fault(error)
         if isinstance(error, WordRangeError):
             fault = Fault("prints_beyond_format", fault=error.wording)
         raise InputError(
@@ -191,3 +211,19 @@ def _complete_lines(text: str) -> list[str]:
         if line and ABSENT not in line:
             lines.append(line)
     return lines
+
+
+def _value_fault(error: Exception) -> Fault:
+    """Return what an expression did that its values do not allow."""
+    if (found := _COMPARED.match(str(error))) is not None:
+        what = f"compares {_kind(found[2])} with {_kind(found[3])} by {found[1]}"
+        return Fault(what, "compare numbers: | number makes one of a text, | default(0) one of an absent value")
+    if (found := _SEARCHED.match(str(error))) is not None:
+        return Fault(f"looks by in for something within {_kind(found[1])}", "look within a list or a text")
+    if isinstance(error, RecursionError):
+        return Fault("has too much within each other", "write it in smaller parts, with {% set … %}")
+    return Fault("does something that its values do not allow", "see whether they are numbers, texts or lists")
+
+
+def _kind(name: str) -> str:
+    return _KINDS.get(name, "another thing")

@@ -16,7 +16,7 @@ from trunnion.jobs.arguments import FitArguments, taken
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
 from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
-from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.placing import place, unknown_length
@@ -112,6 +112,8 @@ def fit(
     tool_length
         Of the tool, gauge point to tip, mm, on all machines; by default the greatest that the CL files state for tools
         in the spindle. Where none is known the answer is open at best.
+    hooks
+        Python files that change the CL files, as for ``trunnion.post``. They are run, on each machine anew.
     turns
         The part is tried at every so many degrees about Z, 5 by default; or the turns themselves, as for
         ``trunnion.place``.
@@ -152,7 +154,7 @@ def fit(
     found = []
     with observer.progress("fit", len(asked), "machines") as advance:
         for each in asked:
-            found.append(_fit(each, toolpaths, tool_length, stated["turns"]))
+            found.append(_fit(each, toolpaths, tool_length, stated))
             advance(1)
     if tool_length is None and any(_LENGTH in reason for each in found for reason in each.reasons):
         observer.problems(
@@ -231,15 +233,15 @@ def _fit(
     asked: MachineLike,
     toolpaths: Sequence[Toolpath],
     tool_length: str | float | None,
-    turns: float | Sequence[float] | None,
+    stated: FitArguments,
 ) -> MachineFit:
     """Return what a machine makes of it; whatever is wrong with the machine is its reason."""
-    key = asked.key if isinstance(asked, Machine) else os.fspath(asked)
+    key, hooks = asked.key if isinstance(asked, Machine) else os.fspath(asked), stated["hooks"]
     try:
         machine = set_up_machine(as_machine(asked, "machines"), None, tool_length)
         if not np.isfinite(machine.limits[list(machine.linear)]).any():
-            return _without_limits(machine, toolpaths)
-        found = place(toolpaths, machine=machine, turns=turns)
+            return _without_limits(machine, toolpaths, hooks)
+        found = place(toolpaths, machine=machine, turns=stated["turns"], hooks=hooks)
     except TrunnionError as error:
         if any(problem.argument in _OF_ALL for problem in error.problems):
             raise
@@ -250,7 +252,7 @@ def _fit(
     # The placement and the program are let go: of a long path they are large, and there are many machines.
     place_of = found.zero_mm, found.turn_deg
     try:
-        posted = post_placed(found, machine=machine)
+        posted = post_placed(found, machine=machine, hooks=hooks)
     except TrunnionError as error:
         return MachineFit(machine.key, FitStatus.NOT, _reasons(error), None, margins, None, *place_of)
     reasons = _open_reasons(machine)
@@ -259,10 +261,10 @@ def _fit(
     return MachineFit(machine.key, status, reasons, _seconds(posted), margins, None, *place_of)
 
 
-def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath]) -> MachineFit:
+def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath], hooks: Sequence[FilePath]) -> MachineFit:
     """On a machine whose linear axes have no limits only rotary axes and the control can be judged."""
     try:
-        posted = post(toolpaths, machine=machine)
+        posted = post(toolpaths, machine=machine, hooks=hooks)
     except TrunnionError as error:
         return MachineFit(machine.key, FitStatus.NOT, _reasons(error))
     margins = _rotary_margins(machine, posted)

@@ -14,6 +14,7 @@ from trunnion.capability.reach import (
 )
 from trunnion.jobs.arguments import ReachArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
+from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
@@ -38,6 +39,8 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
         A name, a path or a ``Machine``.
     cl
         CL files whose points are judged, in one program's coordinates, those of the first operation.
+    hooks
+        Python files that change the CL files, as for ``trunnion.post``. They are run.
     part
         Mesh of a part in workpiece coordinates, mm, each of whose facets the tip is to reach along its normal.
     lean
@@ -78,7 +81,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     degrees, part = _number("step", found["step"], *_STEPS), found["part"]
     leaning = _number("lean", found["lean"], 0.0, _MOST_LEAN)
     loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
-    toolpaths = as_toolpaths(found["cl"], None, False, observer)
+    toolpaths = hooked_toolpaths(as_toolpaths(found["cl"], None, False, observer), loaded, found["hooks"])
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     surface = None

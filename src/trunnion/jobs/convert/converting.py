@@ -56,7 +56,7 @@ class ConvertResult:
     output    file of the result; None: it was not written to a file
     """
 
-    SCHEMA: ClassVar[int] = 1
+    SCHEMA: ClassVar[int] = 2
 
     toolpath: Annotated[
         Toolpath,

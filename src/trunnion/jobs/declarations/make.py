@@ -149,6 +149,7 @@ _PLACE: Final = job(
     TOOL_LENGTH,
     SETTINGS.but(help="for CL files, as post has it; may be repeated"),
     READING_AS_SETTINGS.but(strict={"own": True}),
+    HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that the programs call; no others are opened"),
     BODIES.but(
         stock={"help": "as simulate takes it. Seen from above it is to stay on the table that the machine states"},

@@ -59,7 +59,13 @@ _VERIFY: Final = job(
         "edge", "--edge", whole("a cutting edge", "its D number, such as 1", "D"),
         "cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
     ),
-    READING.but(units={"key": "units"}, dialect={"key": "dialect"}),
+    READING.but(
+        units={"key": "units"},
+        dialect={"key": "dialect"},
+        strict={
+            "help": "what the proof stands on and nobody has stated or measured is an error; so are unknown statements"
+        },
+    ),
     Option(
         "frame", "--frame", Choice(("first", "absolute")),
         "whose coordinate system the program's is: the first operation's, or the CAM's absolute one", default="first",
@@ -132,6 +138,7 @@ _SIMULATE: Final = job(
     CUTTING,
     _CL.but(help="CL file whose tools these are; may be repeated"),
     READING_FIRST,
+    HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that they call; no others are opened"),
     SETUP,
     CLAMPING.but(
@@ -171,6 +178,7 @@ _REACH: Final = job(
     Option("lean", "--lean", _NUMBER, "how far the tool may lean from a normal; by default 0", default=0.0),
     SETUP,
     READING_FIRST,
+    HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option("step", "--step", _NUMBER, "degrees between tilts, and between azimuths; by default 5", default=5.0),
     JSON,
     Option(
@@ -199,6 +207,7 @@ _FIT: Final = job(
     ZERO.but(help="workpiece zero of the NC program on its own machine, mm"),
     TOOL_LENGTH.but(help="length of the tool on all machines, gauge point to tip"),
     READING_FIRST,
+    HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option(
         "turns", "--turns", _NUMBER, "try the part at every so many degrees about Z; by default 5", default=5.0,
     ),

@@ -69,7 +69,7 @@ class ImpellerCut:
     simulation  what the program leaves of the stock, against the model; None: it was not simulated
     """
 
-    SCHEMA: ClassVar[int] = 2
+    SCHEMA: ClassVar[int] = 3
 
     impeller: Annotated[Impeller, Figure("name", take=attrgetter("definition.name"))]
     steps: Annotated[tuple[CutStep, ...], Figure(after="cl_files")]
@@ -77,7 +77,7 @@ class ImpellerCut:
         PostResult,
         Figure("program", take=lambda result: str(result.output)),
         Figure("subprograms", take=attrgetter("subprograms")),
-        Figure("checks", take=lambda result: {check.key: check.passed for check in result.checks}, after="remarks"),
+        Figure("checks", take=lambda result: {check.key: check.state for check in result.checks}, after="remarks"),
     ]
     cl_files: tuple[Path, ...]
     simulation: Annotated[SimulationResult | None, Figure(after="checks")]

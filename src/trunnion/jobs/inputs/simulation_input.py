@@ -44,6 +44,7 @@ class SetupInput:
     tool_libraries: Sequence[FilePath] = ()
     unit: str | None = None
     cl: ToolpathLike | Iterable[ToolpathLike] = ()
+    hooks: Sequence[FilePath] = ()
     subprograms: Sequence[FilePath] = ()
     zero: str | Iterable[float] | None = None
     tool_length: str | float | None = None

@@ -12,7 +12,9 @@ import numpy as np
 from trunnion import readers
 from trunnion.arrays import Ints
 from trunnion.errors import InputError, Problem, RefusedError, Severity
-from trunnion.jobs.inputs.arguments import is_stream, wrong_argument
+from trunnion.jobs.arguments import PlaceArguments
+from trunnion.jobs.inputs.arguments import check_paths, is_stream, wrong_argument
+from trunnion.jobs.inputs.hooked import hooked_toolpaths, no_cl_files
 from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
 from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
 from trunnion.jobs.observer import SILENT, Observer
@@ -60,7 +62,7 @@ def read_input(
     files: Iterable[ToolpathLike] | ToolpathLike,
     machine: Machine,
     settings: Settings | None,
-    subprograms: Sequence[Path],
+    stated: PlaceArguments,
     observer: Observer,
     tilts: Sequence[float] = (0.0,),
 ) -> PlacedInput:
@@ -82,6 +84,7 @@ def read_input(
     if isinstance(files, bytes | Mapping) or not isinstance(files, Iterable):
         raise wrong_argument("files", files, "give CL files or NC programs: a path, or a list of them")
     given = cast("list[ToolpathLike]", list(files))
+    subprograms, hooks = check_paths("subprograms", stated["subprograms"]), check_paths("hooks", stated["hooks"])
     if not given:
         raise InputError(Problem("files", 0, Wording("ARG130", "no_file")))
     texts = as_texts(settings)
@@ -93,15 +96,23 @@ def read_input(
         if found is None and isinstance(each, str | os.PathLike):
             programs.append(Path(each))
     if programs and len(programs) < len(given):
+<<<<<<< HEAD
         raise InputError(
             Problem(str(programs[0]), 0, Wording("PLC110", "programs_and_others", count=len(given) - len(programs)))
         )
+=======
+        what = f"is an NC program, and {counted(len(given) - len(programs), 'other file')} is not"
+        raise InputError(Problem(str(programs[0]), 0, what, "give CL files or NC programs, not both", code="PLC110"))
+    if programs and hooks:
+        raise no_cl_files()
+>>>>>>> main
     if programs:
         runs = [_run_of(program, machine, subprograms) for program in programs]
         clamping, problems = _clamping_of_programs(programs)
         return replace(_of_runs(runs), problems=problems, clamping=clamping)
     clamping = stated_clamping(toolpaths)
-    return replace(_planned_tilted(toolpaths, machine, texts, observer, tilts), clamping=clamping)
+    placed = _planned_tilted(hooked_toolpaths(toolpaths, machine, hooks, texts), machine, texts, observer, tilts)
+    return replace(placed, clamping=clamping, toolpaths=tuple(toolpaths))  # a post has hooks change them itself
 
 
 def _clamping_of_programs(programs: Sequence[Path]) -> tuple[Clamping | None, tuple[Problem, ...]]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.arguments import PlaceArguments, taken
-from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_paths
+from trunnion.jobs.inputs.arguments import check_choice, check_observer
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import as_texts, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
@@ -68,6 +68,8 @@ def place(
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
         Files of the subprograms that NC programs call.
+    hooks
+        Python files that change the CL files, as for ``trunnion.post``, which then takes them too. They are run.
     stock, part
         As ``trunnion.simulate`` has them: all of them, seen from above, is to be on the table that the definition
         states. With the goal ``"collisions"`` they are bodies, too.
@@ -117,8 +119,7 @@ def place(
         stated["fixtures"], stated["part"], stated["stock"], stated["tools"], stated["tool_libraries"], stated["unit"]
     )
     standing = standing_on(loaded, among.stock, among.part, remarks)
-    others = check_paths("subprograms", stated["subprograms"])
-    read = read_input(files, loaded, texts, others, observer, tilts_by_size)
+    read = read_input(files, loaded, texts, stated, observer, tilts_by_size)
     for tilt in tilts_by_size:  # what could not be said in the head of a program is told before it is searched
         clamped_after(read.clamping, (0.0, tilt), read.rows.stretches[0].file)
     bodies = None

@@ -1,15 +1,20 @@
 """A part at the place that was found: its CL files are posted turned, with the workpiece zero there."""
 
+from typing import Any, Unpack
+
 from trunnion.errors import InputError, Problem
-from trunnion.jobs.arguments import PostArguments
-from trunnion.jobs.inputs.reading import FilePath, MachineLike
-from trunnion.jobs.inputs.settings import Settings, as_texts
+from trunnion.jobs.arguments import PlacedArguments
+from trunnion.jobs.inputs.reading import MachineLike
+from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
+<<<<<<< HEAD
 from trunnion.jobs.result_output import OutputLike
 from trunnion.messages import Wording
+=======
+>>>>>>> main
 from trunnion.placing.placement import Placement
 
 
@@ -17,10 +22,8 @@ def post_placed(
     found: Placement,
     *,
     machine: MachineLike,
-    output: OutputLike = None,
-    settings: Settings | None = None,
-    sheet: FilePath | None = None,
     observer: Observer = SILENT,
+    **given: Unpack[PlacedArguments],
 ) -> PostResult:
     """Post the CL files of a placement with its best place.
 
@@ -31,7 +34,7 @@ def post_placed(
         program's coordinate system. Comments in the head of the program say so, and where the workpiece zero is.
     machine
         As ``trunnion.place`` had it.
-    output, settings, sheet, observer
+    output, settings, sheet, hooks, observer
         As ``trunnion.post`` takes them; the setting ``zero`` is that of the place, and ``tool_length`` by default that
         of the placement.
 
@@ -57,13 +60,17 @@ def post_placed(
     if not found.toolpaths:
         raise InputError(nc_program_stays(found.files[0]))
     if found.best is None or not found.fits:
+<<<<<<< HEAD
         raise InputError(Problem(found.files[0], 0, Wording("PLC150", "fits_nowhere")))
     texts = as_texts(settings)
+=======
+        raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
+    texts = as_texts(given.get("settings"))
+>>>>>>> main
     if found.tool_length_mm is not None:
         texts.setdefault("tool_length", str(found.tool_length_mm))
     best = found.best
-    given: PostArguments = {
-        "output": output, "settings": {**texts, "zero": best.zero_mm}, "sheet": sheet, "turn": best.turn_deg,
-        "tilt": best.tilt_deg,
+    stated: Any = {
+        **given, "settings": {**texts, "zero": best.zero_mm}, "turn": best.turn_deg, "tilt": best.tilt_deg
     }  # fmt: skip
-    return post_beside(found.toolpaths, machine, given, Work(is_placed=True), observer)
+    return post_beside(found.toolpaths, machine, stated, Work(is_placed=True), observer)

@@ -34,9 +34,12 @@ _SMOOTHING: Final = ("tolerance", "three_axis_tolerance", "fallback_tolerance")
 _TOOL_DELTAS: Final = {"delta_length": "DL", "delta_radius": "DR"}
 
 
-def expectation(program: Program, options: PlanOptions | None = None) -> Expectation:
-    """Return what the proof holds against a program that was planned with these options."""
-    return Expectation(program_tolerances(program), _expected_settings(program, options or PlanOptions()))
+def expectation(program: Program, options: PlanOptions | None = None, *, demands: tuple[str, ...] = ()) -> Expectation:
+    """Return what the proof holds against a program that was planned with these options; it must stand on ``demands``
+    too.
+    """
+    settings = _expected_settings(program, options or PlanOptions())
+    return Expectation(program_tolerances(program), replace(settings, demands=demands))
 
 
 def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues:

@@ -28,7 +28,7 @@ from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, Spindle
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.said_words import said_words
-from trunnion.readers.control.row_recorder import SPINDLE_SENSES
+from trunnion.readers.control.event_recorder import SPINDLE_SENSES
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import HOME, begins_with
 

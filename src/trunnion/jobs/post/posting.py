@@ -34,6 +34,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.jobs.post.writing import write_and_read_back
 from trunnion.jobs.result_output import Target, open_target, paper_files
+from trunnion.machines.loading import DEMANDS
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 
@@ -89,7 +90,8 @@ def post(
     units, dialect, zero, tool_length, feed, max_tilt
         Settings, too; ``units`` is the setting ``cl_units``.
     strict
-        Raise an error for unknown CL statements even if the definition says what becomes of them.
+        Raise an error for unknown CL statements even if the definition says what becomes of them, and for what the
+        proof would stand on and nobody has stated or measured (check ``basis``).
     force
         Write a program that must not run; its head says why. ``passed`` is then False.
     explain
@@ -171,7 +173,11 @@ def post_beside(
         columns=found["columns"],
     )  # fmt: skip
     existing, hook_files = (check_paths(name, found.get(name)) for name in ("subprograms", "hooks"))
+<<<<<<< HEAD
     job = replace(job, beside=tuple(existing), can_force=work.can_force)
+=======
+    job = replace(job, beside=tuple(existing), forcing=work.forcing, strict=found["strict"])
+>>>>>>> main
     inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *work.others]
     if (simulation := found["simulation"]) is not None:
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input
@@ -206,7 +212,7 @@ def post_toolpaths(
             del written  # two runs would take twice the memory
             target.files.restart()
             written = write_and_read_back(posting, lambda: planned)
-        expected = expectation(written.planned.program, job.options)
+        expected = expectation(written.planned.program, job.options, demands=DEMANDS if job.strict else ())
     proof = prove(posting, written, expected)
     result = report_proof(posting, written.planned, proof)
     if proof.failed and not job.force:

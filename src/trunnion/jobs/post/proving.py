@@ -80,8 +80,9 @@ def report_proof(posting: Posting, planned: PlannedProgram, proof: Proof) -> Pos
         words = program_warnings(found.run, stated_words(job.control, {**job.control.settings, **job.settings}))
         problems += words
         observer.problems(words)
-        observer.verified(found)
     remarks = [remark for toolpath in posting.toolpaths for remark in toolpath.remarks]
+    if found is not None:
+        observer.verified(replace(found, remarks=(*remarks, *problems)))
     toolpaths = tuple(posting.toolpaths)
     return PostResult(toolpaths, planned.plan, found, (*remarks, *problems), simulation=proof.simulation)
 

@@ -1,7 +1,7 @@
 """What posting gives back."""
 
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +14,7 @@ from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.results import NOT_DATA, Figure
-from trunnion.verification import Check, Verification
+from trunnion.verification import Check, Standing, Verification
 from trunnion.wording import counted
 
 if TYPE_CHECKING:  # imported where a program is simulated
@@ -63,10 +63,21 @@ class PostResult:
         return self.verification is not None and self.verification.passed and not overruled
 
     @property
-    @Figure(after="points", take=lambda checks: {check.key: check.passed for check in checks})
+    @Figure(after="points", take=lambda checks: {check.key: check.state for check in checks})
     def checks(self) -> tuple[Check, ...]:
         """The questions that were put to the program, and their answers; none where nothing is proven."""
         return () if self.verification is None else self.verification.checks
+
+    @property
+    def proof(self) -> Verification | None:
+        """``verification`` with all the warnings of the post: what papers tell."""
+        return None if self.verification is None else replace(self.verification, remarks=self.problems)
+
+    @property
+    @Figure(after="checks")
+    def standing(self) -> Standing | None:
+        """What the word that is said of the program stands on; None where nothing is proven."""
+        return None if self.proof is None else self.proof.standing
 
     @property
     def run(self) -> Run | None:
@@ -98,8 +109,16 @@ class PostResult:
             be written.
         """
         if self.verification is None:
+<<<<<<< HEAD
             raise InputError(Problem(str(file), 0, Wording("CTL920", "nothing_proven")))
         write_post_report(self.verification, file, self.decisions, self.simulation)
+=======
+            raise InputError(
+                Problem(str(file), 0, "nothing was proven", "post for a control that has a reader", code="CTL920")
+            )
+        assert self.proof is not None
+        write_post_report(self.proof, file, self.decisions, self.simulation)
+>>>>>>> main
 
 
 class ProofFailedError(RefusedError):

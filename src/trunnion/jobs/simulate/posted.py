@@ -23,7 +23,11 @@ from trunnion.jobs.project.named_files import library_files, project_files
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.machines import Machine
+<<<<<<< HEAD
 from trunnion.messages import Wording
+=======
+from trunnion.messages import Wording, phrase
+>>>>>>> main
 from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -231,6 +235,7 @@ def _check(
     findings: Sequence[SimulationFinding],
     broken: Sequence[Problem],
 ) -> Check:
+    missing: tuple[Wording, ...] = ()
     passed = not findings and not broken
     deepest = max((each.depth for each in findings), default=None)
     if findings:
@@ -243,9 +248,11 @@ def _check(
     elif found.pairs:
         summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
     else:
-        summary = "nothing was checked: there are neither fixtures, nor zero and tool length for the machine's bodies"
+        summary, missing = "", (phrase("no_bodies"),)
     places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))
-    return Check(key, title, passed, summary, deepest, 0.0 if key == "collision" else found.limit, "mm", places)
+    return Check(
+        key, title, passed, summary, deepest, 0.0 if key == "collision" else found.limit, "mm", places, missing
+    )
 
 
 def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding]) -> Check:

@@ -16,6 +16,7 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
+from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_machine, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
@@ -64,7 +65,7 @@ def prepare_setup(
     for program in programs:
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
-    toolpaths = as_toolpaths(given.cl, None, False, observer)
+    toolpaths = hooked_toolpaths(as_toolpaths(given.cl, None, False, observer), machine, given.hooks)
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)
     tools = _tools(runs, known_tools(given.tools, given.tool_libraries, given.unit, toolpaths))

@@ -54,6 +54,8 @@ def simulate(
         Length unit of LinuxCNC's tool tables, which state none.
     cl
         CL files, for tools that neither has.
+    hooks
+        Python files that change these CL files, as for ``trunnion.post``. They are run; those of a project are not.
     subprograms
         Files of the subprograms that the programs call. No others are opened.
     cell

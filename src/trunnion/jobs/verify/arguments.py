@@ -7,6 +7,7 @@ from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
+from trunnion.jobs.inputs.hooked import no_cl_files
 from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.messages import Wording
 
@@ -36,7 +37,11 @@ def checked(given: VerifyArguments) -> VerifyArguments:
         check_tolerance(name, given.get(name), optional=name.startswith("span"))
     hooks = check_paths("hooks", given["hooks"])
     if hooks and not has_cl:
+<<<<<<< HEAD
         raise InputError(argument_problem("hooks", Wording("ARG130", "hooks_without_cl")))
+=======
+        raise no_cl_files()
+>>>>>>> main
     turn, tilt = checked_angles(given["turn"], given["tilt"])
     if (turn or tilt) and not has_cl:
         raise InputError(argument_problem("turn" if turn else "tilt", Wording("ARG130", "clamping_without_cl")))

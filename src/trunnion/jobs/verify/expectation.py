@@ -15,6 +15,7 @@ from trunnion.jobs.inputs.settings import check_operation_names
 from trunnion.jobs.verify.arguments import DEFAULT_TOLERANCE
 from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine
+from trunnion.machines.loading import DEMANDS
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification import ExpectedValues, PrintedDigits, Tolerances, tolerances_in_planes
 
@@ -49,6 +50,7 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
         fastest_feed=given["feed"] == "fastest",
         feed_limit=given["feed_limit"],
         feeds_as_programmed=True,
+        demands=DEMANDS if given["strict"] else (),
     )
 
 

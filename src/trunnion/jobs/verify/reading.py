@@ -10,6 +10,7 @@ from pathlib import Path
 from trunnion.controls import Control
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
+from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.verify.arguments import angles_of
@@ -80,13 +81,9 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
 
 def _changed_by_hooks(toolpaths: list[Toolpath], on: VerifiedMachine, given: VerifyArguments) -> list[Toolpath]:
     """Return what hooks make of toolpaths; they see the settings that are given."""
-    from trunnion.hooks.calling import Hooks
-    from trunnion.hooks.files import load_hooks  # few verifications have hooks
-
     settings = {
         "tool": given["tool"], "work_offset": given["work_offset"], "edge": given["edge"], "cl_units": given["units"],
         "dialect": given["dialect"],
     }  # fmt: skip
     texts = {name: str(value) for name, value in settings.items() if value not in (None, "")}
-    hooks = Hooks(load_hooks(map(Path, given["hooks"])), on.machine.name, on.control.name if on.control else "", texts)
-    return hooks.change(toolpaths)
+    return hooked_toolpaths(toolpaths, on.machine, given["hooks"], texts)

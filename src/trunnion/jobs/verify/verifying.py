@@ -13,7 +13,7 @@ from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.control_settings import written_control
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine
 from trunnion.jobs.inputs.settings import set_up_machine
-from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.observer import SILENT, Observer, Remembering
 from trunnion.jobs.twin.recording import as_recording
 from trunnion.jobs.verify.arguments import checked
 from trunnion.jobs.verify.expectation import expected, tolerances
@@ -60,7 +60,8 @@ def verify(
     dialect
         What the CL files are written in, as ``read_cl`` has it; by default their content decides.
     strict
-        Raise an error for unknown statements of the CL files even if the definition says what becomes of them.
+        Raise an error for unknown statements of the CL files even if the definition says what becomes of them. What the
+        proof stands on and nobody has stated or measured fails the check ``basis``.
     frame
         Coordinate system of the program: that of the ``first`` operation, or the CAM's ``absolute`` one.
     zero : (3,) float, mm
@@ -111,6 +112,7 @@ def verify(
     True
     """
     check_observer(observer)
+    observer = Remembering(observer)
     found = checked(taken(VerifyArguments, "verify", given))
     recording = None if found["recorded"] is None else as_recording(found["recorded"])
     on = _set_up(as_machine(machine), found["zero"], found["tool_length"])
@@ -121,6 +123,7 @@ def verify(
     )  # fmt: skip
     proof = replace(proof, clamping=read.clamping)
     observer.problems(_without_motion(read.run))
+    proof = replace(proof, remarks=tuple(observer.found))
     if recording is None:
         return proof
     return verification.with_recording(proof, recording, found["recorded_tolerance"])

@@ -15,13 +15,15 @@ from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jobs.inputs.arguments import checked_angles, is_stream
+from trunnion.jobs.arguments import PostArguments
+from trunnion.jobs.inputs.arguments import check_paths, checked_angles, is_stream
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
+from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.posting import post
+from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.project.file import read_project
 from trunnion.jobs.project.keys import OF_PROJECT, OF_SETUP
 from trunnion.jobs.registry import JOBS
@@ -60,8 +62,7 @@ def view_program(
     files: Sequence[Path],
     machine: Machine,
     *,
-    cl: ToolpathLike | Iterable[ToolpathLike],
-    subprograms: Sequence[Path],
+    given: Mapping[str, Any],
     settings: Settings | None,
     observer: Observer,
 ) -> ViewedProgram:
@@ -72,20 +73,36 @@ def view_program(
     InputError
         When a file cannot be used, no reader knows the control, or CL files and NC programs stand together.
     """
+    subprograms, hooks = check_paths("subprograms", given["subprograms"]), check_paths("hooks", given["hooks"])
     are_cl = [is_cl_file(file) for file in files]
     if any(are_cl):
         if not all(are_cl):
             other = files[are_cl.index(False)]
+<<<<<<< HEAD
             raise InputError(Problem(str(other), 0, Wording("PAG112", "no_cl_file_as_others")))
         return _posted(files, machine, settings, subprograms, observer)
+=======
+            raise InputError(
+                Problem(str(other), 0, "is no CL file, as others here are", "view them one by one", code="PAG112")
+            )
+        stated: PostArguments = {"settings": settings, "subprograms": subprograms, "hooks": hooks}
+        return _posted(files, machine, stated, observer)
+>>>>>>> main
     if settings:
         raise InputError(Problem(str(files[0]), 0, Wording("PAG111", "settings_for_program")))
     others = [*files[1:], *subprograms]
     run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))
     unused = [file for file in files[1:] if str(file) not in run.files]
     if unused:
+<<<<<<< HEAD
         raise InputError(Problem(str(unused[0]), 0, Wording("PAG113", "never_called", program=files[0].name)))
     toolpaths = as_toolpaths(cl, None, False, observer)
+=======
+        what = f"is not called by {files[0].name}, and one program is shown"
+        raise InputError(Problem(str(unused[0]), 0, what, "view it alone", code="PAG113"))
+    cl = given["cl"]
+    toolpaths = hooked_toolpaths(as_toolpaths(cl, None, False, observer), machine, hooks)
+>>>>>>> main
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
@@ -101,10 +118,8 @@ def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Pro
     ]
 
 
-def _posted(
-    files: Sequence[Path], machine: Machine, settings: Settings | None, beside: Sequence[Path], observer: Observer
-) -> ViewedProgram:
-    result = post(files, machine=machine, settings=settings, force=True, subprograms=beside, observer=observer)
+def _posted(files: Sequence[Path], machine: Machine, stated: PostArguments, observer: Observer) -> ViewedProgram:
+    result = post_beside(files, machine, {**stated, "force": True}, observer=observer)
     text = result.text
     if result.verification is None or text is None:
         raise InputError(Problem(str(files[0]), 0, Wording("PAG114", "control_without_reader")))
@@ -167,7 +182,7 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
     if number:  # what an earlier set-up leaves is known to the simulation of all of them only
         found |= dict.fromkeys(_OF_PROJECT)
     found["stock"] = found["stock"] or None
-    return {**found, **stated, "nc": programs}
+    return {**given, **found, **stated, "nc": programs}
 
 
 def _setup(path: Path, setups: Sequence[SetupInput], wanted: str | None) -> tuple[SetupInput, int]:

@@ -24,7 +24,8 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.tools.profile import cutting_width
-from trunnion.viewer.content import ViewContent
+from trunnion.verification import Verification
+from trunnion.viewer.content import ViewContent, proof_scene
 from trunnion.viewer.stock import StockView
 
 #: Arguments that mean nothing without stock.
@@ -51,7 +52,11 @@ def view_simulation(machine: Machine, **given: Any) -> SimulationInput | None:
 
 
 def with_stock(
-    content: ViewContent, given: SimulationInput, run: Run, toolpaths: Sequence[Toolpath], observer: Observer
+    content: ViewContent,
+    given: SimulationInput,
+    verification: Verification,
+    toolpaths: Sequence[Toolpath],
+    observer: Observer,
 ) -> ViewContent:
     """Simulate a program and add what comes out to what its page shows.
 
@@ -60,19 +65,18 @@ def with_stock(
     InputError
         If a file cannot be used, nothing says the form of a tool, or the stock is too large for a picture.
     """
+    run = verification.run
     found = simulate_posted(given, named_run(run, run.files[0]), toolpaths, observer)
     (job,) = found.simulation.programs
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))
     warnings = [_short(each) for each in found.remarks if each.severity is not Severity.ERROR]
     warnings += [f"{kind}: {_MOST} of {count} are shown" for kind, count in _counts(found) if count > _MOST]
-    checks = [
-        {"key": one.key, "passed": one.passed, "summary": one.summary} for one in simulation_checks(found)
-    ]  # fmt: skip
+    checks = (*verification.checks, *simulation_checks(found))
     scene = {
         **content.scene,
         "findings": [*content.scene["findings"], *_findings(found, run)],
-        "checks": [*content.scene["checks"], *checks],
+        **proof_scene(replace(verification, checks=checks)),
         "stock": {**stock.scene(), "remarks": warnings},
     }
     return replace(content, scene=scene, columns={**content.columns, **stock.columns()}, stock=stock)

@@ -55,7 +55,7 @@ def prepare_view(
         return content
     alone = isinstance(against, str | os.PathLike)
     beside = [check_path("against", against)] if alone else check_paths("against", against)
-    other = stated | dict.fromkeys(("stock", "near", "cell", "accuracy")) | {"cl": (), "subprograms": ()}
+    other = stated | dict.fromkeys(("stock", "near", "cell", "accuracy")) | {"cl": (), "subprograms": (), "hooks": ()}
     if against_machine is not None:  # where the part lies is not the same there
         other |= {"machine": against_machine, "zero": None, "tool_length": None}
     second, other_run = _prepared(beside, settings, observer, **other)
@@ -73,8 +73,7 @@ def _prepared(
     placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
     of_stock = ("stock", "part", "fixtures", "tools", "tool_libraries", "unit", "near", "cell", "accuracy")
     simulated = view_simulation(placed, **{name: given[name] for name in of_stock})
-    others = check_paths("subprograms", given["subprograms"])
-    viewed = view_program(files, placed, cl=given["cl"], subprograms=others, settings=settings, observer=observer)
+    viewed = view_program(files, placed, given=given, settings=settings, observer=observer)
     if any(given[name] for name in ("stock", "part", "fixtures")):
         observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
     fixtures = check_paths("fixtures", given["fixtures"])
@@ -84,7 +83,7 @@ def _prepared(
     bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
     content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
     if simulated is not None:
-        content = with_stock(content, simulated, run, viewed.toolpaths, observer)
+        content = with_stock(content, simulated, viewed.verification, viewed.toolpaths, observer)
     return content, run
 
 
@@ -115,6 +114,8 @@ def write_view(
         For CL files, as for ``post``.
     cl
         Its CL files: the page then names the CL line of each block, and what the proof finds.
+    hooks
+        Python files that change the CL files, as for ``post``. They are run; those of a project are not.
     subprograms
         Files of the subprograms that it calls. No others are opened.
     stock, near, cell, accuracy

@@ -20,7 +20,8 @@ from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
-from trunnion.readers.control.row_recorder import MAX_POSITION, Note, RowRecorder
+from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.control.row_recorder import MAX_POSITION, RowRecorder
 from trunnion.readers.control.rows_in_use import RowsInUse
 from trunnion.readers.control.trailing_modes import TrailingModes, WordPlace
 
@@ -186,14 +187,9 @@ class CoordinateControl(RowRecorder):
     def note_stored_offset(self, word: str, system: int, *, clears: bool, what: str = OFFSET) -> None:
         """Remember where the program wrote a work offset, or a position, that the control keeps beyond its end.
 
-        Parameters
-        ----------
-        word
-            Of the block, for messages.
-        system
-            Which offset it wrote; a number of its own for anything else.
-        clears
-            Whether it is zero now: that only tidies up an offset which the program wrote before it moved.
+        word    of the block, for messages
+        system  which offset it wrote; a number of its own for anything else
+        clears  whether it is zero now: that only tidies up an offset which the program wrote before it moved
         """
         first, used = self._stored_systems.setdefault(system, self.row), self._in_use.at_part
         if self._stored_offsets and self._stored_offsets[0][0] < used:

@@ -2,7 +2,7 @@
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 
 
 class Preconditions:

@@ -1,11 +1,11 @@
-"""Rows of motion blocks, the modal state that belongs to them, and the axis positions after them.
+"""Rows of motion blocks, and the axis positions after them.
 
 This part of the virtual control records: it takes the ends of motions, one by one or from a scan, and writes columns.
 What programmed positions mean is the subject of ``trunnion.readers.control.coordinates``.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,41 +25,21 @@ from trunnion.model.axis_positions import (
     resolve_rotary,
     slide_columns,
 )
-from trunnion.model.run import (
-    Comment,
-    Diagnostic,
-    EventValue,
-    ProgrammedWord,
-    Run,
-    RunEvent,
-    SpindleHole,
-    SpindleWork,
-)
+from trunnion.model.run import Comment, Diagnostic, ProgrammedWord, Run
 from trunnion.model.run_columns import SurfaceNormals
+from trunnion.model.spindle_work import SpindleHole, SpindleWork
 from trunnion.model.splines import SplineRows, Splines
 from trunnion.model.toolpath import Arcs, Kind
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
-from trunnion.readers.control.modal_builder import ModalBuilder
-from trunnion.readers.control.row_buffer import RowBuffer
+from trunnion.readers.control.event_recorder import EventRecorder, Note
 from trunnion.readers.scan.buffers import MAX_BLOCKS, BlockWords, RowColumns, ScanRecords, ScanSettings
 from trunnion.readers.scan.rows import execute_blocks
-from trunnion.wording import format_duration
 
 #: Larger positions (mm, degrees) are mistakes: no machine reaches so far.
 MAX_POSITION: Final = 1e7
 
-#: Dwells that are longer, seconds, are told: most are slips of the unit.
-_LONG_DWELL: Final = 60.0
-
-#: Values of the event "spindle", and the sense in which it turns then: 0, it stands. A spindle that is oriented or has
-#: become an axis stands until the program starts it again.
-SPINDLE_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0, "oriented": 0, "axis": 0}
-
 _ROTARY_WORDS: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
-
-#: Reports a diagnostic at the block that is being executed.
-Note = Callable[[Wording, Severity], None]
 
 
 class ScannedRows(NamedTuple):
@@ -85,7 +65,7 @@ _SPLINES_AT_A_TIME: Final = 4096
 _SAME_NORMAL: Final = 1e-9
 
 
-class RowRecorder:
+class RowRecorder(EventRecorder):
     """Records the rows and events of a run.
 
     line, block_number   of the block that is being executed
@@ -105,20 +85,10 @@ class RowRecorder:
     knows_units = False
 
     def __init__(self, machine: Machine, note: Note) -> None:
+        super().__init__(note)
         self.machine = machine
-        self.note = note
-        self.line = 0
         self.block_number = -1
         self.units_from: int | None = 0 if self.knows_units else None
-        self.columns = RowBuffer()
-        self.modal = ModalBuilder()
-        self.events: list[RunEvent] = []
-        self._told_words: set[str] = set()
-        self._told_waits: set[tuple[int, int]] = set()
-        self.tools: dict[str, int] = {"": 0}
-        self._tool_names = [""]
-        self._selected_tool = 0
-        self._tool_deltas: dict[str, float] = {}
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
         #: Whole turns of all arcs so far.
         self.turns = 0
@@ -144,11 +114,6 @@ class RowRecorder:
         self._records = ScanRecords.empty()
 
     @property
-    def row(self) -> int:
-        """The row that the next motion becomes."""
-        return self.columns.n
-
-    @property
     def programmed_position(self) -> Floats:
         """X, Y and Z as programmed, (3,) mm; writable."""
         return self._commanded[:3]
@@ -165,81 +130,6 @@ class RowRecorder:
     @programmed_feed.setter
     def programmed_feed(self, feed: float) -> None:
         self._commanded[3] = feed
-
-    def add_event(self, kind: str, value: EventValue = None) -> None:
-        """Record an event before the next row; what happens to the spindle is in the columns too."""
-        modal = self.modal
-        if kind == "spindle":
-            modal.spindle.set(self.row, SPINDLE_SENSES[str(value)])
-        if kind == "dwell" and isinstance(value, float):
-            self._judge_dwell(value)
-        self.events.append(RunEvent(self.line, self.row, kind, value, modal.file.current, bool(modal.tcp.current)))
-
-    def _judge_dwell(self, amount: float) -> None:
-        """Note a long dwell: seconds, or turns of the spindle if below zero."""
-        rpm = float(self.modal.rpm.current)
-        seconds = amount if amount >= 0.0 else -60.0 * amount / rpm if rpm > 0.0 else 0.0
-        if seconds > _LONG_DWELL and math.isfinite(seconds):
-            self.note_wait(Wording("NC226", "long_dwell", duration=format_duration(seconds)))
-
-    def note_wait(self, wait: Wording) -> None:
-        """Note once for each block that the machine waits, or stops, there."""
-        place = self.modal.file.current, self.line
-        if place not in self._told_waits:
-            self._told_waits.add(place)
-            self.note(wait, Severity.WARNING)
-
-    def add_builders_word(self, letter: str, value: float) -> None:
-        """Record an M or H word of the machine's builder, and note the first of each: nobody has said what it does."""
-        self.add_event(letter.lower(), value)
-        word = f"{letter}{value:g}"
-        if word not in self._told_words:
-            self._told_words.add(word)
-            self.note(Wording("NC225", "word_of_machine", word=word), Severity.WARNING)
-
-    # Tools
-
-    def select_tool(self, name: str) -> None:
-        """Select the tool for the next change."""
-        self._selected_tool = self.tools.setdefault(name, len(self.tools))
-        if self._selected_tool == len(self._tool_names):
-            self._tool_names.append(name)
-        self.add_event("tool", name)
-
-    def change_tool(self) -> None:
-        """Change to the selected tool."""
-        self.modal.tool.set(self.row, self._selected_tool)
-        self.add_event("tool_change", self._tool_names[self._selected_tool])
-
-    def add_tolerance(self, tolerance: float) -> None:
-        """Record within which tolerance the control may round off the path from now on, mm; 0: none."""
-        self.add_event("tolerance", tolerance)
-
-    def add_exact_stop(self, mode: str) -> None:
-        """Record how the control goes through the ends of blocks from now on.
-
-        ``on``: it stops at each; ``path``: it never leaves the path, and stops where it must; ``off``: as its settings
-        say; ``block``: it stops at the end of this block.
-        """
-        self.add_event("exact_stop", mode)
-
-    def add_tool_delta(self, name: str, value: float) -> None:
-        """Record that the program adds to the length or the radius of the tool, mm: the path does not show it.
-
-        0 takes back what was added before.
-        """
-        if not value and not self._tool_deltas.get(name):
-            return
-        self._tool_deltas[name] = value
-        self.add_event("delta", (name, value))
-        if not value:
-            return
-        self.note(Wording("NC360", "tool_delta", word=name, value=value), Severity.WARNING)
-
-    @property
-    def tool_in_spindle(self) -> str:
-        """Number or name of the tool in the spindle; empty before the first change."""
-        return self._tool_names[self.modal.tool.current]
 
     # Rows
 

@@ -16,16 +16,18 @@ from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.messages import Wording
 from trunnion.model import axis_positions
-from trunnion.model.run import ProgrammedWord, SpindleWork
+from trunnion.model.run import ProgrammedWord
+from trunnion.model.spindle_work import SpindleWork
 from trunnion.model.splines import Spline, SplineRows
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, AxisWord, PositionMode, RotaryTarget
 from trunnion.readers.control.coordinates import CoordinateControl
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.preconditions import Preconditions
-from trunnion.readers.control.row_recorder import Note, ScannedRows, within_limits
+from trunnion.readers.control.row_recorder import ScannedRows, within_limits
 from trunnion.readers.scan.buffers import ScanSettings
 
 #: Motions in force: G0 and G1.

@@ -9,7 +9,8 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.model.run import Run, SpindleTask, SpindleWork
+from trunnion.model.run import Run
+from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
 from trunnion.verification.checks.peck_faults import peck_faults

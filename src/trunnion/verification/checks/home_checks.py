@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
+from trunnion.messages import phrase
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
@@ -127,7 +128,10 @@ def _check_other_positions(context: Context) -> Check:
     changes = [(place, event) for place, event in changes if event.before_row > 0]
     lost = [event for place, event in changes if not away(place)]
     if len(lost) == len(changes):
-        return Check("home", _TITLE, True, "not checked: machine positions other than the home of the definition")
+        return Check(
+            "home", _TITLE, True, "machine positions other than the home of the definition",
+            missing=(phrase("no_home"),),
+        )  # fmt: skip
     text = "changes the tool without the retract that stands before other tool changes"
     places = [context.place_of_event(event, 0.0, text) for event in lost]
     good = "a retract before every tool change, to machine positions other than the home of the definition"
@@ -155,7 +159,7 @@ def _check_retracts_by_word(context: Context) -> Check:
             if since is None or (since & int(_SLIDE_WORDS)).any():
                 lost.append(event)
     if sum(event.kind == "tool_change" for event in lost) == changes:
-        return Check("home", _TITLE, True, "not checked: no home moves")
+        return Check("home", _TITLE, True, "", missing=(phrase("no_home"),))
     what = {"tool_change": "changes the tool", "end": "ends"}
     text = "without the retract that stands before other tool changes"
     places = [context.place_of_event(event, 0.0, f"{what[event.kind]} {text}") for event in lost]

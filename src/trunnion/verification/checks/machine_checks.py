@@ -4,11 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from trunnion.machines import Axis
+from trunnion.messages import Wording, phrase
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion
-from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
+from trunnion.verification.kinematics.machine_positions import MachinePositions
+from trunnion.verification.kinematics.machine_travel import positions_beyond_travel, unknown_steps
 from trunnion.verification.kinematics.worst_rows import WorstRows
-from trunnion.verification.results import Check
+from trunnion.verification.results import Check, Coverage
 from trunnion.wording import counted
 
 #: Travel beyond a limit by less than this is rounding, mm or degrees.
@@ -24,6 +26,7 @@ class _Margin:
     text: str
     value: float
     row: int
+    within: str = ""
 
     @property
     def share(self) -> float:
@@ -32,38 +35,40 @@ class _Margin:
 
 
 def check_travel(context: Context, motion: AxisMotion) -> Check:
-    """Every axis is inside its limits; the summary has the smallest margin."""
+    """Every axis is inside its limits; the summary has the least distance of each axis to one, at the part."""
     title = "travel of the axes"
-    margins = sorted([*_margins(context, motion), *_machine_margins(context)], key=lambda margin: margin.share)
-    unchecked = _unchecked_axes(context)
-    if not margins:
-        return Check("travel", title, True, unchecked or "no axis with limits moves")
-    over = [margin for margin in margins if margin.left < -_ROUNDING]
+    coverage, unknown = _coverage(context, motion)
+    margins = sorted(_margins(context, motion), key=lambda margin: margin.share)
+    over = [margin for margin in (*margins, *_machine_margins(context)) if margin.left < -_ROUNDING]
+    if not (margins or over):
+        return Check("travel", title, True, "no axis with limits moves", missing=unknown, coverage=coverage)
+    over.sort(key=lambda margin: margin.share)
     places = tuple(
         context.place(margin.row, margin.value, f"{margin.text}, {_words(margin.left, margin.left < 0)}")
         for margin in (over or margins)
     )
-    least = margins[0]
-    unit = "deg" if least.axis.is_rotary else "mm"
-    summary = "; ".join(filter(None, (f"{least.text}, {_words(least.left, bool(over))}", unchecked)))
-    return Check("travel", title, not over, summary, least.left, 0.0, unit, places)
+    worst = (over or margins)[0]
+    unit = "deg" if worst.axis.is_rotary else "mm"
+    summary = places[0].text if over else ", ".join(_least(context, margin) for margin in margins)
+    return Check("travel", title, not over, summary, worst.left, 0.0, unit, places, unknown, coverage)
 
 
-def _unchecked_axes(context: Context) -> str:
-    """Which axes this check says nothing about, and why; empty if it judges all of them as they stand."""
-    machine = context.run.machine
-    without = [axis.name for axis in machine.axes if not axis.endless and not axis.has_limits]
-    reasons = [f"{', '.join(without)}: not checked, the definition states no travel"] if without else []
-    unplaced = [axis.name for k, axis in enumerate(machine.axes) if axis.has_limits and not machine.is_placed(k)]
-    if unplaced:
-        missing = [
-            *(["workpiece zero"] if machine.workpiece_zero is None else []),
-            *(["tool length"] if machine.tool_length is None else []),
-        ]
-        their = "their" if len(unplaced) > 1 else "its"
-        unknown = f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} not known"
-        reasons.append(f"{', '.join(unplaced)}: only the length of {their} travel, {unknown}")
-    return "; ".join(reasons)
+def _least(context: Context, margin: "_Margin") -> str:
+    """Return the least distance of an axis to a limit, and where that is."""
+    unit = "deg" if margin.axis.is_rotary else "mm"
+    return f"{margin.axis.name} {margin.left:.3f} {unit} left in {context.block_name(margin.row)}{margin.within}"
+
+
+def _coverage(context: Context, motion: AxisMotion) -> tuple[Coverage, tuple[Wording, ...]]:
+    """Return which motions are looked at, and what is missing for the others where zero and tool length are known."""
+    run, unknown = context.run, motion.unknown
+    left_out = dict(zip(unknown.rows.tolist(), unknown.reasons, strict=True))
+    left_out |= dict.fromkeys(unknown_steps(run).tolist(), phrase("left_step_unknown"))
+    rows = sorted(left_out)
+    places = tuple(context.place(row, 0.0, left_out[row].what) for row in rows[:MAX_PLACES])
+    coverage = Coverage(len(run) - len(rows), len(run), places)
+    is_placed = MachinePositions.of(run).known
+    return coverage, (phrase("motions_unknown", count=len(rows)),) if rows and is_placed else ()
 
 
 def _words(left: float, too_far: bool) -> str:
@@ -88,13 +93,14 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
             within = _within(context, motion, k, (0, 1))
             counted_too = f", counting what it does{within}" if within else ""
             text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm{counted_too}"
-            yield _Margin(axis, (axis.high - axis.low) - (high - low), text, high - low, rows[1])
+            needs = f", it needs {high - low:.3f} of {axis.high - axis.low:g}"
+            yield _Margin(axis, (axis.high - axis.low) - (high - low), text, high - low, rows[1], needs)
             continue
         value, limit, row = (low, axis.low, rows[0]) if below < above else (high, axis.high, rows[1])
         tool = "" if is_placed else " with a tool 0 mm long"
         unit, within = "deg" if axis.is_rotary else "mm", _within(context, motion, k, (0,) if below < above else (1,))
         text = f"{axis.name} goes to {value:.3f}{within}{tool}, its limit is {limit:g} {unit}"
-        yield _Margin(axis, min(below, above), text, value, row)
+        yield _Margin(axis, min(below, above), text, value, row, f" at {value:.3f}{tool}{within and ', on the way'}")
 
 
 def _within(context: Context, motion: AxisMotion, column: int, sides: Sequence[int]) -> str:
@@ -108,7 +114,8 @@ def _machine_margins(context: Context) -> Iterator[_Margin]:
     """Positions in machine coordinates beyond the travel; those within it are no measure of the room at the part."""
     for found in positions_beyond_travel(context.run):
         axis = context.run.machine.axes[found.column]
-        text = f"{axis.name} goes to {found.value:.3f} in machine coordinates, its limit is {found.limit:g} mm"
+        unit = "deg" if axis.is_rotary else "mm"
+        text = f"{axis.name} goes to {found.value:.3f} in machine coordinates, its limit is {found.limit:g} {unit}"
         yield _Margin(axis, -found.beyond, text, found.value, found.row)
 
 
@@ -116,7 +123,7 @@ def check_speed(context: Context, motion: AxisMotion) -> Check:
     """Shares of rapid speed; the control slows down where more than all of it is needed, so this never fails."""
     title = "speed of the axes at the programmed feed"
     if not any(axis.rapid for axis in context.run.machine.axes):
-        return _not_stated("speed", title, "rapid speed")
+        return Check("speed", title, True, "")
     return _check_shares(context, motion.speed, "speed", title, "rapid speed", "no axis moves at feed")
 
 
@@ -124,13 +131,9 @@ def check_acceleration(context: Context, motion: AxisMotion) -> Check:
     """Shares of acceleration; the control slows down where more than all of it is needed, so this never fails."""
     title = "acceleration of the axes between blocks"
     if not any(axis.acceleration for axis in context.run.machine.axes):
-        return _not_stated("acceleration", title, "acceleration")
+        return Check("acceleration", title, True, "")
     none = "no two motions at feed follow each other"
     return _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", none)
-
-
-def _not_stated(key: str, title: str, quantity: str) -> Check:
-    return Check(key, title, True, f"the machine's definition states no {quantity}")
 
 
 def _check_shares(

@@ -4,10 +4,13 @@ In:     what is known of a program once its rows have been seen.
 Out:    checks.
 """
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import Any, Final, TypeVar
 
+from trunnion.messages import phrase
+from trunnion.verification.basis import ACCELERATION, RAPID, SPINDLE, TOOL_LENGTH, TRAVEL, ZERO, Basis, missing_of
+from trunnion.verification.checks.basis_check import check_basis
 from trunnion.verification.checks.compensation_checks import check_compensation
 from trunnion.verification.checks.coolant_checks import check_coolant
 from trunnion.verification.checks.feed_checks import check_feed
@@ -72,19 +75,47 @@ _Needed = TypeVar("_Needed", bound=Measured)
 class CheckEntry:
     """One check.
 
-    key    as results, ``docs/checks.md`` and explanations have it
-    needs  what it takes: ``Compared`` where it compares with CL files
-    run    makes it, or none where it is no question of the program
+    key      as results, ``docs/checks.md`` and explanations have it
+    needs    what it takes: ``Compared`` where it compares with CL files
+    run      makes it, or none where it is no question of the program
+    bases    what somebody has to state; without one of them it is not checked, or only in part
+    title    of one that is always made, where there is nothing to compare with
     """
 
     key: str
     needs: type[Measured]
     run: Callable[[Any], Iterable[Check]]
+    bases: tuple[Basis, ...] = ()
+    title: str = ""
+
+    def checks(self, seen: Measured) -> Iterator[Check]:
+        """Make the check, as far as what it needs is there."""
+        if isinstance(seen, self.needs):
+            missing = missing_of(self.bases, seen.context.run.machine)
+            yield from (replace(check, missing=(*missing, *check.missing)) for check in self.run(seen))
+        elif self.title:
+            yield Check(self.key, self.title, True, "", missing=(phrase("no_cl_file"),))
 
 
-def _check(key: str, needs: type[_Needed], run: Callable[[_Needed], Check]) -> CheckEntry:
-    return CheckEntry(key, needs, lambda seen: (run(seen),))
+def _check(key: str, needs: type[_Needed], run: Callable[[_Needed], Check], *bases: Basis) -> CheckEntry:
+    return CheckEntry(key, needs, lambda seen: (run(seen),), bases, _TITLES.get(key, ""))
 
+
+#: Of checks that compare with CL files, where there are none.
+_TITLES: Final = {
+    "order": "every CL point has its block, every block its point",
+    "tip": "tool tip against the CL points",
+    "axis": "tool axis against the CL points",
+    "kind": "rapid, line or circle as the CL file says",
+    "feed": "feeds as the CL file says",
+    "spindle": "spindle as the CL file says",
+    "tool": "tools as the CL file says",
+    "coolant": "coolant as the CL file says",
+    "compensation": "radius compensation as the CL file says",
+    "stops": "stops and dwells as the CL file says",
+    "home": "retracts to the machine's home",
+    "holes": "holes as the cycles of the CL file ask",
+}
 
 CHECKS: Final = (
     _check("order", Compared, lambda seen: check_order(seen.context)),
@@ -103,17 +134,17 @@ CHECKS: Final = (
     CheckEntry("normal", Compared, lambda seen: check_normals(seen.context)),
     CheckEntry("reach", Compared, lambda seen: check_reach(seen.context, seen.original)),
     _check("span", Measured, lambda seen: check_between_points(seen.context, seen.motion, seen.errors)),
-    _check("travel", Measured, lambda seen: check_travel(seen.context, seen.motion)),
-    _check("speed", Measured, lambda seen: check_speed(seen.context, seen.motion)),
-    _check("acceleration", Measured, lambda seen: check_acceleration(seen.context, seen.motion)),
-    _check("rpm", Measured, lambda seen: check_spindle_range(seen.context)),
+    _check("travel", Measured, lambda seen: check_travel(seen.context, seen.motion), TRAVEL, ZERO, TOOL_LENGTH),
+    _check("speed", Measured, lambda seen: check_speed(seen.context, seen.motion), RAPID),
+    _check("acceleration", Measured, lambda seen: check_acceleration(seen.context, seen.motion), ACCELERATION),
+    _check("rpm", Measured, lambda seen: check_spindle_range(seen.context), SPINDLE),
     _check("turns", Measured, lambda seen: check_turns(seen.context)),
     _check("modal", Measured, lambda seen: check_modal_state(seen.context)),
     _check("words", Measured, lambda seen: check_words(seen.context)),
+    CheckEntry("basis", Measured, lambda seen: check_basis(seen.context)),
 )
 
 
 def all_checks(seen: Measured) -> tuple[Check, ...]:
-    """Every check that can be made of what is known."""
-    entries = (entry for entry in CHECKS if isinstance(seen, entry.needs))
-    return tuple(check for entry in entries for check in entry.run(seen))
+    """Every check; those that need more than is known are not checked."""
+    return tuple(check for entry in CHECKS for check in entry.checks(seen))

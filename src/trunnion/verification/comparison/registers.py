@@ -9,7 +9,8 @@ change can be compared.
 """
 
 from collections.abc import Callable, Hashable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -83,20 +84,20 @@ def _registers(one: Run, two: Run, same_words: bool) -> Iterator[Register]:
     offsets = [run.state.work_offset for run in runs]
     if not same_words:
         offsets = [_in_order(column) for column in offsets]
-    yield _register("work offset", runs, offsets, _offset_words, _in_workpiece, of_path=True)
+    yield replace(_register("work offset", runs, offsets, _offset_words, _in_workpiece), of_path=True)
     sides = [run.state.compensation for run in runs]
-    yield _register("radius compensation", runs, sides, _side_words, _everywhere, of_path=True)
+    yield replace(_register("radius compensation", runs, sides, _side_words, _everywhere), of_path=True)
     numbers: dict[Hashable, int] = {}
     digit = _LAST_DIGIT_OF_INCHES if any(run.state.inches.values.any() for run in runs) else _LAST_DIGIT
     deltas = [_delta_column(run, same_words, digit, numbers) for run in runs]
-    yield _register("added to the tool:", runs, deltas, _delta_words, _everywhere, of_path=True)
+    yield replace(_register("added to the tool:", runs, deltas, _delta_words, _everywhere), of_path=True)
     if not same_words:
         return
     name = "tool length" if one.uses_length_numbers else "cutting edge"
     yield _register(name, runs, [run.state.edge for run in runs], _edge_words, _in_workpiece)
     yield _register("radius of", runs, [run.state.radius for run in runs], _radius_words, _compensated)
     tolerances = [_tolerance_column(run) for run in runs]
-    yield _register("tolerance", runs, tolerances, _tolerance_words, _cutting, within=digit)
+    yield replace(_register("tolerance", runs, tolerances, _tolerance_words, _cutting), within=digit)
 
 
 def _register(
@@ -105,14 +106,11 @@ def _register(
     columns: list[StepColumn],
     words: Callable[[Run, int], str],
     counts: Callable[[Run, Ints], Flags],
-    *,
-    of_path: bool = False,
-    within: float = 0.0,
 ) -> Register:
+    """Return a register that counts for the rest of the comparison only."""
     one, two = runs
     first, second = columns
-    calls = (lambda row: words(one, row), lambda row: words(two, row))
-    return Register(name, (first, second), calls, counts, of_path, within)
+    return Register(name, (first, second), (partial(words, one), partial(words, two)), counts)
 
 
 def _in_order(column: StepColumn) -> StepColumn:

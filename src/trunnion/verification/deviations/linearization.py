@@ -50,6 +50,22 @@ class DefaultLimits:
     rounding: float
 
 
+@dataclass(frozen=True, slots=True)
+class SpanLimits:
+    """How far tip and tool axis may be off between points.
+
+    tip            mm
+    axis           degrees; None: any, or as ``by_default``
+    tip_tolerance  how far points themselves may be off, mm
+    by_default     limits of the tool axis by where it is; None: ``axis``
+    """
+
+    tip: float
+    axis: float | None = None
+    tip_tolerance: float = 0.0
+    by_default: DefaultLimits | None = None
+
+
 class LinearizationErrors:
     """Collects linearization errors of a run, chunk by chunk; up to ``max_rows`` rows beyond each limit are kept.
 
@@ -65,23 +81,19 @@ class LinearizationErrors:
         self,
         run: Run,
         max_rows: int,
-        tip_limit: float,
-        axis_limit: float | None,
-        tip_tolerance: float = 0.0,
+        limits: SpanLimits,
         expected: ExpectedPath | None = None,
         matching: Matching | None = None,
-        *,
-        by_default: DefaultLimits | None = None,
     ) -> None:
         self._run = run
-        self._tip_uncertainty = 2.0 * math.sqrt(3.0) * tip_tolerance
+        self._tip_uncertainty = 2.0 * math.sqrt(3.0) * limits.tip_tolerance
         self._chain = kinematic_chain(run.machine)
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._expected = expected
         self._matching = matching
-        self._by_default = by_default
-        self.tip = WorstRows(tip_limit, max_rows)
-        self.axis = WorstRows(0.0 if by_default else math.inf if axis_limit is None else axis_limit, max_rows)
+        self._by_default = limits.by_default
+        self.tip = WorstRows(limits.tip, max_rows)
+        self.axis = WorstRows(0.0 if limits.by_default else math.inf if limits.axis is None else limits.axis, max_rows)
 
     @cached_property
     def _cl_row(self) -> Lines:

@@ -17,7 +17,7 @@ from trunnion.jit import kernel
 from trunnion.machines import Machine
 from trunnion.model.run import RowPositions
 from trunnion.verification.expected.path import ExpectedPath, Section
-from trunnion.verification.kinematics.axis_difference import RotaryGeometry, axis_difference, degrees_apart
+from trunnion.verification.kinematics.axis_difference import RotaryGeometry, RotaryPair, axis_difference, degrees_apart
 from trunnion.verification.matching.pairs import Matching
 
 #: Square degrees in a square radian.
@@ -73,7 +73,7 @@ class PointDeviations:
         off_tip, off_axis = np.empty(count), np.empty(count)
         squares = compare_rows(
             positions.tip, positions.axis, positions.joints, moves.tip, moves.axis, nc, cl, geometry.column,
-            geometry.sense, geometry.first, geometry.second, off_tip, off_axis,
+            geometry.pair, off_tip, off_axis,
         )  # fmt: skip
         by_vector = self._by_vector[row]
         if by_vector.any():  # a programmed vector is off by an angle, not in rotary axes
@@ -140,16 +140,14 @@ def compare_rows(
     nc: Ints,
     cl: Ints,
     column: int,
-    sense: float,
-    first: Floats,
-    second: Floats,
+    pair: RotaryPair,
     off_tip: Floats,
     off_axis: Floats,
 ) -> tuple[float, float]:
     """Write the largest deviation of each pair in X, Y or Z (mm) and in either rotary axis (deg).
 
-    Returns the sums of squared distances: of tips in mm, of tool axes in degrees. ``column``, ``sense``, ``first`` and
-    ``second`` are as in ``RotaryGeometry``.
+    Returns the sums of squared distances: of tips in mm, of tool axes in degrees. ``column`` is that of
+    ``RotaryGeometry``.
     """
     squares_tip = 0.0
     squares_axis = 0.0
@@ -161,6 +159,6 @@ def compare_rows(
         squares_tip += dx * dx + dy * dy + dz * dz
         largest = max(abs(dx), abs(dy), abs(dz))
         off_tip[k] = largest if largest == largest else np.inf
-        angle, off_axis[k] = axis_difference(nc_axis, i, cl_axis, j, joints[i, column], sense, first, second)
+        angle, off_axis[k] = axis_difference(nc_axis, i, cl_axis, j, joints[i, column], pair)
         squares_axis += angle * angle
     return squares_tip, squares_axis * _SQUARE_DEGREES

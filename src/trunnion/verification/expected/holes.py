@@ -10,6 +10,7 @@ import math
 from bisect import bisect_right
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -116,28 +117,32 @@ def without_rows(operation: Operation, gone: Flags) -> Operation:
     return replace(operation, moves=moves.select(kept), arcs=left, splines=splines, events=events)
 
 
-def holes_of_operation(
-    operation: Operation,
-    hole_rows: Flags,
-    first: int,
-    file: str,
-    tolerances: Tolerances,
-    tool: ExpectedTool,
-    spindle: ExpectedSpindle | None,
-) -> list[Hole]:
+class HoleSource(NamedTuple):
+    """Where the holes of an operation are from, and what drills them.
+
+    file        the CL file
+    first       the CL row, counted without holes, of its first row that is none
+    tolerances  of the operation
+    tool        that drills all of them
+    spindle     when the operation begins
+    """
+
+    file: str
+    first: int
+    tolerances: Tolerances
+    tool: ExpectedTool
+    spindle: ExpectedSpindle | None
+
+
+def holes_of_operation(operation: Operation, hole_rows: Flags, source: HoleSource) -> list[Hole]:
     """Return the holes of an operation as the CL file has it.
 
     Parameters
     ----------
     hole_rows : (n,) bool
         Which rows of the operation are holes.
-    first
-        The CL row, counted without holes, of its first row that is none.
-    tool
-        The tool that drills all of them.
-    spindle
-        The spindle when the operation begins.
     """
+    file, first, tolerances, tool, spindle = source
     rows = np.flatnonzero(hole_rows)
     cl_rows = first + rows - np.arange(len(rows))
     cycles = [event for event in operation.events if isinstance(event, CycleOn)]

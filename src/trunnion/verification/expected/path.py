@@ -29,7 +29,7 @@ from trunnion.model.toolpath import (
     Toolpath,
 )
 from trunnion.verification.expected.frames import transform_to_frame
-from trunnion.verification.expected.holes import Hole, holes_of_operation, without_holes, without_rows
+from trunnion.verification.expected.holes import Hole, HoleSource, holes_of_operation, without_holes, without_rows
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedSpindles, ExpectedTool
 from trunnion.verification.expected.tolerances import Tolerances
 
@@ -136,7 +136,8 @@ class ExpectedPath:
             settings = settings_of(placed.name)
             tool = ExpectedTool(*loads[-1]) if loads else tool
             tool = replace(tool, name=placed.tool.name, called=settings.tool)
-            found += holes_of_operation(placed, hole_rows, first, path.file, limit, tool, spindle)
+            source = HoleSource(path.file, first, limit, tool, spindle)
+            found += holes_of_operation(placed, hole_rows, source)
             spindle = ExpectedSpindles(placed, spindle).at(len(placed.moves))
             if limit.deviations is not None and hole_rows.any():
                 limit = replace(limit, deviations=limit.deviations.without_rows(hole_rows))

@@ -6,7 +6,7 @@ how far each rotary axis is off from the forward map alone, and leaves out an an
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -36,6 +36,11 @@ class RotaryGeometry:
     first: Floats
     second: Floats
 
+    @property
+    def pair(self) -> "RotaryPair":
+        """The axes, as kernels take them."""
+        return RotaryPair(self.sense, self.first, self.second)
+
     @staticmethod
     def of(machine: Machine) -> "RotaryGeometry":
         """From a machine's definition."""
@@ -44,15 +49,23 @@ class RotaryGeometry:
         return RotaryGeometry(first, one.sense, np.array(one.direction), np.array(two.direction))
 
 
+class RotaryPair(NamedTuple):
+    """``sense``, ``first`` and ``second`` of ``RotaryGeometry``, as kernels take them."""
+
+    sense: float
+    first: Floats
+    second: Floats
+
+
 @inner
 def axis_difference(
-    actual: Floats, i: int, expected: Floats, j: int, value: float, sense: float, first: Floats, second: Floats
+    actual: Floats, i: int, expected: Floats, j: int, value: float, pair: RotaryPair
 ) -> tuple[float, float]:
     """Angle between tool axes ``actual[i]`` and ``expected[j]``, rad, and the larger error of both rotary axes, deg.
 
-    ``value`` is the position of the first rotary axis under ``actual[i]``, degrees; ``sense``, ``first`` and ``second``
-    are as in ``RotaryGeometry``.
+    ``value`` is the position of the first rotary axis under ``actual[i]``, degrees.
     """
+    sense, first, second = pair
     w0, w1, w2 = first[0], first[1], first[2]
     v0, v1, v2 = second[0], second[1], second[2]
     a0, a1, a2 = actual[i, 0], actual[i, 1], actual[i, 2]

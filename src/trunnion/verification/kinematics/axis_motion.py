@@ -27,7 +27,7 @@ from trunnion.model.turning_lines import LineSearch, TurningLines
 from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
-from trunnion.verification.kinematics.positioning_moves import approach_rows
+from trunnion.verification.kinematics.unknown_approaches import UnknownApproaches, unknown_approaches
 from trunnion.verification.kinematics.worst_rows import WorstRows
 
 
@@ -42,10 +42,11 @@ class AxisMotion:
     acceleration    for each axis, the share of its acceleration
     axis_deviation  degrees between the tool axis half-way and the great circle, in rows at feed
     tip_deviation   mm between the tip half-way and its straight line, in lines without TCP
-    extremes        (5, 2) lowest and highest values, mm or deg: of slides in workpiece motions, also between the ends
-                    of arcs and of lines on which rotary axes turn under TCP; of rotary axes in all
+    extremes        (5, 2) lowest and highest values in workpiece motions, mm or deg; of slides also between the ends
+                    of arcs and of lines on which rotary axes turn under TCP
     extreme_rows    (5, 2) the rows that reach them, -1 for none
     within_lines    (5, 2) bool: between the ends of a line on which rotary axes turn
+    unknown         rows that are left out of the extremes, since nobody knows where they begin
     """
 
     seconds: Floats
@@ -58,6 +59,7 @@ class AxisMotion:
     extremes: Floats
     extreme_rows: Ints
     within_lines: Flags
+    unknown: UnknownApproaches
 
 
 class AxisMotionAnalyzer:
@@ -70,7 +72,7 @@ class AxisMotionAnalyzer:
         self._run = run
         self._limits = AxisLimits.of(run.machine)
         self._feeds = RowFeeds(run)
-        self._approach_rows = approach_rows(run)
+        self._unknown = unknown_approaches(run)
         self._carry = np.zeros(6)
         self._timer = RunTimer(run) if times else None
         axes = run.machine.axes
@@ -85,6 +87,7 @@ class AxisMotionAnalyzer:
             extremes=np.column_stack((np.full(5, math.inf), np.full(5, -math.inf))),
             extreme_rows=np.full((5, 2), -1, np.int64),
             within_lines=np.zeros((5, 2), np.bool_),
+            unknown=self._unknown,
         )
         motion = self._motion
         self._line_search = LineSearch(run.machine, motion.extremes, motion.extreme_rows, motion.within_lines)
@@ -96,8 +99,8 @@ class AxisMotionAnalyzer:
         run, motion, count = self._run, self._motion, end - first
         state, kind = run.state, run.kind[first:end]
         tcp, machine_frame = state.tcp.part(first, end), state.machine_frame.part(first, end)
-        # On the first leg of an approach the tool is still as high as the machine position before it.
-        here = self._approach_rows[(self._approach_rows >= first) & (self._approach_rows < end)]
+        # On the first leg of an approach the tool is still as high as before it, which may be known to nobody.
+        here = self._unknown.rows[(self._unknown.rows >= first) & (self._unknown.rows < end)]
         machine_frame[here - first] = True
         feeds = self._feeds.part(first, end, positions)
         arcs = ArcSpeeds.of(run, first, end, positions)

@@ -106,8 +106,9 @@ def axis_motion_rows(
         row = first + at
         # Circles by their centre and motions of cycles name no axis (bits 0 to 5), and move slides.
         names_slides = programmed[at] & 7 != 0 or programmed[at] & 63 == 0
-        slides_count = not machine_frame[at] and (tcp[at] or names_slides)
-        turned = _axis_steps(joints, at, row, rotary, slides_count, extremes, extreme_rows)
+        counts = not machine_frame[at]
+        slides_count = counts and (tcp[at] or names_slides)
+        turned = _axis_steps(joints, at, row, rotary, counts, slides_count, extremes, extreme_rows)
         minutes = feeds[0, at] / feeds[1, at] if feeds[1, at] < math.inf else 0.0
         deviation[at] = 0.0
         at_feed = kind[at] != 0 and not machine_frame[at]
@@ -125,18 +126,25 @@ def axis_motion_rows(
 
 @inlined
 def _axis_steps(
-    joints: Floats, at: int, row: int, rotary: Flags, slides_count: bool, extremes: Floats, extreme_rows: Ints
+    joints: Floats,
+    at: int,
+    row: int,
+    rotary: Flags,
+    turns_count: bool,
+    slides_count: bool,
+    extremes: Floats,
+    extreme_rows: Ints,
 ) -> float:
     """How far the rotary axis turns that turns farthest, degrees.
 
-    Extremes are updated; those of slides if ``slides_count``.
+    Extremes are updated: those of rotary axes if ``turns_count``, those of slides if ``slides_count``.
     """
     turned = 0.0
     for k in range(5):
         value = joints[at + 1, k]
         if rotary[k]:
             turned = max(turned, abs(value - joints[at, k]))
-        if rotary[k] or slides_count:
+        if turns_count if rotary[k] else slides_count:
             if value < extremes[k, 0]:
                 extremes[k, 0] = value
                 extreme_rows[k, 0] = row

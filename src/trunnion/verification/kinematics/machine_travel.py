@@ -1,7 +1,7 @@
-"""How far slides go where a program sends them to positions of the machine: known without any workpiece zero.
+"""How far axes go where a program sends them to positions of the machine: known without any workpiece zero.
 
 In:     a run.
-Out:    the positions beyond the travel of their axes, mm, with their rows.
+Out:    the positions beyond the travel of their axes, mm or degrees, with their rows.
 """
 
 from collections.abc import Iterator
@@ -17,15 +17,15 @@ from trunnion.verification.kinematics.machine_positions import MachinePositions
 #: Travel beyond a limit by less than this is rounding, mm.
 _ROUNDING = 1e-5
 
-_SLIDES = (ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z)
+_SLIDE_WORDS = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
 
 
 @dataclass(frozen=True, slots=True)
 class MachinePosition:
-    """A slide that a block sends beyond its travel in machine coordinates.
+    """An axis that a block sends beyond its travel in machine coordinates.
 
-    column  of the slide in ``Machine.axes``
-    value   where it is sent, mm; limit: the end of the travel that it passes, mm
+    column  of the axis in ``Machine.axes``
+    value   where it is sent, mm or degrees; limit: the end of the travel that it passes
     row     of the run
     """
 
@@ -36,16 +36,16 @@ class MachinePosition:
 
     @property
     def beyond(self) -> float:
-        """How far it is beyond the limit, mm."""
+        """How far it is beyond the limit, mm or degrees."""
         return abs(self.value - self.limit)
 
 
 def positions_beyond_travel(run: Run) -> Iterator[MachinePosition]:
-    """Yield for each end of the travel of a slide the block that goes farthest beyond it, if one does.
+    """Yield for each end of the travel of an axis the block that goes farthest beyond it, if one does.
 
-    Only slides that a block names count: the others stay where nobody may know the machine position. Steps (G91) count
-    only where zero and tool length are known. Retracts by a word end at the travel by themselves. Home in inches is
-    home (``home_tolerance``).
+    Of slides only those that a block names count: the others stay where nobody may know the machine position. Steps
+    (G91) count only where zero and tool length are known. Retracts by a word end at the travel by themselves. Home in
+    inches is home (``home_tolerance``).
     """
     rows = run.state.machine_frame.rows_with(True)
     retracts = [event.before_row for event in run.events if event.kind == "retract"]
@@ -59,17 +59,27 @@ def positions_beyond_travel(run: Run) -> Iterator[MachinePosition]:
     yield from (farthest[key] for key in sorted(farthest))
 
 
+def unknown_steps(run: Run) -> Ints:
+    """Return the rows that move a slide by a step from a machine position that nobody knows, (k,), increasing."""
+    if MachinePositions.of(run).known:
+        return np.zeros(0, np.int64)
+    rows = run.state.machine_frame.rows_with(True)
+    return np.asarray(rows[(run.state.machine_steps.at(rows) & run.programmed[rows] & _SLIDE_WORDS) != 0])
+
+
 def _beyond(run: Run, rows: Ints) -> Iterator[MachinePosition]:
     """Yield the farthest of some rows at each end of each slide."""
     machine = run.machine
     joints, near_home = run.positions(rows).joints, home_tolerance(run, rows)
     known, steps = MachinePositions.of(run).known, run.state.machine_steps.at(rows)
-    for word in _SLIDES:
-        column = machine.column(str(word.name))
-        axis, values = machine.axes[column], joints[:, column]
-        named = (run.programmed[rows] & int(word)) != 0
-        if not known:
-            named &= (steps & int(word)) == 0
+    for column, axis in enumerate(machine.axes):
+        values = joints[:, column]
+        named = np.ones(len(rows), np.bool_)
+        if not axis.is_rotary:
+            word = ProgrammedWord[axis.name]
+            named = (run.programmed[rows] & int(word)) != 0
+            if not known:
+                named &= (steps & int(word)) == 0
         named &= np.abs(values - axis.home) > near_home[:, column]
         for limit, sign in ((axis.low, -1.0), (axis.high, 1.0)):
             over = np.where(named, sign * (values - limit), -np.inf)

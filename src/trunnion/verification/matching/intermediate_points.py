@@ -16,7 +16,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Floats2, Ints
 from trunnion.jit import inner, kernel
 from trunnion.model.run import RowPositions
-from trunnion.verification.kinematics.axis_difference import RotaryGeometry, axis_difference
+from trunnion.verification.kinematics.axis_difference import RotaryGeometry, RotaryPair, axis_difference
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
 
 #: Between points nearer to each other than this, mm, the tool axis tells how far the tool has come.
@@ -90,7 +90,7 @@ def follow_path(
     cl_point, arrives = np.zeros(len(kind), np.int64), np.zeros(len(kind), np.bool_)
     motions, reached = _follow(
         _Motions(positions.tip, positions.axis, kind, positions.joints[:, geometry.column]), points, limits,
-        geometry.sense, geometry.first, geometry.second, cl_point, arrives,
+        geometry.pair, cl_point, arrives,
     )  # fmt: skip
     return FollowedPath(motions, reached, cl_point[:motions], arrives[:motions])
 
@@ -100,9 +100,7 @@ def _follow(
     motions: _Motions,
     points: PathPoints,
     limits: FollowLimits,
-    sense: float,
-    first: Floats,
-    second: Floats,
+    pair: RotaryPair,
     cl_point: Ints,
     arrives: Flags,
 ) -> tuple[int, int]:
@@ -110,8 +108,8 @@ def _follow(
     followed, reached = 0, 0
     i, j, done = 0, 1, 0.0
     while i < motions.tip.shape[0] and j < points.tip.shape[0]:
-        if _is_at(motions.tip, motions.axis, i, points, j, limits.near_tip, limits.near_axis):
-            last = _last_at_point(motions, i, points, j, limits, sense, first, second)
+        if _is_at(motions.tip, motions.axis, i, points, j, (limits.near_tip, limits.near_axis)):
+            last = _last_at_point(motions, i, points, j, limits, pair)
             for k in range(i, last + 1):
                 arrives[k], cl_point[k] = k == last, j - 1
             followed, reached = last + 1, j
@@ -125,7 +123,7 @@ def _follow(
             done = max(done, fraction)
             i += 1
             continue
-        repeats = _is_at(points.tip, points.axis, j, points, j - 1, 2.0 * limits.near_tip, 2.0 * limits.near_axis)
+        repeats = _is_at(points.tip, points.axis, j, points, j - 1, (2.0 * limits.near_tip, 2.0 * limits.near_axis))
         if not repeats or points.kind[j] == 2:
             break
         j, done = j + 1, 0.0
@@ -134,30 +132,30 @@ def _follow(
 
 @inner
 def _last_at_point(
-    motions: _Motions, i: int, points: PathPoints, j: int, limits: FollowLimits, sense: float, first: Floats,
-    second: Floats,
-) -> int:  # fmt: skip
+    motions: _Motions, i: int, points: PathPoints, j: int, limits: FollowLimits, pair: RotaryPair
+) -> int:
     """Return the last motion from ``i`` on that goes to point ``j``.
 
     Further motions of the same kind about the same place lead there too: near a pole the rotary axes turn far while
     the tool hardly moves. The last one within the tolerances counts.
     """
     last, ahead = i, i + 1
-    about_tip, about_axis = _ABOUT * limits.near_tip, _ABOUT * limits.near_axis
+    about = (_ABOUT * limits.near_tip, _ABOUT * limits.near_axis)
     while (
         ahead < motions.tip.shape[0]
         and motions.kind[ahead] == motions.kind[i]
-        and _is_at(motions.tip, motions.axis, ahead, points, j, about_tip, about_axis)
+        and _is_at(motions.tip, motions.axis, ahead, points, j, about)
     ):
-        _, off = axis_difference(motions.axis, ahead, points.axis, j, motions.value[ahead], sense, first, second)
-        if off <= limits.angle and _is_at(motions.tip, motions.axis, ahead, points, j, limits.tip, limits.near_axis):
+        _, off = axis_difference(motions.axis, ahead, points.axis, j, motions.value[ahead], pair)
+        if off <= limits.angle and _is_at(motions.tip, motions.axis, ahead, points, j, (limits.tip, limits.near_axis)):
             last = ahead
         ahead += 1
     return last
 
 
 @inner
-def _is_at(tip: Floats, axis: Floats, i: int, points: PathPoints, j: int, near_tip: float, near_axis: float) -> bool:
+def _is_at(tip: Floats, axis: Floats, i: int, points: PathPoints, j: int, near: tuple[float, float]) -> bool:
+    near_tip, near_axis = near
     for k in range(3):
         if not abs(tip[i, k] - points.tip[j, k]) <= near_tip or not abs(axis[i, k] - points.axis[j, k]) <= near_axis:
             return False

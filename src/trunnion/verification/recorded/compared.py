@@ -117,7 +117,7 @@ def compare_recording(run: Run, recording: Recording, tolerance: float) -> Recor
         rows, following = _told_around(told.row)
         within = (told.row[at] != UNTOLD) | ((rows[at] >= 0) & (following[at] >= rows[at]))
         at, anew = at[within], anew[within]
-        found = _by_line(path, (rows, following), tip, axis, at, anew, tolerance)
+        found = _by_line(path, (rows[at], following[at]), (tip[at], axis[at]), anew, tolerance)
     else:
         found = _Walk(path, tolerance).follow(tip[at], axis[at], anew)
     there = found.piece >= 0
@@ -215,10 +215,10 @@ def _told_around(told: Ints) -> tuple[Ints, Ints]:
 
 
 def _by_line(
-    path: ProgramPath, around: tuple[Ints, Ints], tip: Floats, axis: Floats, at: Ints, anew: Flags, tolerance: float
+    path: ProgramPath, around: tuple[Ints, Ints], poses: tuple[Floats, Floats], anew: Flags, tolerance: float
 ) -> Nearest:
-    """Return the nearest places to some positions, by the rows that were told before and after them."""
-    rows, following = around[0][at], around[1][at]
+    """Return the nearest places to some tips and tool axes, by the rows that were told before and after them."""
+    rows, following = around
     before, after = np.r_[rows[:1], rows[:-1]], np.r_[following[1:], following[-1:]]
     before = np.where(anew | (before > rows), rows, before)
     after = np.where(np.r_[anew[1:], True] | (after < following), following, after)
@@ -227,7 +227,7 @@ def _by_line(
     low = path.first[np.maximum(before - _BESIDE, 0)]
     high = path.first[np.minimum(after + _BESIDE, last) + 1]
     high = np.minimum(high, low + _MOST_PIECES)
-    found = nearest_places(path, tip[at], axis[at], low, high)
+    found = nearest_places(path, *poses, low, high)
     # Beside a block of which nobody knows where it is, a position may be in that one.
     unknown = np.concatenate(([0], np.cumsum(~path.known)))
     own = unknown[path.first[rows + 1]] > unknown[path.first[rows]]

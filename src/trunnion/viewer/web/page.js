@@ -127,11 +127,12 @@ export class Page {
 
   #fillFindings() {
     const list = element("findings");
-    const failed = this.scene.checks.filter((check) => !check.passed);
+    const open = this.scene.checks.filter((check) => check.state !== "ok");
+    element("standing").textContent = this.scene.standing;
     element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
-    for (const check of failed) {
+    for (const check of open) {
       const line = document.createElement("li");
-      line.textContent = `${check.key}: ${check.summary}`;
+      line.textContent = `${check.key}: ${check.state}: ${check.summary}`;
       list.append(line);
     }
     this.scene.findings.forEach((each) => {

@@ -28,13 +28,16 @@ from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
 from trunnion.reporting.text import clean
 from trunnion.results import FIRST, Figure, as_json, to_data
-from trunnion.verification import Verification, durations
+from trunnion.verification import State, Verification, durations
 
 if TYPE_CHECKING:
     from trunnion.jobs.result_output import Target
 
 #: Version of the schema. It rises when programs that read older files would be misled.
-SCHEMA: Final = 1
+SCHEMA: Final = 2
+
+#: That of earlier versions, which is still read.
+_FIRST_SCHEMA: Final = 1
 
 #: A longer manifest is none.
 _MOST_BYTES: Final = 64 << 20
@@ -43,7 +46,7 @@ _MOST_BYTES: Final = 64 << 20
 _WHATS: Final = ("program", "subprogram", "report", "sheet", "listing")
 
 #: What a manifest says of a check.
-_OF_CHECK: Final = ("key", "passed", "summary", "worst", "limit", "unit")
+_OF_CHECK: Final = ("key", "state", "missing", "summary", "worst", "limit", "unit")
 
 #: Bytes of a name that file systems take.
 _LONGEST_NAME: Final = 255
@@ -139,6 +142,7 @@ def manifest_bytes(
         "settings_in_force": dict(sorted(program.effective_settings().items())),
         "overruled": [clean(each.what) for each in result.problems if each.severity is Severity.ERROR],
         "warnings": [clean(each.what) for each in result.problems if each.severity is Severity.WARNING],
+        "standing": to_data(result.standing),
         **_proof(result.verification),
     }
     return (as_json(data) + "\n").encode("utf-8", "replace")
@@ -239,9 +243,16 @@ def _check_whole(path: Path, data: dict[str, Any], files: Sequence[ManifestFile]
     if twice := next((file.name for k, file in enumerate(files) if names[k] in names[:k]), ""):
         raise _fault(path, Wording("FIL330", "file_twice", name=twice))
     checks = _entries(path, data, "checks")
-    sound = bool(checks) and all(each.get("passed") is True for each in checks) and data.get("overruled") == []
+    sound = bool(checks) and all(map(_is_sound, checks)) and data.get("overruled") == []
     if data.get("may_run") is True and not sound:
         raise _fault(path, Wording("FIL330", "checks_contradict"))
+
+
+def _is_sound(check: dict[str, Any]) -> bool:
+    """Whether a check of a manifest has found nothing; those of the first schema say it otherwise."""
+    if "passed" in check:
+        return check["passed"] is True
+    return check.get("state") in (State.OK, State.NOT_CHECKED)
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -255,10 +266,16 @@ def _read(path: Path) -> dict[str, Any]:
     except (ValueError, RecursionError):
         data = None
     if not isinstance(data, dict) or "files" not in data or "made_by" not in data:
+<<<<<<< HEAD
         raise _fault(path, Wording("FIL330", "no_list_of_files"))
     if data.get("schema") != SCHEMA:
         shown = f"{data.get('schema')!r:.40}"
         raise _fault(path, Wording("FIL330", "other_schema", schema=shown, known=SCHEMA))
+=======
+        raise _fault(path, "it has no list of files in JSON")
+    if data.get("schema") not in (_FIRST_SCHEMA, SCHEMA):
+        raise _fault(path, f"its schema is {data.get('schema')!r:.40}, and {SCHEMA} is known here")
+>>>>>>> main
     return data
 
 

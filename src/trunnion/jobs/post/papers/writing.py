@@ -59,7 +59,7 @@ class PostPapers:
 
     def write(self) -> None:
         """Write them beside the program, which is complete; without a proof there is a manifest alone."""
-        target, job, result, verification = self.target, self.job, self.result, self.result.verification
+        target, job, result, verification = self.target, self.job, self.result, self.result.proof
         files, places = target.files, target.papers
         if verification is not None and "report" in places:
             name = places["report"].name

@@ -12,7 +12,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap, rotation_about, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode, RotaryTarget
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.fanuc.settings import Settings
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.scan.letter_blocks import letter_table

@@ -6,7 +6,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.rs274 import interpreter

@@ -7,7 +7,7 @@ positions along Z, in the units of the program.
 from typing import Final
 
 from trunnion.messages import Wording
-from trunnion.model.run import SpindleTask, SpindleWork
+from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent, peck_depths
 
 #: Words of cycles that hold until the cycles end.

@@ -12,7 +12,8 @@ from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.axis_word import NO_ROTARY, AxisWord, RotaryTarget
-from trunnion.readers.control.row_recorder import MAX_POSITION, Note
+from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import Circle
 from trunnion.readers.families.heidenhain.plane_control import PlaneControl
 from trunnion.readers.families.heidenhain.plane_frames import spatial

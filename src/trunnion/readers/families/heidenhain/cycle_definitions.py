@@ -7,9 +7,10 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.model.run import SpindleWork
+from trunnion.model.spindle_work import SpindleWork
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.control.row_recorder import MAX_POSITION, Note
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.heidenhain import plane_datums
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycles import (
@@ -312,10 +313,7 @@ class Definitions:
     def call(self, parameters: Parameters) -> list[HoleMotion]:
         """Return the motions of the defined cycle at the present position.
 
-        Raises
-        ------
-        CycleExecutionError
-            If no cycle is defined, or if it is not simulated or impossible.
+        Raises ``CycleExecutionError`` if no cycle is defined, or if it is not simulated or impossible.
         """
         cycle, control = self.defined_cycle, self._control
         if cycle is None:

@@ -10,8 +10,8 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.coordinates import INCH
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import CycleExecutionError
-from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.heidenhain import program_frame
 from trunnion.readers.families.heidenhain.control import HeidenhainControl

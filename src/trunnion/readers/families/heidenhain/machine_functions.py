@@ -6,7 +6,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.lexer import words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical

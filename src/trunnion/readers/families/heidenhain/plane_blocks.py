@@ -9,7 +9,8 @@ from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import rotation_matrix
-from trunnion.readers.control.row_recorder import MAX_POSITION, Note
+from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycle_definitions import store_rotary_angles
 from trunnion.readers.families.heidenhain.lexer import Word

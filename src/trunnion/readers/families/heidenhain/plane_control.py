@@ -16,7 +16,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import RotaryTarget
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.families.heidenhain.plane_datums import PlaneDatums
 from trunnion.readers.families.heidenhain.plane_frames import Datum

@@ -5,7 +5,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.heidenhain.flow import ActiveProgram
 from trunnion.readers.families.heidenhain.lexer import split_line
 from trunnion.readers.program.source_text import SourceText

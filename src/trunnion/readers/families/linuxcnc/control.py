@@ -14,7 +14,7 @@ from trunnion.model import axis_positions
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.linuxcnc.words import is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.model.run import SpindleTask, SpindleWork
+from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.coordinates import INCH

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.messages import Wording
-from trunnion.model.run import SpindleTask, SpindleWork
+from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent
 
 #: Words of cycles that hold until another cycle begins.

@@ -6,7 +6,8 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.families.sinumerik.block import Call, read_call
+from trunnion.readers.families.sinumerik.block import Call
+from trunnion.readers.families.sinumerik.block_reader import read_call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
 from trunnion.readers.families.sinumerik.flow import ActiveProgram, Flow, Handler

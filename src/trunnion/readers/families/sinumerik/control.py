@@ -14,13 +14,15 @@ from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.messages import Wording
-from trunnion.model.run import NO_OFFSET, SpindleWork
+from trunnion.model.run import NO_OFFSET
+from trunnion.model.spindle_work import SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs, tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import HoleMotion
-from trunnion.readers.control.row_recorder import MAX_POSITION, Note
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 from trunnion.readers.families.sinumerik.settings import WITH_LENGTH, Settings, settings_of
 from trunnion.readers.families.sinumerik.words import WITHIN_COMPENSATION

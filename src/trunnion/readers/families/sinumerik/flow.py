@@ -10,7 +10,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
 from trunnion.readers.families.sinumerik.text import SinumerikText

@@ -6,8 +6,8 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final, NoReturn
 
-from trunnion.cli.help_texts import command_help, overview
-from trunnion.cli.post_mistakes import post_mistake
+from trunnion.cli.command_line.help_texts import command_help, overview
+from trunnion.cli.command_line.post_mistakes import post_mistake
 from trunnion.cli.terminal_text import error_line, warning_line
 from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS

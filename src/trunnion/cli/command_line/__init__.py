@@ -1,0 +1,1 @@
+"""How the words of a command line are understood, from the declarations of the commands."""

@@ -1,0 +1,371 @@
+"""Reads blocks of a Sinumerik program: sorts their words and assigns variables; the interpreter does the rest."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.messages import Wording
+from trunnion.readers.control.axis_word import PositionMode
+from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.families.sinumerik.block import Block, Call
+from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
+from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
+from trunnion.readers.families.sinumerik.variables import Variables
+from trunnion.readers.families.sinumerik.words import (
+    ACTIVE,
+    FEED_GROUP,
+    FEED_RADIUS,
+    FLOW,
+    FRAMES,
+    GREATEST,
+    NOT_SIMULATED,
+    ORIENTATION,
+    OTHER_FEEDS,
+    POSITION_MODES,
+    TOLERANCES,
+    TOOL_DELTAS,
+    TOOL_FRAMES,
+    TYPES,
+    WAITS,
+    WITHOUT_PATH_EFFECT,
+    WITHOUT_PATH_EFFECT_CALLS,
+    WITHOUT_PATH_EFFECT_VALUES,
+)
+
+#: Higher feeds, in any unit, are mistakes of the program.
+MAX_FEED: Final = 1e9
+
+#: Words without a value that the interpreter executes.
+_MODES: Final = (
+    FRAMES | ORIENTATION | WITHOUT_PATH_EFFECT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "POLY", "TRAFOOF", "TRAORI"})
+)
+
+#: Words with a value that belong to circles and frames.
+_PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
+
+
+#: The value of a word and its mode.
+_Word = tuple[Value, PositionMode]
+
+
+class BlockReader:
+    """Reads the words of one block after another."""
+
+    def __init__(self, rotary: tuple[str, ...], note: Note) -> None:
+        self._axes = frozenset({"X", "Y", "Z", *rotary})
+        self._note = note
+
+    def read(self, tokens: tuple[Token, ...], at: int, variables: Variables) -> Block:
+        """Read from a token on; at a word that is not understood, report it and ignore the rest of the block."""
+        block = Block()
+        reader = ExpressionReader(tokens, variables, at)
+        while (token := reader.token) is not None:
+            before = reader.at
+            try:
+                if token.kind is TokenKind.LETTER:
+                    self._letter(reader, block, variables)
+                elif token.kind is TokenKind.NAME:
+                    self._name(reader, block, variables)
+                else:
+                    raise ExpressionError(Wording("NC210", "unexpected", token=token.text))
+            except ExpressionError as error:
+                self._note(error.wording.within("not_understood", text=_text(tokens, before)), Severity.ERROR)
+                break
+        return block
+
+    # Letters
+
+    def _letter(self, reader: ExpressionReader, block: Block, variables: Variables) -> None:
+        letter = reader.peek()
+        start = reader.at
+        reader.at += 1
+        extension = self._extension(reader)
+        if letter == "R" and (extension or reader.peek() == "["):
+            reader.at = start + 1
+            self._parameter(reader, variables)
+            return
+        name = letter + extension
+        value, mode = self._value(reader)
+        if name in self._axes:
+            self._axis(block, name, _number(value), mode)
+        elif isinstance(value, str) and name != "T":
+            raise ExpressionError(Wording("NC210", "takes_number_not_text", name=name))
+        else:
+            self._address(reader, block, (letter, extension), (value, mode))
+
+    def _extension(self, reader: ExpressionReader) -> str:
+        """Read digits between a letter and an equals sign, as in A3= or S2=; returns them, or nothing."""
+        token = reader.token
+        if (
+            token is not None
+            and token.kind is TokenKind.NUMBER
+            and token.text.isdigit()
+            and len(token.text) <= 5
+            and reader.peek(1) == "="
+        ):
+            reader.at += 1
+            return token.text
+        return ""
+
+    def _parameter(self, reader: ExpressionReader, variables: Variables) -> None:
+        if reader.peek() == "[":
+            index = reader.index()
+            if len(index) != 1:
+                raise ExpressionError(Wording("NC210", "r_needs_number"))
+            number = index[0]
+        else:
+            token = reader.token
+            assert token is not None
+            number = whole(token.value)
+            reader.at += 1
+        reader.expect("=")
+        variables.set_parameter(number, reader.number())
+
+    def _value(self, reader: ExpressionReader) -> _Word:
+        """Read the value of a word: a number, or = and an expression, which may be in AC() or a similar function."""
+        if reader.accept("="):
+            mode = reader.peek()
+            if mode in POSITION_MODES and reader.peek(1) == "(":
+                reader.at += 2
+                value = reader.number()
+                reader.expect(")")
+                return value, PositionMode(mode)
+            return reader.value(), PositionMode.MODAL
+        sign = 1.0
+        if reader.peek() in ("+", "-"):
+            sign = -1.0 if reader.peek() == "-" else 1.0
+            reader.at += 1
+        token = reader.token
+        if token is None or token.kind is not TokenKind.NUMBER:
+            raise ExpressionError(Wording("NC210", "number_missing"))
+        reader.at += 1
+        return sign * token.value, PositionMode.MODAL
+
+    def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
+        if name in block.axes:
+            self._note(Wording("NC212", "last_counts", word=name), Severity.WARNING)
+        block.axes[name] = value, mode
+
+    def _address(self, reader: ExpressionReader, block: Block, address: tuple[str, str], word: _Word) -> None:
+        """Execute a word that is no axis; ``address`` is its letter and the digits after it."""
+        letter, extension = address
+        value, mode = word
+        master_spindle = extension in ("", "0", "1")
+        if letter == "T" and master_spindle:
+            block.tool = value if isinstance(value, str) else f"{value:.10g}"
+            return
+        number = _number(value)
+        match address:
+            case (("M" | "S"), _) if not master_spindle:
+                # M2=3 and S2=100 address spindle 2; only the master spindle is simulated.
+                text = f"M{extension}={_code(number, 'M')}" if letter == "M" else f"S{extension}="
+                self._note(Wording("NC221", "speaks_another_spindle_not_followed", text=text), Severity.WARNING)
+            case "G", "":
+                block.g.append(_code(number, "G"))
+            case "M", _:
+                block.m.append(_code(number, "M"))
+            case "S", _:
+                block.speed = number
+            case "F", "":
+                if not 0.0 <= number <= MAX_FEED:
+                    raise ExpressionError(Wording("NC215", "feed_out_of_range", most=MAX_FEED))
+                block.feed = number
+            case "D", "":
+                block.edge = _code(number, "D")
+            case "H", _:
+                block.h.append(number)
+            case (("I" | "J" | "K"), ("" | "1")):
+                block.params[letter + extension] = number, mode
+            case (("A" | "B" | "C"), "3"):
+                block.vector[letter] = number
+            case (("A" | "B" | "C"), ("4" | "5")):
+                pass  # Surface normals are for radius compensation, which is not simulated.
+            case (("L" | "P"), ""):
+                self._subprogram_word(reader, block, letter, number)
+            case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), ""):
+                self._note(Wording("NC230", "axis_value_not_executed", axis=letter, value=number), Severity.ERROR)
+            case _:
+                self._note(
+                    Wording("NC211", "unknown_extended_word", letter=letter, extension=extension, number=number),
+                    Severity.ERROR,
+                )
+
+    @staticmethod
+    def _subprogram_word(reader: ExpressionReader, block: Block, letter: str, number: float) -> None:
+        """Execute L, the number of a subprogram, or P, its repeats."""
+        if letter == "L":
+            digits = reader.tokens[reader.at - 1].text
+            if not digits.isdigit():
+                raise ExpressionError(Wording("NC210", "subprogram_whole_number"))
+            block.calls.append(Call(f"L{digits}"))
+            return
+        if not block.calls:
+            raise ExpressionError(Wording("NC210", "p_counts_nothing_here"))
+        block.calls[-1].repeats = _code(number, "P")
+
+    # Names
+
+    def _name(self, reader: ExpressionReader, block: Block, variables: Variables) -> None:
+        name = reader.peek()
+        follows = reader.peek(1)
+        reader.at += 1
+        if name in self._axes and follows == "=":
+            value, mode = self._value(reader)
+            self._axis(block, name, _number(value), mode)
+        elif name in _PARAMS and follows == "=":
+            value, mode = self._value(reader)
+            block.params[name] = _number(value), mode
+        elif name == "PO" and follows == "[":
+            self._polynomial(reader, block)
+        elif name == "PL" and follows == "=":
+            block.interval = _number(self._value(reader)[0])
+        elif name in WITHOUT_PATH_EFFECT_VALUES and follows in ("=", "["):
+            if follows == "[":
+                _skip(reader, "[", "]")
+            if reader.accept("="):
+                self._without_path_effect(block, name, self._value(reader)[0])
+        elif name == "SPOS" and follows in ("=", "["):
+            if follows == "[":
+                _skip(reader, "[", "]")
+            reader.expect("=")
+            value, _ = self._value(reader)
+            block.words.append("SPOS")
+        elif name in NOT_SIMULATED:
+            self._subprograms(reader, name)
+        elif follows in ("=", "["):
+            self._assignment(reader, name, variables)
+        elif name == "TRAORI":
+            block.words.append(name)
+            if follows == "(":
+                numbers = reader.arguments()
+                block.traori = _number(numbers[0]) if numbers and numbers[0] is not None else 1.0
+        elif name == FEED_GROUP and follows == "(":
+            self._feed_group(reader)
+        elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
+            _skip(reader, "(", ")")
+            if name in WAITS:
+                block.waits.append(name)
+        elif name in _MODES:
+            block.words.append(name)
+        elif name in FLOW or name in TYPES or name in OPERATORS or name in POSITION_MODES:
+            raise ExpressionError(Wording("NC210", "cannot_stand_here", name=name))
+        elif name in ACTIVE and name not in ("MSG", "SETAL"):
+            raise ExpressionError(Wording("NC210", "word_needs_value", word=name))
+        else:
+            block.calls.append(read_call(reader, name))
+
+    @staticmethod
+    def _feed_group(reader: ExpressionReader) -> None:
+        """Read the axes that F counts for: none, which are those that it always counts for, or the slides."""
+        reader.expect("(")
+        start = reader.at
+        axes = set()
+        while not reader.accept(")"):
+            axes.add(reader.peek())
+            reader.at += 1
+            if not reader.accept(",") and reader.peek() != ")":
+                raise ExpressionError(Wording("NC210", "fgroup_takes_names_axes"))
+        if axes and axes != {"X", "Y", "Z"}:
+            axis_names = _text(reader.tokens, start, reader.at - 1)
+            raise ExpressionError(Wording("NC220", "feed_group_not_simulated", axes=axis_names))
+
+    @staticmethod
+    def _polynomial(reader: ExpressionReader, block: Block) -> None:
+        """Read the end and the coefficients of an axis: ``[X]=(end,a2,a3)``."""
+        reader.expect("[")
+        axis = "" if reader.peek() == "]" else reader.peek()
+        reader.at += bool(axis)
+        reader.expect("]")
+        reader.expect("=")
+        if reader.peek() != "(":
+            raise ExpressionError(Wording("NC210", "po_takes_values_parentheses"))
+        values = reader.arguments()
+        if axis in block.polynomials or not values or any(value is None for value in values):
+            raise ExpressionError(Wording("NC210", "po_takes_end_coefficients_once", axis=axis))
+        block.polynomials[axis] = [_number(value) for value in values if value is not None]
+
+    @staticmethod
+    def _without_path_effect(block: Block, name: str, value: Value) -> None:
+        """Keep values of words that leave the programmed path as it is, and still move the tool elsewhere."""
+        if name in TOOL_DELTAS:
+            block.deltas[name] = _number(value)
+        elif name in TOLERANCES:
+            block.tolerances.append(_number(value))
+        elif name == FEED_RADIUS:
+            block.feed_radius = _number(value)
+        elif name in OTHER_FEEDS and value != OTHER_FEEDS[name]:
+            raise ExpressionError(Wording("NC220", "changes_feed_not_simulated", name=name))
+        elif name in GREATEST and not 0.0 <= _number(value) <= GREATEST[name]:
+            raise ExpressionError(Wording("NC215", "tolerance_too_great", name=name, most=GREATEST[name]))
+
+    def _subprograms(self, reader: ExpressionReader, name: str) -> None:
+        """Read and report a word that is not simulated, with everything that belongs to it."""
+        start = reader.at - 1
+        if reader.peek() == "(":
+            _skip(reader, "(", ")")
+        elif reader.peek() == "[":
+            _skip(reader, "[", "]")
+        value = self._value(reader)[0] if reader.peek() == "=" else None
+        if name == "TCARR" and value == 0.0:
+            return
+        self._note(
+            Wording("NC220", "known_not_simulated", words=_text(reader.tokens, start, reader.at)), Severity.ERROR
+        )
+
+    def _assignment(self, reader: ExpressionReader, name: str, variables: Variables) -> None:
+        if name.startswith("$"):
+            raise ExpressionError(Wording("NC220", "system_variable_not_simulated", name=name))
+        index = reader.index()
+        reader.expect("=")
+        if not variables.assign(name, index, reader.value()):
+            self._note(Wording("NC223", "no_definition", name=name), Severity.ERROR)
+
+
+def read_call(reader: ExpressionReader, name: str) -> Call:
+    """Read the arguments of a call, after its name."""
+    if reader.peek() != "(":
+        return Call(name)
+    active = Call(name)
+    reader.at += 1
+    if reader.accept(")"):
+        return active
+    while True:
+        start = reader.at
+        if reader.peek() in (",", ")"):
+            active.arguments.append(None)
+        else:
+            active.arguments.append(reader.value())
+        active.argument_texts.append(_text(reader.tokens, start, reader.at))
+        if reader.accept(")"):
+            return active
+        reader.expect(",")
+
+
+def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
+    """Skip brackets and their contents."""
+    reader.expect(opening)
+    depth = 1
+    while depth:
+        if reader.token is None:
+            raise ExpressionError(Wording("NC210", "closing_missing", closing=closing))
+        depth += {opening: 1, closing: -1}.get(reader.peek(), 0)
+        reader.at += 1
+
+
+def _number(value: Value) -> float:
+    if isinstance(value, str):
+        raise ExpressionError(Wording("NC210", "text_for_number", value=value[:40]))
+    return value
+
+
+def _code(number: float, letter: str) -> int:
+    if number != int(number) or not 0 <= number < 1e9:
+        raise ExpressionError(Wording("NC210", "takes_whole_number", letter=letter))
+    return int(number)
+
+
+def _text(tokens: Sequence[Token], start: int, end: int | None = None) -> str:
+    """Return the text of tokens, shortened."""
+    parts = [f'"{t.text}"' if t.kind is TokenKind.TEXT else t.text for t in tokens[start:end]]
+    text = " ".join(parts) if len(parts) < 20 else " ".join(parts[:20]) + " ..."
+    return text[:200]

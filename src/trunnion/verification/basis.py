@@ -1,0 +1,94 @@
+"""What checks stand on besides the program: what somebody has to state, and what of it is missing.
+
+In:     a machine as it was set up for a run.
+Out:    for each basis what is missing of it, in words; none where it is stated.
+
+A check whose basis is missing was not made, or only in part: its state is ``not checked``, never ``ok``. A definition
+may demand a basis (``[proof] require``), and ``--strict`` demands them all: what is missing then fails the check
+``basis``.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from trunnion.machines import Axis, Machine, states_spindle_range
+from trunnion.messages import Wording, phrase
+
+
+@dataclass(frozen=True, slots=True)
+class Basis:
+    """Something that a check stands on; ``missing`` says what is not stated of it."""
+
+    key: str
+    missing: Callable[[Machine], Wording | None]
+
+
+def _without(machine: Machine, is_stated: Callable[[Axis], bool]) -> tuple[str, ...]:
+    """Return the axes of which something is not stated."""
+    return tuple(axis.name for axis in machine.axes if not is_stated(axis))
+
+
+def _no_zero(machine: Machine) -> Wording | None:
+    return phrase("no_zero") if machine.workpiece_zero is None else None
+
+
+def _no_tool_length(machine: Machine) -> Wording | None:
+    return phrase("no_tool_length") if machine.tool_length is None else None
+
+
+def _no_travel(machine: Machine) -> Wording | None:
+    names = _without(machine, lambda axis: axis.endless or axis.has_limits)
+    return phrase("no_travel_of", axes=names) if names else None
+
+
+def _no_rapid(machine: Machine) -> Wording | None:
+    names = _without(machine, lambda axis: axis.rapid is not None)
+    if len(names) == len(machine.axes):
+        return phrase("no_rapid")
+    return phrase("no_rapid_of", axes=names) if names else None
+
+
+def _no_acceleration(machine: Machine) -> Wording | None:
+    names = _without(machine, lambda axis: axis.acceleration is not None)
+    if len(names) == len(machine.axes):
+        return phrase("no_acceleration")
+    return phrase("no_acceleration_of", axes=names) if names else None
+
+
+def _no_spindle_speeds(machine: Machine) -> Wording | None:
+    return None if states_spindle_range(machine) else phrase("no_spindle_speeds")
+
+
+def _not_measured(machine: Machine) -> Wording | None:
+    names = machine.nobody_measured
+    return phrase("not_measured", count=len(names), names=names) if names else None
+
+
+ZERO: Final = Basis("zero", _no_zero)
+TOOL_LENGTH: Final = Basis("tool_length", _no_tool_length)
+TRAVEL: Final = Basis("travel", _no_travel)
+RAPID: Final = Basis("rapid", _no_rapid)
+ACCELERATION: Final = Basis("acceleration", _no_acceleration)
+SPINDLE: Final = Basis("spindle", _no_spindle_speeds)
+MEASURED: Final = Basis("measured", _not_measured)
+
+#: What ``[proof] require`` and ``--strict`` may demand.
+DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
+    "zero": (ZERO,),
+    "tool_length": (TOOL_LENGTH,),
+    "dynamics": (RAPID, ACCELERATION),
+    "measured": (MEASURED,),
+}
+
+
+def missing_of(bases: Iterable[Basis], machine: Machine) -> tuple[Wording, ...]:
+    """Return what is missing of some bases."""
+    return tuple(found for basis in bases if (found := basis.missing(machine)) is not None)
+
+
+def missing_demands(demands: Iterable[str], machine: Machine) -> Iterator[Wording]:
+    """Yield what is missing of what is demanded, each once."""
+    for name in DEMANDS:
+        if name in demands:
+            yield from missing_of(DEMANDS[name], machine)

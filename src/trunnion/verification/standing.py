@@ -1,0 +1,61 @@
+"""What the word "passed" stands on: one record, from which every front says it.
+
+In:     how many checks have which state, the warnings, and what nobody has measured.
+Out:    ``Standing``, as data and in words.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.results import Figure
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How a program stands.
+
+    passed        no check failed, and nothing was overruled
+    ok            how many checks were made, and found nothing
+    failed        how many found something
+    not_checked   how many were not made, or only in part
+    warnings      that were given
+    not_measured  values that count although nobody has measured them
+    """
+
+    passed: bool
+    ok: int
+    failed: int
+    not_checked: int
+    warnings: int = 0
+    not_measured: tuple[str, ...] = ()
+
+    @property
+    @Figure(after="passed")
+    def checks(self) -> int:
+        """How many checks there are."""
+        return self.ok + self.failed + self.not_checked
+
+    def wordings(self) -> Iterator[Wording]:
+        """Yield the parts of what is said behind "Passed" or "Failed"."""
+        if self.failed:
+            yield phrase("standing_failed", failed=self.failed, count=self.checks)
+        elif self.checks:
+            yield phrase("standing_passed", ok=self.ok, count=self.checks)
+        if self.not_checked:
+            yield phrase("standing_not_checked", count=self.not_checked)
+        if self.warnings:
+            yield phrase("standing_warnings", count=self.warnings)
+        if self.not_measured:
+            yield phrase("standing_not_measured", count=len(self.not_measured))
+
+    def said(self, words: Words = LIBRARY, language: str = "en") -> str:
+        """Return what is said behind "Passed" or "Failed"."""
+        return "; ".join(wording.text("what", words, language) for wording in self.wordings())
+
+    @property
+    @Figure("text")
+    def told(self) -> str:
+        """The line that is said of the program."""
+        head = phrase("passed") if self.passed else phrase("failed")
+        return f"{head}: {said}" if (said := self.said()) else str(head)

@@ -1,0 +1,346 @@
+"""Edits that harm a program, one at a time, and edits that change nothing; each by a rule that reads the text alone.
+
+The rules know what a program says before the place of the edit: coordinates, feed, spindle and coolant that are in
+force. They leave out an edit that would change nothing there, such as the other sign of 0, and never ask a reader.
+"""
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from tests.support.recall_proof.languages import LANGUAGES, Language
+
+_AXES = "XYZABC"
+_WORD = re.compile(r"(?<![A-Z_$=(,.\d\"])([XYZABC])([-+]?\d*\.?\d+|[-+]?\d+\.)(?![\w.(])")
+_NUMBER = re.compile(r"^(N?\d+)( )")
+
+#: Insertions that show only where an arc follows.
+_BEFORE_ARCS = {"another plane of arcs"}
+#: Words that stay in force, so that only a program without any of them lacks them.
+_THROUGHOUT = {"no work offset", "no length"}
+#: Insertions that show only where numbers are not 0, or differ from where the axis is.
+_SCALING = {"inches in the cut", "a mirror in the cut", "a scale in the cut"}
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A kind of edit, the line of the block it is at (from 1), and the text with it."""
+
+    kind: str
+    line: int
+    text: str
+
+
+@dataclass
+class Block:
+    """A line, its code, and what is in force before it.
+
+    cuts     it moves at feed
+    rapids   it moves at rapid
+    """
+
+    line: str
+    code: str
+    before: dict[str, float] = field(default_factory=dict)
+    cuts: bool = False
+    rapids: bool = False
+    spindle: bool = False
+    coolant: bool = False
+    feed: str = ""
+    tcp: bool = False
+    plane: bool = False
+
+    @property
+    def words(self) -> list[re.Match[str]]:
+        """Its coordinates."""
+        return list(_WORD.finditer(self.code))
+
+
+def blocks_of(text: str, language: Language) -> list[Block]:
+    """The lines of a program with what is in force before each of them."""
+    found, at, moving, feed, spindle, coolant = list[Block](), dict[str, float](), "", "", False, False
+    tcp = plane = False
+    for line in text.splitlines():
+        code = re.sub(language.comment, lambda match: " " * len(match[0]), line)
+        block = Block(line, code, dict(at), spindle=spindle, coolant=coolant, feed=feed, tcp=tcp, plane=plane)
+        tcp = (tcp or bool(re.search(language.tcp, code))) and not re.search(language.no_tcp, code)
+        plane = (plane or bool(re.search(language.plane, code))) and not re.search(language.no_plane, code)
+        away = re.search(language.away, code) is not None
+        if re.search(language.feed, code):
+            moving = "feed"
+        if re.search(language.rapid, code):
+            moving = "rapid"
+        linear = [word for word in block.words if word[1] in "XYZ"]
+        if linear and not away:
+            block.cuts, block.rapids = moving == "feed", moving == "rapid"
+        for word in block.words:
+            if away:
+                at.pop(word[1], None)
+            else:
+                at[word[1]] = float(word[2])
+        if feeds := re.findall(r"\bF(\d+\.?\d*)", code):
+            feed = feeds[-1]
+        for word in re.findall(r"\bM0?([345789])(?!\d)", code):
+            spindle = word in "34" if word in "345" else spindle
+            coolant = word in "78" if word in "789" else coolant
+        found.append(block)
+    return found
+
+
+def harmful(text: str, family: str) -> Iterator[Edit]:
+    """Yield every edit that harms a program."""
+    language = LANGUAGES[family]
+    blocks = blocks_of(text, language)
+    for maker in (_numbers, _orders, _inserted, _replaced, _cut_words, _dropped, _skipped):
+        yield from maker(blocks, language)
+
+
+def _with(blocks: list[Block], at: int, *lines: str) -> str:
+    """The text with other lines in place of one."""
+    return "\n".join([*(b.line for b in blocks[:at]), *lines, *(b.line for b in blocks[at + 1 :])]) + "\n"
+
+
+def _changed(block: Block, word: re.Match[str], text: str) -> str:
+    return block.line[: word.start()] + text + block.line[word.end() :]
+
+
+def _numbers(blocks: list[Block], language: Language) -> Iterator[Edit]:
+    for k, block in enumerate(blocks):
+        if not (block.cuts or block.rapids):
+            continue
+        for word in block.words:
+            letter, number = word[1], word[2]
+            value = float(number)
+            changed = {
+                "a sign": f"{-value:.3f}" if value else "",
+                "a tenth more": f"{value + 0.1:.3f}",
+                # Three places behind the point are what a control that counts increments reads without it.
+                "a decimal point": number.replace(".", "") if re.search(r"\.\d(?!\d\d$)", number) else "",
+                "a digit": re.sub(r"\d", "", number, count=1) if len(number.strip("+-.").split(".")[0]) > 1 else "",
+            }
+            for what, new in changed.items():
+                if (
+                    new
+                    and abs(float(new) - value) > 0.01
+                    and not (letter == "C" and abs(float(new) - value) % 360 == 0)
+                ):
+                    sign = "+" if number[0] in "+-" and new[0] not in "+-" else ""
+                    yield Edit(f"{letter}: {what}", k + 1, _with(blocks, k, _changed(block, word, letter + sign + new)))
+            known = block.before.get(letter)
+            if known is not None and abs(known - value) > 0.01 and not re.search(language.arc, block.code):
+                yield Edit(f"{letter}: left out", k + 1, _with(blocks, k, _changed(block, word, "")))
+        x, y = (next((w for w in block.words if w[1] == letter), None) for letter in "XY")
+        if x and y and abs(float(x[2]) - float(y[2])) > 0.01 and x.end() < y.start():
+            line = block.line[: x.start()] + "X" + y[2] + block.line[x.end() : y.start()] + "Y" + x[2]
+            yield Edit("X and Y exchanged", k + 1, _with(blocks, k, line + block.line[y.end() :]))
+        for word in re.finditer(r"\b([IJ])([-+]?\d+\.?\d*)", block.code):
+            if block.cuts and re.search(language.arc, block.code):
+                new = f"{word[1]}{float(word[2]) + 1.0:.3f}"
+                yield Edit("the centre of an arc", k + 1, _with(blocks, k, _changed(block, word, new)))
+
+
+def _orders(blocks: list[Block], language: Language) -> Iterator[Edit]:
+    for k, block in enumerate(blocks):
+        moves = any(abs(float(w[2]) - block.before.get(w[1], 9e9)) > 0.01 for w in block.words)
+        if block.cuts and moves:
+            yield Edit("a cut left out", k + 1, _with(blocks, k))
+            following = blocks[k + 1] if k + 1 < len(blocks) else None
+            if following and following.cuts and _code(following) != _code(block):
+                text = _with(blocks, k, following.line)
+                lines = text.splitlines()
+                lines[k + 1] = block.line
+                yield Edit("two cuts exchanged", k + 1, "\n".join(lines) + "\n")
+        elif block.rapids and moves:
+            yield Edit("a rapid left out", k + 1, _with(blocks, k))
+
+
+def _code(block: Block) -> str:
+    return _NUMBER.sub("", block.code).strip()
+
+
+def _numbered(block: Block, text: str) -> list[str]:
+    """Lines with block numbers as the language wants them: those of the next block, which nobody jumps to."""
+    number = _NUMBER.match(block.line)
+    if number is None:
+        return text.replace("{n} ", "").split("\n")
+    name = "N1" if number[1].startswith("N") else number[1]
+    first, *others = text.split("\n")
+    return [f"{name} {first}", *(each.replace("{n}", name) for each in others)]
+
+
+def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
+    for k, block in enumerate(blocks):
+        if not block.cuts or re.match(r"^\d+ C", block.code):
+            continue
+        values = {word[1]: float(word[2]) for word in block.words}
+        for kind, text in language.inserted.items():
+            is_arc = re.search(language.arc, block.code) is not None
+            stands = any(abs(block.before.get(letter, 0.0)) > 0.01 for letter in values if letter in "XYZ")
+            shows = {
+                **dict.fromkeys(_BEFORE_ARCS, is_arc),
+                **dict.fromkeys(_SCALING, abs(values.get("X", 0.0)) > 0.01),
+                "incremental from here": stands,
+                "coolant off in the cut": block.coolant,
+                "another feed in the cut": not re.search(r"\bF\d", block.code),
+                "compensation in the cut": not is_arc,
+                "the spindle stops in the cut": block.spindle,
+                "the spindle turns back in the cut": block.spindle,
+                "TCP off in the cut": block.tcp,
+                "the plane off in the cut": block.plane,
+            }.get(kind, True)
+            if shows:
+                yield Edit(kind, k + 1, _with(blocks, k, *_numbered(block, text), block.line))
+
+
+def _scaled(operation: str, number: str) -> str:
+    """A number that is another one: ``+1``, ``-1``, ``*2``, ``/10``."""
+    value, by = float(number), float(operation[1:])
+    new = {"+": value + by, "-": value - by, "*": value * by, "/": value / by}[operation[0]]
+    if re.fullmatch(r"\d+", number) and new == int(new):
+        return str(int(new))
+    return f"{new:+.4f}" if number[0] in "+-" and number[0] == "+" else f"{new:.4f}"
+
+
+def _other(match: re.Match[str], new: str) -> str:
+    """What takes the place of what was found."""
+    if re.fullmatch(r"[-+*/][\d.]+", new):
+        groups = [each for each in match.groups() if each is not None]
+        return match[0][: len(match[0]) - len(groups[-1])] + _scaled(new, groups[-1])
+    if "~" in new:
+        return new.replace("~", {"2": "3", "3": "2", "+": "-", "-": "+"}[match[1]])
+    return match.expand(new)
+
+
+def _substituted(block: Block, pattern: str, new: str) -> Iterator[str]:
+    for match in re.finditer(pattern, block.code):
+        text = _other(match, new)
+        if text != match[0]:
+            yield block.line[: match.start()] + text + block.line[match.end() :]
+
+
+def _replaced(blocks: list[Block], language: Language) -> Iterator[Edit]:
+    for kind, (pattern, new) in language.replaced.items():
+        for k, block in enumerate(blocks):
+            if kind == "rapid at feed" and not block.rapids:
+                continue
+            if kind in ("a tenth of the feed", "ten times the feed") and _is_for_tapping(blocks, k):
+                continue
+            for line in _substituted(block, pattern, new):
+                yield Edit(kind, k + 1, _with(blocks, k, line))
+
+
+def _is_for_tapping(blocks: list[Block], k: int) -> bool:
+    """Whether a feed stands alone before a cycle that moves by its pitch."""
+    return not blocks[k].words and any("CYCLE84(" in block.code for block in blocks[k : k + 2])
+
+
+def _cut_words(blocks: list[Block], language: Language) -> Iterator[Edit]:
+    for kind, (pattern, new) in language.cut_word.items():
+        for k, block in enumerate(blocks):
+            if not block.cuts and not re.search(language.arc, block.code):
+                continue
+            if kind == "a coordinate counts from here" and all(
+                abs(block.before.get(w[1], 0.0)) < 0.01 for w in block.words[:1]
+            ):
+                continue
+            for line in list(_substituted(block, pattern, new))[:1]:
+                yield Edit(kind, k + 1, _with(blocks, k, line))
+
+
+def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
+    text = "\n".join(block.line for block in blocks) + "\n"
+    for kind, pattern in language.dropped.items():
+        if kind in _THROUGHOUT:
+            without = re.sub(pattern, "", text, flags=re.MULTILINE)
+            if without != text:
+                yield Edit(kind, 1, without)
+            continue
+        for k, block in enumerate(blocks):
+            match = re.search(pattern, block.code, re.MULTILINE)
+            if match is None or (kind == "no start of the spindle" and block.spindle):
+                continue
+            if kind == "no coolant" and block.coolant:
+                continue
+            following = next((b.code for b in blocks[k + 1 :] if b.words), "")
+            if kind == "no end of the cycle" and re.search(r"\bG0?[01]\b|\bG[78]\d\b", following):
+                continue
+            line = block.line[: match.start()] + block.line[match.end() :]
+            yield Edit(kind, k + 1, _with(blocks, k, line) if line.strip() else _with(blocks, k))
+
+
+def _skipped(blocks: list[Block], language: Language) -> Iterator[Edit]:
+    for k, block in enumerate(blocks):
+        kinds = {
+            "a cut that may be skipped": block.cuts,
+            "a rapid that may be skipped": block.rapids,
+            "a start of the spindle that may be skipped": not block.spindle and re.search(r"\bM0?3\b", block.code),
+            "coolant that may be skipped": not block.coolant and re.search(r"\bM0?[78]\b", block.code),
+            "a tool change that may be skipped": re.search(r"\bM0?6\b|\bTOOL CALL \d|\bM306\b", block.code),
+            "a length that may be skipped": re.search(r"\bG43\b|\bG43\.4\b|\bG234\b", block.code),
+            "an end of the spindle that may be skipped": block.spindle and re.search(r"\bM0?5\b", block.code),
+        }
+        for kind, is_so in kinds.items():
+            if is_so:
+                yield Edit(kind, k + 1, _with(blocks, k, language.skip + block.line))
+
+
+# What changes nothing
+
+
+def sound(text: str, family: str) -> Iterator[Edit]:
+    """Yield every edit that changes nothing, of the whole program at once."""
+    language = LANGUAGES[family]
+    blocks = blocks_of(text, language)
+    makers: dict[str, Callable[[Block], str]] = {
+        "zeros behind": lambda b: _each_word(b, lambda n: n + "0" if "." in n else n),
+        "zeros in front": lambda b: _each_word(b, lambda n: re.sub(r"(?<![\d.])(?=\d)", "0", n, count=1)),
+        "plus signs": lambda b: _each_word(b, lambda n: n if n[0] in "+-" else "+" + n),
+        "spaces": lambda b: re.sub(r"(?<=\d) (?=[XYZABCFSMIJ])", "   ", b.line) if b.cuts or b.rapids else b.line,
+        "coordinates again": lambda b: _coordinates_again(b, language),
+        "feeds again": lambda b: _feed_again(b, family),
+    }
+    for kind, change in makers.items():
+        lines = [change(block) for block in blocks]
+        if lines != [block.line for block in blocks]:
+            yield Edit(kind, 1, "\n".join(lines) + "\n")
+            halves = [line if k % 2 else block.line for k, (line, block) in enumerate(zip(lines, blocks, strict=True))]
+            yield Edit(kind, 1, "\n".join(halves) + "\n")
+            for k, line in enumerate(lines):
+                if line != blocks[k].line:
+                    yield Edit(kind, k + 1, _with(blocks, k, line))
+    if family != "Heidenhain":
+        yield Edit("other numbers", 1, "\n".join(re.sub(r"^N(\d+)", r"N7\1", b.line) for b in blocks) + "\n")
+        yield Edit("no numbers", 1, "\n".join(re.sub(r"^N\d+ ", "", b.line) for b in blocks) + "\n")
+    note = {"Sinumerik": "; NOTE", "Heidenhain": "1 ; NOTE"}.get(family, "(NOTE)")
+    for k, block in enumerate(blocks[:-1]):
+        if block.cuts:
+            yield Edit("a comment", k + 1, _with(blocks, k, note, block.line))
+    yield Edit("other line ends", 1, "\r\n".join(block.line for block in blocks) + "\r\n")
+
+
+def _each_word(block: Block, change: Callable[[str], str]) -> str:
+    if not (block.cuts or block.rapids):
+        return block.line
+    line = block.line
+    for word in reversed(block.words):
+        line = line[: word.start()] + word[1] + change(word[2]) + line[word.end() :]
+    return line
+
+
+def _coordinates_again(block: Block, language: Language) -> str:
+    """A block with Z again, which is where it is; not for arcs, whose ends say more."""
+    words = {word[1] for word in block.words}
+    if not block.cuts or re.search(language.arc, block.code) or "Z" in words or "Z" not in block.before:
+        return block.line
+    last = block.words[-1]
+    sign = "+" if re.search(r"X\+|Y\+", block.line) else ""
+    value = block.before["Z"]
+    return f"{block.line[: last.end()]} Z{sign if value >= 0 else ''}{value:.5f}{block.line[last.end() :]}"
+
+
+def _feed_again(block: Block, family: str) -> str:
+    if family in ("Heidenhain", "Fidia") or not block.cuts or not block.feed or re.search(r"\bF", block.code):
+        return block.line
+    last = block.words[-1]
+    point = "" if "." in block.feed else "."
+    return f"{block.line[: last.end()]} F{block.feed}{point}{block.line[last.end() :]}"

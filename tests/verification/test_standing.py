@@ -1,0 +1,109 @@
+"""What "passed" stands on: states of checks, what is missing, and what settings and definitions demand."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.locations import YL569
+from tests.support.verifying import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
+from trunnion.errors import InputError, Severity
+from trunnion.machines import Machine, load_machine
+from trunnion.verification import check_lines
+from trunnion.verification.results import Check, State, Verification
+
+HUB = YL569 / "2_hub_rough.cls"
+PROGRAM = HEAD + "G0 X0 Y0 Z50\nG1 X10 F500\n" + FOOT
+
+
+def states(verification: Verification) -> dict[str, str]:
+    return {check.key: str(check.state) for check in verification.checks}
+
+
+def test_a_check_without_its_basis_is_not_checked_and_says_what_is_missing(verified: Verifier) -> None:
+    found = verified(PROGRAM, CL_HEAD + CL_FOOT)
+    travel = next(check for check in found.checks if check.key == "travel")
+    assert travel.state is State.NOT_CHECKED
+    assert str(travel).startswith("travel        not checked  no workpiece zero stated; no tool length stated; ")
+    acceleration = next(check for check in found.checks if check.key == "acceleration")
+    assert str(acceleration) == "acceleration  not checked  no acceleration stated"
+    assert states(found)["speed"] == "ok"
+    placed = replace(found.machine, workpiece_zero=(0.0, 0.0, 0.0), tool_length=100.0)
+    assert states(verified(PROGRAM, machine=placed))["travel"] == "ok"
+
+
+def test_a_fault_counts_more_than_what_is_missing() -> None:
+    from trunnion.messages import phrase
+
+    assert Check("travel", "", False, "too far", missing=(phrase("no_zero"),)).state is State.FAIL
+
+
+def test_without_cl_files_the_checks_that_need_them_are_one_line(verified: Verifier) -> None:
+    first, *others = check_lines(verified(PROGRAM))
+    assert first == (
+        "order, tip, axis, kind, feed, spindle, tool, coolant, compensation, stops, home, holes: not checked,"
+        " no CL file given"
+    )
+    assert [line.split()[0] for line in others][:2] == ["offset", "span"]
+
+
+def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured(verified: Verifier) -> None:
+    found = verified(PROGRAM, CL_HEAD + CL_FOOT)
+    bare = replace(found, machine=replace(found.machine, unmeasured=("C point_mm (a.toml:3)",), assumed=("Z home_mm",)))
+    standing = bare.standing
+    assert (standing.failed > 0, standing.passed) == (True, False)
+    sound = replace(bare, checks=tuple(check for check in bare.checks if check.passed))
+    ok, every = sound.standing.ok, len(sound.checks)
+    count = len(sound.machine.nobody_measured)
+    assert sound.standing.told == (
+        f"Passed: {ok} of {every} checks; {every - ok} not checked; stands on {count} values nobody measured"
+    )
+
+
+def test_overruled_errors_do_not_pass(verified: Verifier) -> None:
+    found = verified(PROGRAM)
+    problem = trunnion.Problem("a.cls", 1, "axis X would leave its travel", severity=Severity.ERROR)
+    assert found.standing.passed
+    assert not replace(found, remarks=(problem,)).standing.passed
+
+
+def test_a_post_says_its_standing_as_data() -> None:
+    result = trunnion.post(HUB, machine="yl569")
+    assert result.standing is not None
+    warnings = sum(problem.severity is Severity.WARNING for problem in result.problems)
+    assert (result.standing.not_checked, result.standing.warnings) == (2, warnings)
+    assert result.standing.not_measured
+    stated = trunnion.post(HUB, machine="yl569", settings={"zero": (-30, 0, -80), "tool_length": 120})
+    assert stated.standing is not None
+    assert stated.standing.not_checked == 1  # acceleration
+
+
+def test_strict_makes_a_missing_basis_an_error() -> None:
+    with pytest.raises(trunnion.ProofFailedError, match="no workpiece zero stated; no tool length stated; no acc"):
+        trunnion.post(HUB, machine="yl569", strict=True)
+    program = YL569 / "2_hub_rough.expected.mpf"
+    assert trunnion.verify(program, machine="yl569", cl=HUB).passed
+    found = trunnion.verify(program, machine="yl569", cl=HUB, strict=True)
+    assert (found.passed, states(found)["basis"]) == (False, "FAIL")
+
+
+def test_a_definition_demands_what_its_proofs_stand_on(tmp_path: Path) -> None:
+    file = tmp_path / "own.toml"
+    file.write_text('schema = 1\nextends = "yl569"\nname = "Own"\n[proof]\nrequire = ["tool_length", "zero"]\n')
+    machine: Machine = load_machine(file)
+    assert machine.demands == ("zero", "tool_length")
+    with pytest.raises(trunnion.ProofFailedError, match=r"no workpiece zero stated; no tool length stated \(basis\)"):
+        trunnion.post(HUB, machine=machine)
+    result = trunnion.post(HUB, machine=machine, settings={"zero": (-30, 0, -80), "tool_length": 120})
+    assert states(result.verification or pytest.fail("not proven"))["basis"] == "ok"
+    file.write_text('schema = 1\nextends = "yl569"\nname = "Own"\n[proof]\nrequire = ["zeros"]\n')
+    with pytest.raises(InputError, match="has zeros, which no proof stands on"):
+        load_machine(file)
+
+
+def test_marks_of_a_definition_are_what_nobody_measured() -> None:
+    machine = load_machine("matsuura_mx330")
+    assert any("limits_deg" in name for name in machine.nobody_measured)
+    bodies = tuple(f"{body.name} " for body in machine.bodies)
+    assert not any(name.startswith(bodies) for name in machine.nobody_measured)
