@@ -75,15 +75,9 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
     }
 
 
-<<<<<<< HEAD
-def _without_program(problems: Sequence[Problem], checks: Sequence[Check]) -> dict[str, Any]:
-    """Return the answer for a CL file that cannot be posted, or whose program fails its proof."""
-    told = [_problem(each) for each in problems if each.code != _NOTHING_WRITTEN]
-=======
 def without_program(problems: Sequence[Problem] = (), checks: Sequence[Check] = ()) -> dict[str, Any]:
     """Return the answer where there is no program: the CL file cannot be posted, or it fails its proof."""
-    told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
->>>>>>> main
+    told = [_problem(each) for each in problems if each.code != _NOTHING_WRITTEN]
     shown = list(map(_check, checks))
     none = {"lines": [], "changed": [], "removed": 0, "all": 0, "standing": None}
     return {**none, "checks": shown, "problems": told, "passed": False}

@@ -98,7 +98,6 @@ def _check_is_known(name: str) -> None:
     known = [*shipped_machines(), *shipped_controls()]
     if name in known or name.endswith(".toml") or Path(name).exists():
         return
-<<<<<<< HEAD
     near = meant_word(name, known)
     raise InputError(
         Problem(
@@ -109,11 +108,6 @@ def _check_is_known(name: str) -> None:
             else Wording("DEF110", "nothing_shipped", known=tuple(known)),
         )
     )
-=======
-    near = did_you_mean(name, known)
-    cure = f"{near} " if near else ""
-    cure += f"write the path of a .toml file, or one of {', '.join(known)}"
-    raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure, code="DEF110"))
 
 
 def _plain_data(located: LocatedValue) -> Any:
@@ -124,4 +118,3 @@ def _plain_data(located: LocatedValue) -> Any:
     if isinstance(value, list):
         return [_plain_data(each) if isinstance(each, LocatedValue) else each for each in value]
     return value
->>>>>>> main

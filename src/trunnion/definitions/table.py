@@ -9,12 +9,8 @@ from typing import Final, TypedDict, Unpack, overload
 
 from trunnion.definitions.account import TableAccount
 from trunnion.definitions.expected import GREATEST, Expected, Form
-<<<<<<< HEAD
 from trunnion.definitions.messages import a_number, a_whole_number, as_written, in_quotes, meant_word, unquoted
 from trunnion.definitions.numbers import finite, finite_numbers, has_decimal_commas, is_too_large, within
-=======
-from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_quotes, in_unit, unquoted
->>>>>>> main
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of
 from trunnion.messages import Wording, phrase
@@ -152,7 +148,6 @@ class Table(TableAccount):
         value = self._get(key, expected, allowed)
         if value is None:
             return fallback
-<<<<<<< HEAD
         number = finite(value)
         if line := unquoted(key, value):
             wording = Wording("DEF330", "in_quotes", value=as_written(value), allowed=allowed(), line=line)
@@ -160,23 +155,6 @@ class Table(TableAccount):
             return fallback
         if number is None or not within(number, above, at_least, at_most):
             self._refuse(key, value, allowed())
-=======
-        number = _finite(value)
-        if number is None:
-            self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value) + _magnitude(value))
-            return fallback
-        if not _within(number, above, at_least, at_most):
-            self.add_problem(
-                key,
-                Wording(
-                    "DEF330",
-                    "is",
-                    value=as_written(value),
-                    a_number=a_number(key),
-                    bounds=bounds(above, at_least, at_most),
-                ),
-            )
->>>>>>> main
             return fallback
         return number
 
@@ -201,26 +179,8 @@ class Table(TableAccount):
         value = self._get(key, expected, allowed)
         if value is None or (nothing and value == nothing):
             return fallback
-<<<<<<< HEAD
         if not isinstance(value, int) or isinstance(value, bool) or not within(value, None, at_least, at_most):
             self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed()))
-=======
-        if not isinstance(value, int) or isinstance(value, bool) or not _within(value, None, at_least, at_most):
-            self.add_problem(
-                key,
-                Wording(
-                    "DEF330",
-                    "is_or_write",
-                    value=as_written(value),
-                    bounds=bounds(None, at_least, at_most),
-                    nothing=nothing,
-                )
-                if nothing
-                else Wording(
-                    "DEF330", "is_or_write_whole", value=as_written(value), bounds=bounds(None, at_least, at_most)
-                ),
-            )
->>>>>>> main
             return fallback
         return value
 
@@ -253,13 +213,9 @@ class Table(TableAccount):
         value = self._get(key, expected, lambda: _a_vector(n, unit_of(key)))
         if value is None:
             return fallback
-        numbers = _finite_numbers(value)
+        numbers = finite_numbers(value)
         if numbers is None or len(numbers) != n:
-<<<<<<< HEAD
             self._refuse(key, value, _a_vector(n, unit_of(key)), n)
-=======
-            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value) + _decimals(value, n))
->>>>>>> main
             return fallback
         return numbers
 
@@ -276,13 +232,9 @@ class Table(TableAccount):
         value = self._get(key, expected, lambda: _an_interval(unit_of(key)))
         if value is None:
             return fallback
-        numbers = _finite_numbers(value)
+        numbers = finite_numbers(value)
         if numbers is None or len(numbers) != 2:
-<<<<<<< HEAD
             self._refuse(key, value, _an_interval(unit_of(key)), 2)
-=======
-            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value) + _decimals(value, 2))
->>>>>>> main
             return fallback
         low, high = numbers
         if low > high:
@@ -369,46 +321,3 @@ def _an_interval(unit: str) -> Wording:
 def _told(default: object) -> object:
     """Return a default as a file could state it; None where there is none."""
     return None if isinstance(default, Required) else list(default) if isinstance(default, tuple) else default
-
-
-def _finite(value: object) -> float | None:
-    """Return the number that a TOML value is, or None if it is too large or none; true and false are no
-    numbers here.
-    """
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        number = float(value)
-    except OverflowError:
-        return None
-    return number if abs(number) <= GREATEST else None
-
-
-def _magnitude(value: object) -> str:
-    """Return the bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
-    numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
-    return (
-        f", from {-GREATEST:g} to {GREATEST:g}" if any(GREATEST < abs(number) < math.inf for number in numbers) else ""
-    )
-
-
-def _decimals(value: object, n: int) -> str:
-    """Return what to write instead of decimal commas, which make more numbers of an array than it should have."""
-    if not isinstance(value, list) or len(value) <= n or any(not isinstance(each, int) for each in value[1:]):
-        return ""
-    return "; _decimals stand behind a point, such as 90.5"
-
-
-def _finite_numbers(value: object) -> tuple[float, ...] | None:
-    """Return the _finite numbers in a TOML array; None if it holds anything else, or is no array."""
-    numbers = [_finite(item) for item in value] if isinstance(value, list) else [None]
-    found = tuple(number for number in numbers if number is not None)
-    return found if len(found) == len(numbers) else None
-
-
-def _within(number: float, above: float | None, at_least: float | None, at_most: float | None) -> bool:
-    return (
-        (above is None or number > above)
-        and (at_least is None or number >= at_least)
-        and (at_most is None or number <= at_most)
-    )

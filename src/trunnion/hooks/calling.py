@@ -19,12 +19,7 @@ from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.hooks import Block, Context
 from trunnion.hooks.checks import fingerprint, operation_fault, value_fault
-<<<<<<< HEAD
-from trunnion.hooks.copies import detached
 from trunnion.hooks.files import HookFile, function_failure
-=======
-from trunnion.hooks.files import HookFile, failure
->>>>>>> main
 from trunnion.messages import Wording
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines

@@ -14,13 +14,8 @@ from typing import Final, NamedTuple
 from trunnion.definitions import Table, definition_names, load_table
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.definitions.marked_values import marked_in
-<<<<<<< HEAD
 from trunnion.definitions.messages import meant_word
-from trunnion.definitions.value_marks import MARKS
-=======
-from trunnion.definitions.messages import did_you_mean
 from trunnion.definitions.value_marks import ASSUMED, MARKS
->>>>>>> main
 from trunnion.errors import InputError, Problem
 from trunnion.machines.body_tables import read_bodies
 from trunnion.machines.chain_checks import check_chain

@@ -96,16 +96,11 @@ def read_input(
         if found is None and isinstance(each, str | os.PathLike):
             programs.append(Path(each))
     if programs and len(programs) < len(given):
-<<<<<<< HEAD
         raise InputError(
             Problem(str(programs[0]), 0, Wording("PLC110", "programs_and_others", count=len(given) - len(programs)))
         )
-=======
-        what = f"is an NC program, and {counted(len(given) - len(programs), 'other file')} is not"
-        raise InputError(Problem(str(programs[0]), 0, what, "give CL files or NC programs, not both", code="PLC110"))
     if programs and hooks:
         raise no_cl_files()
->>>>>>> main
     if programs:
         runs = [_run_of(program, machine, subprograms) for program in programs]
         clamping, problems = _clamping_of_programs(programs)

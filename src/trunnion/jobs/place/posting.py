@@ -10,11 +10,7 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
-<<<<<<< HEAD
-from trunnion.jobs.result_output import OutputLike
 from trunnion.messages import Wording
-=======
->>>>>>> main
 from trunnion.placing.placement import Placement
 
 
@@ -60,13 +56,8 @@ def post_placed(
     if not found.toolpaths:
         raise InputError(nc_program_stays(found.files[0]))
     if found.best is None or not found.fits:
-<<<<<<< HEAD
         raise InputError(Problem(found.files[0], 0, Wording("PLC150", "fits_nowhere")))
-    texts = as_texts(settings)
-=======
-        raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
     texts = as_texts(given.get("settings"))
->>>>>>> main
     if found.tool_length_mm is not None:
         texts.setdefault("tool_length", str(found.tool_length_mm))
     best = found.best

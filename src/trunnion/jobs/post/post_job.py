@@ -67,12 +67,8 @@ class PostJob:
     notices       comments for the head of the program
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
-<<<<<<< HEAD
     can_force     whether ``force`` can be asked for, which refusals then say
-=======
-    forcing       what a refusal says of ``force``; empty where it cannot be asked for
     strict        a basis of the proof that is missing is an error
->>>>>>> main
     """
 
     machine: Machine
@@ -90,12 +86,8 @@ class PostJob:
     notices: tuple[str, ...] = ()
     clamping: Clamping = field(default_factory=Clamping)
     decisions: tuple[Decision, ...] = ()
-<<<<<<< HEAD
     can_force: bool = True
-=======
-    forcing: str = FORCING
     strict: bool = False
->>>>>>> main
 
     @property
     def printed(self) -> dict[str, str]:

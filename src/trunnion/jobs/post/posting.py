@@ -173,11 +173,7 @@ def post_beside(
         columns=found["columns"],
     )  # fmt: skip
     existing, hook_files = (check_paths(name, found.get(name)) for name in ("subprograms", "hooks"))
-<<<<<<< HEAD
-    job = replace(job, beside=tuple(existing), can_force=work.can_force)
-=======
-    job = replace(job, beside=tuple(existing), forcing=work.forcing, strict=found["strict"])
->>>>>>> main
+    job = replace(job, beside=tuple(existing), can_force=work.can_force, strict=found["strict"])
     inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *work.others]
     if (simulation := found["simulation"]) is not None:
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input

@@ -109,16 +109,9 @@ class PostResult:
             be written.
         """
         if self.verification is None:
-<<<<<<< HEAD
             raise InputError(Problem(str(file), 0, Wording("CTL920", "nothing_proven")))
-        write_post_report(self.verification, file, self.decisions, self.simulation)
-=======
-            raise InputError(
-                Problem(str(file), 0, "nothing was proven", "post for a control that has a reader", code="CTL920")
-            )
         assert self.proof is not None
         write_post_report(self.proof, file, self.decisions, self.simulation)
->>>>>>> main
 
 
 class ProofFailedError(RefusedError):

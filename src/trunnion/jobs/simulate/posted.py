@@ -23,11 +23,7 @@ from trunnion.jobs.project.named_files import library_files, project_files
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.machines import Machine
-<<<<<<< HEAD
-from trunnion.messages import Wording
-=======
 from trunnion.messages import Wording, phrase
->>>>>>> main
 from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath

@@ -37,11 +37,7 @@ def checked(given: VerifyArguments) -> VerifyArguments:
         check_tolerance(name, given.get(name), optional=name.startswith("span"))
     hooks = check_paths("hooks", given["hooks"])
     if hooks and not has_cl:
-<<<<<<< HEAD
-        raise InputError(argument_problem("hooks", Wording("ARG130", "hooks_without_cl")))
-=======
         raise no_cl_files()
->>>>>>> main
     turn, tilt = checked_angles(given["turn"], given["tilt"])
     if (turn or tilt) and not has_cl:
         raise InputError(argument_problem("turn" if turn else "tilt", Wording("ARG130", "clamping_without_cl")))

@@ -78,31 +78,18 @@ def view_program(
     if any(are_cl):
         if not all(are_cl):
             other = files[are_cl.index(False)]
-<<<<<<< HEAD
             raise InputError(Problem(str(other), 0, Wording("PAG112", "no_cl_file_as_others")))
-        return _posted(files, machine, settings, subprograms, observer)
-=======
-            raise InputError(
-                Problem(str(other), 0, "is no CL file, as others here are", "view them one by one", code="PAG112")
-            )
         stated: PostArguments = {"settings": settings, "subprograms": subprograms, "hooks": hooks}
         return _posted(files, machine, stated, observer)
->>>>>>> main
     if settings:
         raise InputError(Problem(str(files[0]), 0, Wording("PAG111", "settings_for_program")))
     others = [*files[1:], *subprograms]
     run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))
     unused = [file for file in files[1:] if str(file) not in run.files]
     if unused:
-<<<<<<< HEAD
         raise InputError(Problem(str(unused[0]), 0, Wording("PAG113", "never_called", program=files[0].name)))
-    toolpaths = as_toolpaths(cl, None, False, observer)
-=======
-        what = f"is not called by {files[0].name}, and one program is shown"
-        raise InputError(Problem(str(unused[0]), 0, what, "view it alone", code="PAG113"))
     cl = given["cl"]
     toolpaths = hooked_toolpaths(as_toolpaths(cl, None, False, observer), machine, hooks)
->>>>>>> main
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))

@@ -266,16 +266,10 @@ def _read(path: Path) -> dict[str, Any]:
     except (ValueError, RecursionError):
         data = None
     if not isinstance(data, dict) or "files" not in data or "made_by" not in data:
-<<<<<<< HEAD
         raise _fault(path, Wording("FIL330", "no_list_of_files"))
-    if data.get("schema") != SCHEMA:
+    if data.get("schema") not in (_FIRST_SCHEMA, SCHEMA):
         shown = f"{data.get('schema')!r:.40}"
         raise _fault(path, Wording("FIL330", "other_schema", schema=shown, known=SCHEMA))
-=======
-        raise _fault(path, "it has no list of files in JSON")
-    if data.get("schema") not in (_FIRST_SCHEMA, SCHEMA):
-        raise _fault(path, f"its schema is {data.get('schema')!r:.40}, and {SCHEMA} is known here")
->>>>>>> main
     return data
 
 
