@@ -35,6 +35,9 @@ from trunnion.readers.program.known_words import HOME, begins_with
 #: The error of a motion whose end is up to machine data.
 _POSITION_IN_DOUBT: Final = "NC224"
 
+#: A work offset that the program writes: with INSERT the CL file asks for it.
+_OFFSET_WRITTEN: Final = "NC352"
+
 #: Columns of a run that a text must leave as they are, and what each of them is.
 _COLUMNS: Final = {
     "machine_frame": phrase("points_in_machine_coordinates"),
@@ -255,7 +258,8 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
     known = {diagnostic.wording for diagnostic in without.errors}
     # What stands behind an end that the text has brought about is a consequence of it.
     end = min((event.line for event in with_text.events if event.kind == "end"), default=math.inf)
-    faults = [each for each in with_text.errors if each.wording not in known and each.line <= end]
+    errors = [each for each in with_text.errors if each.code != _OFFSET_WRITTEN]
+    faults = [each for each in errors if each.wording not in known and each.line <= end]
     if len(with_text) > len(without) and all(each.code == _POSITION_IN_DOUBT for each in faults):
         return phrase("moves_machine")
     effect = _first_change(without, with_text)

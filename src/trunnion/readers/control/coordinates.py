@@ -68,6 +68,8 @@ class CoordinateControl(RowRecorder):
         # each.
         self._stored_offsets: list[tuple[int, int, int, str, str]] = []
         self._stored_systems: dict[int, int] = {}
+        # Work offsets that other programs find as this one has written them: line, file and word.
+        self._changed_offsets: dict[int, tuple[int, int, str]] = {}
         self._trailing = TrailingModes(self._used_until)
         self._plane = AffineMap()
         self._program = AffineMap()
@@ -192,6 +194,10 @@ class CoordinateControl(RowRecorder):
         clears  whether it is zero now: that only tidies up an offset which the program wrote before it moved
         """
         first, used = self._stored_systems.setdefault(system, self.row), self._in_use.at_part
+        if clears:
+            self._changed_offsets.pop(system, None)
+        elif what == OFFSET and system:
+            self._changed_offsets[system] = self.line, self.modal.file.current, word
         if self._stored_offsets and self._stored_offsets[0][0] < used:
             self._stored_offsets.clear()
         if used and not (clears and first < used):
@@ -201,10 +207,15 @@ class CoordinateControl(RowRecorder):
         """Forget what ``note_stored_offset`` has remembered: the control is again as the program began."""
         self._stored_offsets.clear()
 
-    def warn_of_unknown_zero(self, word: str) -> None:
-        """Warn of the first block that writes values of a work offset, if they cannot be held against the zero."""
-        if self.machine.workpiece_zero is None and not self._stored_systems:
-            self.note(Wording("NC352", "offset_over_unknown_zero", word=word), Severity.WARNING)
+    def is_at_unknown_place(self, axis: int) -> bool:
+        """Whether it is not known where an axis stands in the workpiece: it went to a position of the machine.
+
+        Before the first motion it stands where an earlier program has left it.
+        """
+        if self.machine.workpiece_zero is not None:
+            return False
+        rows = np.flatnonzero(self.columns.programmed[: self.row] & (1 << axis))
+        return not len(rows) or bool(self.modal.machine_frame.part(int(rows[-1]), int(rows[-1]) + 1)[0])
 
     def report_unused_offsets(self) -> None:
         """Report each stored work offset behind the last motion at the part: only the next program moves with it.
@@ -218,6 +229,12 @@ class CoordinateControl(RowRecorder):
                 self.line = line if file == self.modal.file.current else here
                 variant = "offset_behind_motion" if what == OFFSET else "position_behind_motion"
                 self._note_left(Wording("NC351", variant, word=word, changes=what))
+                self._changed_offsets = {
+                    each: place for each, place in self._changed_offsets.items() if place != (line, file, word)
+                }
+        for line, file, word in self._changed_offsets.values() if self._in_use.cuts else ():
+            self.line = line if file == self.modal.file.current else here
+            self.note(Wording("NC351", "offset_stays", word=word), Severity.WARNING)
         self.line = here
 
     # What the next program begins with
