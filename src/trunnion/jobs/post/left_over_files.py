@@ -31,6 +31,14 @@ def left_over(target: Target, papers: Iterable[OutputPlace]) -> list[Problem]:
     return [Problem(target.name, 0, wording, severity=Severity.WARNING)]
 
 
+def kept_files(target: Target) -> list[Problem]:
+    """Return a warning for each program that was edited since it was written, and that is kept under another name."""
+    return [
+        Problem(place.name, 0, Wording("FIL250", "kept", name=kept.path.name), severity=Severity.WARNING)
+        for place, kept in target.files.kept
+    ]
+
+
 def first_names(files: Sequence[Path], folder: Path | None) -> tuple[tuple[str, ...], int]:
     """Return the names of the first files, with the paths of those outside a folder, and how many more there are."""
     names = tuple(file.name if file.parent == folder else str(file) for file in files)
