@@ -50,6 +50,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.options.limits",
         "trunnion.options.option",
         "trunnion.options.words",
+        "trunnion.version",
         "trunnion.wording",
     }
 

@@ -13,7 +13,7 @@ from trunnion.machines import Machine
 from trunnion.model.rotations import about_z
 from trunnion.placing.region import TOLERANCE
 from trunnion.placing.table_limits import KEPT, ClampingArea, Standing, TableLimits
-from trunnion.placing.table_room import has_room
+from trunnion.placing.turns import has_room
 
 #: Its tool axis is Z, and its tips go from X -60.941 to 51.648 and 51.648 to both sides in Y.
 CONTOUR = "tests/golden/yl569/1_contour_rough.cls"

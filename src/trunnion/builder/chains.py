@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.builder.document import with_value
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
 from trunnion.schemas import first_line
@@ -40,22 +40,14 @@ _SLIDES: Final = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.
 def chain_text(chain: str, name: str, control: str) -> str:
     """Return a whole definition with an order of axes; what only the machine can tell is left out or marked.
 
-    Parameters
-    ----------
-    chain
-        A name of ``CHAINS``.
-    name
-        Of the machine.
-    control
-        A shipped control.
+    chain    a name of ``CHAINS``
+    name     of the machine
+    control  a shipped control
 
-    Raises
-    ------
-    InputError
-        If there is no such chain.
+    Raises ``InputError`` if there is no such chain.
     """
     if chain not in CHAINS:
-        near = did_you_mean(chain, CHAINS)
+        near = meant_word(chain, CHAINS)
         wording = (
             Wording("PAG210", "no_chain_but_near", chain=chain, near=near)
             if near

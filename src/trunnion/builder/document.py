@@ -31,10 +31,7 @@ class UnclearPlaceError(ValueError):
 def with_value(text: str, path: FieldPath, value: Value) -> str:
     """Return a definition in which a value is set; tables on the way to it are made.
 
-    Raises
-    ------
-    UnclearPlaceError
-        If there is no plain place for it.
+    Raises ``UnclearPlaceError`` if there is no plain place for it.
     """
     found, content = layout(text), tomllib.loads(text)
     where = located(content, path)
@@ -50,10 +47,7 @@ def without_value(text: str, path: FieldPath) -> str:
 
     Comments behind the value stay, as lines of their own.
 
-    Raises
-    ------
-    UnclearPlaceError
-        If it cannot be taken out plainly.
+    Raises ``UnclearPlaceError`` if it cannot be taken out plainly.
     """
     found, content = layout(text), tomllib.loads(text)
     where = located(content, path)
@@ -78,10 +72,7 @@ def with_table_moved(text: str, array: str, name: str, by: int) -> str:
 
     by   -1 or 1; at the end of the array nothing changes
 
-    Raises
-    ------
-    UnclearPlaceError
-        If the tables are not written as ``[[...]]``, each with all that belongs to it.
+    Raises ``UnclearPlaceError`` if the tables are not written as ``[[...]]``, each with all that belongs to it.
     """
     whole = text if text.endswith("\n") else text + "\n"
     found, content = layout(whole), tomllib.loads(whole)

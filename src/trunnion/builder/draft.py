@@ -58,12 +58,8 @@ class Draft:
 def judge(text: str, path: Path) -> Draft:
     """Read a definition, and find every mistake of it.
 
-    Parameters
-    ----------
-    text
-        Of the definition; lines end with a newline alone.
-    path
-        Where it would be saved. What it extends lies beside or below it.
+    text  of the definition; lines end with a newline alone
+    path  where it would be saved. What it extends lies beside or below it
     """
     if len(text) > MOST_LETTERS:
         return Draft(

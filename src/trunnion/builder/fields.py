@@ -101,12 +101,8 @@ class SettingNotes:
 def fields_of(root: LocatedValue, notes: SettingNotes = SettingNotes()) -> list[Field]:
     """Return the fields of a definition, merged with all that it extends, by pages.
 
-    Parameters
-    ----------
-    root
-        The merged definition, its control merged as well.
-    notes
-        Of the settings of its control.
+    root   the merged definition, its control merged as well
+    notes  of the settings of its control
     """
     found = [*_machine_fields(root), *_control_fields(_table(root, "control"), notes)]
     return sorted(found, key=lambda each: PAGES.index(each.page))

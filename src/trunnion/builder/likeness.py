@@ -16,12 +16,8 @@ _HEAD = """\
 def definition_like(machine: Machine, name: str) -> str:
     """Return the text of a definition that extends a shipped machine.
 
-    Parameters
-    ----------
-    machine
-        The shipped one.
-    name
-        Of the new one.
+    machine  the shipped one
+    name     of the new one
     """
     head = first_line("machine") + _HEAD.format(base=machine.key, name=machine.name)
     head += f"extends = {written(machine.key)}\nname = {written(name)}\n"

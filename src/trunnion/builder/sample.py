@@ -25,7 +25,7 @@ _MOST_LINES: Final = 20_000
 _MOST_COMPARED: Final = 3_000
 
 #: How a refusal ends.
-_NOTHING_WRITTEN: Final = "no program is written"
+_NOTHING_WRITTEN: Final = "CTL940"
 
 #: A block number, after the block-skip sign, with a letter or, as Klartext has it, without.
 _BLOCK_NUMBER: Final = re.compile(r"^(/?)[A-Z:]?[0-9]+ ")
@@ -47,22 +47,13 @@ def shipped_sample() -> bytes:
 def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[str]) -> dict[str, Any]:
     """Post and prove a CL file, and mark what differs from an earlier program.
 
-    Parameters
-    ----------
-    machine
-        The machine.
-    cl
-        The CL file; None: the shipped one.
-    name
-        Of the CL file, for messages.
-    before
-        Lines of the earlier program; none: nothing is marked.
+    machine  the machine
+    cl       the CL file; None: the shipped one
+    name     of the CL file, for messages
+    before   lines of the earlier program; none: nothing is marked
 
-    Returns
-    -------
-    dict
-        ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
-        and ``problems``; ``passed``.
+    dict  ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
+          and ``problems``; ``passed``
     """
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
@@ -86,7 +77,7 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
 
 def without_program(problems: Sequence[Problem] = (), checks: Sequence[Check] = ()) -> dict[str, Any]:
     """Return the answer where there is no program: the CL file cannot be posted, or it fails its proof."""
-    told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
+    told = [_problem(each) for each in problems if each.code != _NOTHING_WRITTEN]
     shown = list(map(_check, checks))
     none = {"lines": [], "changed": [], "removed": 0, "all": 0, "standing": None}
     return {**none, "checks": shown, "problems": told, "passed": False}

@@ -32,10 +32,7 @@ def is_file_name(name: str) -> bool:
 def check_place(file: Path) -> None:
     """Check that a file, if it is there, can be read, and that no link leads from it out of its folder.
 
-    Raises
-    ------
-    InputError
-        If not.
+    Raises ``InputError`` if not.
     """
     if not is_within(file, file.parent):
         raise InputError(Problem(str(file), 0, Wording("PAG211", "link_leads_out", resolve=file.resolve())))
@@ -46,10 +43,7 @@ def check_place(file: Path) -> None:
 def read_raw(file: Path) -> str:
     """Return the text of a file, with its byte order mark and its line ends.
 
-    Raises
-    ------
-    InputError
-        If it is not there, no regular file, too long, or not UTF-8.
+    Raises ``InputError`` if it is not there, no regular file, too long, or not UTF-8.
     """
     if unusable := unusable_file(file, "the TOML file of a machine"):
         raise InputError(unusable)
@@ -79,12 +73,8 @@ def page_text(raw: str) -> str:
 def file_text(text: str, old: str) -> str:
     """Return a text of the page as the file gets it: each line that it had ends as before, new ones as most do.
 
-    Parameters
-    ----------
-    text
-        Of the page.
-    old
-        Of ``read_raw``; empty: there is no file yet.
+    text  of the page
+    old   of ``read_raw``; empty: there is no file yet
     """
     mark = _MARK if old.startswith(_MARK) else ""
     windows = old.count("\r\n")

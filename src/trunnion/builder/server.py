@@ -5,32 +5,33 @@ Out:    a Starlette application. Requests are JSON of bounded size, from this pa
 """
 
 import json
+from collections.abc import Mapping
+from importlib.resources import files
 from typing import Any, Final
 
-from trunnion.builder.page import render_builder
 from trunnion.builder.session import MOST_CL_BYTES, BuilderSession, RequestError
 from trunnion.errors import InputError
 from trunnion.extras import import_extra
 from trunnion.viewer.serving import HEADERS, Access, application_of
+from trunnion.viewer.shell import PageShell, bundle
 
 #: A CL file in base64, a definition and an earlier program.
 _MOST_BYTES: Final = MOST_CL_BYTES * 4 // 3 + 4_000_000
+
+_WEB: Final = files("trunnion.builder") / "web"
+_VIEWER: Final = files("trunnion.viewer") / "web"
+
+#: In an order in which each needs only those before it.
+_MODULES: Final = ("texts", "stage", "form", "editor", "edits", "jog", "sample", "main")
 
 
 def builder_application(session: BuilderSession, access: Access) -> Any:
     """Make the application.
 
-    Parameters
-    ----------
-    session
-        What its page may ask for.
-    access
-        Who may see it.
+    session  what its page may ask for
+    access   who may see it
 
-    Raises
-    ------
-    InputError
-        If Starlette is not installed, or the definition cannot be read.
+    Raises ``InputError`` if Starlette is not installed, or the definition cannot be read.
     """
     responses, routing = (import_extra(f"starlette.{name}", "view") for name in ("responses", "routing"))
     run_in_threadpool = import_extra("starlette.concurrency", "view").run_in_threadpool
@@ -41,7 +42,7 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
 
     def show_page(request: Any) -> Any:
         try:
-            return access.page(render_builder(session.start(request.query_params.get("file", ""))))
+            return access.page(_render_builder(session.start(request.query_params.get("file", ""))))
         except (InputError, RequestError) as error:
             return plain(str(error) or "this is no file of a definition", 404)
 
@@ -69,3 +70,12 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
             routing.Route("/{what}", access.guarded(answer), methods=["POST"]),
         ]
     )
+
+
+def _render_builder(start: Mapping[str, Any]) -> bytes:
+    """Return the page; ``start`` is what ``BuilderSession.start`` gives."""
+    kinematics = (_VIEWER / "kinematics.js").read_text(encoding="utf-8")
+    modules = ((_WEB / f"{name}.js").read_text(encoding="utf-8") for name in _MODULES)
+    style, body = ((_WEB / name).read_text(encoding="utf-8") for name in ("style.css", "body.html"))
+    shell = PageShell(str(start["title"]), "\n" + style, body, bundle((kinematics, *modules)))
+    return shell.head(start, embedded=False) + shell.foot()

@@ -56,17 +56,11 @@ class BuilderSession:
     def start(self, file: str = "") -> dict[str, Any]:
         """Return what the page begins with: the text of the file, and what a new definition can start from.
 
-        Parameters
-        ----------
-        file
-            Name of another file of the folder, which a page has saved; empty: the one that was opened.
+        file  name of another file of the folder, which a page has saved; empty: the one that was opened
 
-        Raises
-        ------
-        InputError
-            If the file cannot be read.
-        RequestError
-            If no file of the folder has such a name.
+        Raises ``InputError`` if the file cannot be read.
+
+        Raises ``RequestError`` if no file of the folder has such a name.
         """
         name = file or self.name
         text = ""
@@ -86,10 +80,7 @@ class BuilderSession:
     def answer(self, what: str, given: Mapping[str, Any]) -> dict[str, Any] | None:
         """Answer a request; None: there is no such request.
 
-        Raises
-        ------
-        RequestError
-            If it is not made as the page makes it.
+        Raises ``RequestError`` if it is not made as the page makes it.
         """
         match what:
             case "begin":

@@ -93,9 +93,9 @@ def read_cl_files(
 ) -> list[Toolpath]:
     """Read a CL file, or all those of an archive in the order of their names.
 
-    path              A plain file, one packed by gzip or bzip2, a ZIP archive, or a binary stream
+    path              a plain file, one packed by gzip or bzip2, a ZIP archive, or a binary stream
     units             length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says
-    dialect           A key of ``trunnion.cl.dialects.DIALECTS``; None: the content of the file decides
+    dialect           a key of ``trunnion.cl.dialects.DIALECTS``; None: the content of the file decides
     strict            make an unknown statement an error instead of a remark
     spline_tolerance  how far the points that splines become may leave them between each other, mm; None: as INTOL and
                       OUTTOL say

@@ -108,7 +108,7 @@ def is_cl_file(path: Path) -> bool:
 def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
     """Return the CL files in a file or a stream: several in a ZIP archive, in the order of their names.
 
-    file  A path, or a binary stream, which is read to its end
+    file  a path, or a binary stream, which is read to its end
     name  what a stream is called in messages
 
     Raises ``InputError`` if it cannot be read, is damaged, has no CL file, or is an archive in an archive.

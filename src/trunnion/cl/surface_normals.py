@@ -98,7 +98,7 @@ def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
 
     moves    of one operation, mm
     contact  (n, 3) float64: contact points, mm, NaN where there is none
-    tool     A ball or toroidal mill
+    tool     a ball or toroidal mill
     """
     to_contact = contact - moves.tip
     axial = np.einsum("ij,ij->i", to_contact, moves.axis)

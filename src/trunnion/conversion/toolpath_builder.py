@@ -23,7 +23,6 @@ from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection, assign_events, divide_sections, split_program
 from trunnion.conversion.settings import parse_number, settings_from_headers
 from trunnion.conversion.spindle_holes import read_spindle_holes
-from trunnion.conversion.tools import build_tool
 from trunnion.conversion.unsupported import (
     Warnings,
     refuse_unsimulated_motions,
@@ -39,7 +38,7 @@ from trunnion.conversion.workpiece_rows import without_turns_in_place, workpiece
 from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Event, Frame, LoadTool, Operation, Toolpath
+from trunnion.model.toolpath import Event, Frame, LoadTool, Operation, Tool, Toolpath
 from trunnion.readers import reader_of
 from trunnion.verification import restore_rapids
 
@@ -157,7 +156,7 @@ class _ToolpathBuilder:
         values["tool"] = self._called_as[builder.tool] = values.get("tool") or self._called_as.get(builder.tool, "")
         return Operation(
             name=name if section.part == 1 else f"{name}_{section.part}",
-            tool=build_tool(values, builder.tool, self._control),
+            tool=_build_tool(values, builder.tool, self._control),
             frame=Frame(),
             moves=replace(moves, tip=holes.tips(moves.tip)),
             arcs=build_arcs(run, rows),
@@ -203,3 +202,30 @@ def _coolant_words(control: Control) -> dict[int, str]:
         if word in control.coolant:
             words.setdefault(control.coolant[word], word)
     return words
+
+
+def _build_tool(values: dict[str, str], called: str, control: Control) -> Tool:
+    """Return the cutter of an operation.
+
+    values   values of the header; gets the settings with which the tool is called as in the program
+    called   the tool as the program calls it, by number or name; empty if it calls none
+    """
+    kinds = {text: kind for kind, text in control.tool_types.items()}
+    kind = kinds.get(values.get("tool_type", ""), "UNKNOWN")
+    diameter = parse_number(values.get("tool_diameter"))
+    if kind == "BALL" or (kind == "UNKNOWN" and diameter):
+        kind = "MILL"
+    by_name = bool(called) and (not called.isdigit() or values.get("tool", "").startswith('"'))
+    values.pop("tool", None)
+    name = values.get("tool_name", "") or (called if by_name else "")
+    if called:
+        values["tool_call"] = "name" if by_name and name == called else "number"
+    if by_name and name != called:
+        values["tool"] = f'"{called}"'
+    return Tool(
+        kind=kind,
+        name=name,
+        diameter=diameter or 0.0,
+        corner_radius=parse_number(values.get("tool_corner_radius")) or 0.0,
+        length=parse_number(values.get("tool_length")) or 0.0,
+    )

@@ -18,19 +18,15 @@ def finite(value: object) -> float | None:
     return number if abs(number) <= GREATEST else None
 
 
-def magnitude(value: object) -> str:
-    """Return the bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
+def is_too_large(value: object) -> bool:
+    """Whether a value is, or has in it, a number beyond the bounds of all numbers."""
     numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
-    return (
-        f", from {-GREATEST:g} to {GREATEST:g}" if any(GREATEST < abs(number) < math.inf for number in numbers) else ""
-    )
+    return any(GREATEST < abs(number) < math.inf for number in numbers)
 
 
-def decimals(value: object, n: int) -> str:
-    """Return what to write instead of decimal commas, which make more numbers of an array than it should have."""
-    if not isinstance(value, list) or len(value) <= n or any(not isinstance(each, int) for each in value[1:]):
-        return ""
-    return "; decimals stand behind a point, such as 90.5"
+def has_decimal_commas(value: object, n: int) -> bool:
+    """Whether an array seems to have decimal commas, which make more than n numbers of it."""
+    return isinstance(value, list) and len(value) > n and all(isinstance(each, int) for each in value[1:])
 
 
 def finite_numbers(value: object) -> tuple[float, ...] | None:

@@ -36,7 +36,7 @@ class OutputPlace:
 def resolve_output(file: object) -> OutputPlace:
     """Find out where a file will be written.
 
-    file  A path as text or as ``os.PathLike``
+    file  a path as text or as ``os.PathLike``
 
     Raises ``InputError`` if it names no file, a folder, or what cannot be written: something of another type, a name
     with a NUL or with a slash at its end, a file in a folder that does not exist, a disk.

@@ -9,8 +9,8 @@ import sys
 import types
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import redirect_stdout
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import TypeVar, cast
 
 import numpy as np
 
@@ -19,8 +19,7 @@ from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.hooks import Block, Context
 from trunnion.hooks.checks import fingerprint, operation_fault, value_fault
-from trunnion.hooks.copies import detached
-from trunnion.hooks.files import HookFile, failure
+from trunnion.hooks.files import HookFile, function_failure
 from trunnion.messages import Wording
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines
@@ -40,6 +39,8 @@ from trunnion.model.toolpath import (
 from trunnion.wording import counted
 
 _Kind = TypeVar("_Kind", Operation, Event)
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +75,7 @@ class Hooks:
     def change(self, toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
         """Return what hooks make of toolpaths, with remarks on what they changed.
 
-        Raises
-        ------
-        InputError
-            If a hook fails, or returns what no CL file could say.
+        Raises ``InputError`` if a hook fails, or returns what no CL file could say.
         """
         given = list(toolpaths)
         found = [self._changed(toolpath) for toolpath in given]
@@ -181,7 +179,7 @@ class _Caller:
 
     def given(self, operation: Operation) -> Operation:
         """Return the operation as a function gets it: a copy of its own, that is watched."""
-        copy = detached(operation)
+        copy = _detached(operation)
         self._watched.append((copy, fingerprint(copy)))
         return copy
 
@@ -204,7 +202,7 @@ class _Caller:
             with redirect_stdout(sys.stderr):  # the program may go to standard output
                 return self._file.functions[name](given, context)
         except (Exception, SystemExit) as error:
-            raise InputError(failure(self._file.path, error, f"{name} fails for operation {operation.name}")) from error
+            raise InputError(function_failure(self._file.path, error, name, operation.name)) from error
 
     def refuse(self, name: str, wording: Wording) -> InputError:
         """Return the error for what a function has returned."""
@@ -269,7 +267,7 @@ class _Caller:
     def _checked(self, name: str, event: Event, rows: int) -> Event:
         if not 0 <= event.row <= rows:
             raise self.refuse(name, Wording("HOK132", "event_row", row=event.row, rows=rows))
-        return replace(event, template="") if isinstance(event, Insert) and event.template else detached(event)
+        return replace(event, template="") if isinstance(event, Insert) and event.template else _detached(event)
 
 
 def _plain_operation(call: _Caller, before: Operation, given: Operation, operation: Operation) -> Operation:
@@ -294,7 +292,7 @@ def _plain_operation(call: _Caller, before: Operation, given: Operation, operati
             )
     keeps_events, keeps_moves = operation.events is given.events, operation.moves is given.moves
     own = {
-        name: getattr(before, name) if getattr(operation, name) is getattr(given, name) else detached(part)
+        name: getattr(before, name) if getattr(operation, name) is getattr(given, name) else _detached(part)
         for name in parts
         for part in [getattr(operation, name)]
     }
@@ -317,3 +315,22 @@ def _blocks(moves: Moves) -> Iterable[Block]:
         zip(*(c.tolist() for c in columns), strict=True)
     ):
         yield Block(row, tuple(tip), tuple(axis), Kind(kind), Phase(phase), feed, per_rev, line)
+
+
+def _detached(record: _T) -> _T:
+    """Return a copy of a record, or of a value of one, with copies of all arrays and records in it."""
+    return cast(_T, _copied(record))
+
+
+def _copied(value: object) -> object:
+    if isinstance(value, np.ndarray):
+        column = np.array(value)
+        column.setflags(write=False)
+        return column
+    if is_dataclass(value) and not isinstance(value, type):
+        new = object.__new__(type(value))
+        for each in fields(value):
+            # Records are frozen, and a copy needs no check that the record has passed.
+            object.__setattr__(new, each.name, _copied(getattr(value, each.name)))
+        return new
+    return tuple(map(_copied, value)) if type(value) is tuple else value

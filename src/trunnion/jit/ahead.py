@@ -36,10 +36,7 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
     This process compiles from the front, each kernel when it is first called, and waits for one that the other process
     has begun: they meet half-way. Does nothing where no kernel is missing.
 
-    Parameters
-    ----------
-    kernels
-        In the order in which they will be called.
+    kernels  in the order in which they will be called
     """
     missing = [one for one in kernels if isinstance(one, Kernel) and not (one.announced or one.is_kept)]
     if not missing:

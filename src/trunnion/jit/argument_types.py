@@ -17,10 +17,7 @@ def numba_types(function: Callable[..., Any], writes: frozenset[str]) -> tuple[A
 
     ``int``, ``float`` and ``bool``; arrays as ``trunnion.arrays`` names them; tuples of these, and named ones.
 
-    Parameters
-    ----------
-    writes
-        Names of arguments whose arrays are written to; the others' are read-only.
+    writes  names of arguments whose arrays are written to; the others' are read-only
     """
     hints = inspect.get_annotations(function, eval_str=True)
     return tuple(_numba_type(hint, name in writes) for name, hint in hints.items() if name != "return")

@@ -13,6 +13,7 @@ from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output,
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.registry import JOBS
+from trunnion.messages import Wording
 from trunnion.options.kinds import FileOut
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
@@ -85,6 +86,7 @@ def open_target(
     papers: Mapping[str, str | os.PathLike[str] | None] | None = None,
     inputs: Iterable[str | os.PathLike[str]] = (),
     group: OutputGroup | None = None,
+    edited: str = "",
 ) -> Iterator[Target]:
     """Open the place of a result.
 
@@ -98,6 +100,8 @@ def open_target(
         Files that are read: none of them is written over.
     group
         Of jobs whose files appear together; None: the files of this one appear when the block ends.
+    edited
+        What becomes of programs there that were edited since they were written (the setting of that name).
 
     Raises
     ------
@@ -108,13 +112,13 @@ def open_target(
     if group is not None:
         assert isinstance(place, str | os.PathLike), "streams take one result alone"
         found = resolve_output(place)
-        with group.open(found, papers=beside.values(), inputs=inputs) as files:
+        with group.open(found, papers=beside.values(), inputs=inputs, edited=edited) as files:
             yield Target(files, found.name, Path(place), papers=beside)
         return
     if isinstance(place, str | os.PathLike):
         found = resolve_output(place)
         path = None if found.is_stream else Path(place)
-        with atomic_output(found, papers=beside.values(), inputs=inputs, is_job=True) as files:
+        with atomic_output(found, papers=beside.values(), inputs=inputs, is_job=True, edited=edited) as files:
             yield Target(files, found.name, path, papers=beside)
         return
     memory = io.BytesIO() if place is None else None
@@ -182,7 +186,6 @@ def paper_files(
         place = declared_output("post", "manifest", manifest)
         program = Path(output) if isinstance(output, str | os.PathLike) else None
         if program is None or program.parent.resolve() != Path(manifest).parent.resolve():
-            cure = "name a file in the folder of the program, and write the program to a file"
-            raise InputError(Problem(place.name, 0, "a manifest tells of the files beside it", cure, code="FIL320"))
+            raise InputError(Problem(place.name, 0, Wording("FIL320", "manifest_elsewhere")))
     places = (None if each is None else Path(each) for each in (report, sheet, listing, manifest))
     return PaperFiles(*places)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -12,12 +13,12 @@ from trunnion.machines import Machine
 from trunnion.model.rotations import about_z
 from trunnion.placing.axis_equations import AxisEquations, axis_equations
 from trunnion.placing.extremes import Extremes
+from trunnion.placing.largest_margin import linear_program
 from trunnion.placing.moving_samples import arc_samples, turning_samples
 from trunnion.placing.path_rows import PathRows
 from trunnion.placing.rotary_angles import Obstacle, RotaryAngles, rotary_angles
-from trunnion.placing.table_limits import Standing
-from trunnion.placing.table_room import has_room
-from trunnion.placing.travel_limits import CutSet, slide_limits
+from trunnion.placing.table_limits import Standing, TableLimits
+from trunnion.placing.travel_limits import FARTHEST, CutSet, slide_limits
 from trunnion.placing.turning import (
     Turning,
     outermost,
@@ -26,6 +27,11 @@ from trunnion.placing.turning import (
     turned_head,
     turning_of,
 )
+
+#: An outline that is larger by less is as large as the table, mm.
+_ROUNDING: Final = 1e-9
+
+_MOST_ROUNDS: Final = 200
 
 
 class Choice(StrEnum):
@@ -205,3 +211,25 @@ def _without(forms: AxisEquations, rows: PathRows, held: Flags) -> AxisEquations
     return AxisEquations(
         np.ascontiguousarray(forms.normals[keep]), np.ascontiguousarray(forms.offsets[keep]), forms.row[keep]
     )
+
+
+def has_room(limits: TableLimits) -> bool:
+    """Whether there is a zero at which the whole outline is on the table.
+
+    The place with the most left to the edges is the solution of a linear program. It is held against the rim, and gets
+    one more tangent, until they agree.
+    """
+    edges = [*limits.straight_edges(), *limits.rim_around()]
+    for _ in range(_MOST_ROUNDS):
+        table = np.array([(*edge.normal, 1.0) for edge in edges])
+        bounds = np.array([edge.bound for edge in edges])
+        ranges = [(-FARTHEST, FARTHEST)] * 2 + [(None, None)]
+        solved = linear_program(np.array([0.0, 0.0, -1.0]), table, bounds, ranges)
+        left, most = limits.left(solved.x), float(solved.x[2])
+        if left >= -_ROUNDING:
+            return True
+        tangent = limits.rim_at(solved.x)
+        if most < -_ROUNDING or tangent is None:
+            return False
+        edges.append(tangent)
+    return False

@@ -80,10 +80,7 @@ def run_program(
 def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     """Return the reader of a family, by default that of the machine's control.
 
-    Raises
-    ------
-    InputError
-        If there is no reader for its programs yet.
+    Raises ``InputError`` if there is no reader for its programs yet.
     """
     name = family_of(machine) if family is None else family
     if not _has_reader(name):
@@ -99,10 +96,7 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
 def check_reading(machine: Machine) -> None:
     """Check what the definition of a machine's control says to readers: ``[control.known]`` and ``[control.reading]``.
 
-    Raises
-    ------
-    InputError
-        With every mistake, each at its file and line.
+    Raises ``InputError`` with every mistake, each at its file and line.
     """
     if not can_read(machine):
         return

@@ -20,14 +20,9 @@ def to_data(value: Any, *, decimals: int | None = None, only: Sequence[str] = ()
     unless a figure says otherwise. Numbers that are not finite become None, paths
     and enumerations texts, arrays lists; a ``Problem`` has the same seven keys wherever it stands.
 
-    Parameters
-    ----------
-    value
-        Records, numbers, texts, arrays, and sequences and mappings of them.
-    decimals
-        To which numbers are rounded unless their figure says it; None: they are not.
-    only
-        Keys of the record, or of each record of a sequence; by default all.
+    value     records, numbers, texts, arrays, and sequences and mappings of them
+    decimals  to which numbers are rounded unless their figure says it; None: they are not
+    only      keys of the record, or of each record of a sequence; by default all
     """
     return _converted(value, _PLAIN, decimals, tuple(only))
 

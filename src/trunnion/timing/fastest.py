@@ -122,22 +122,15 @@ def fastest_run(path: SmoothPath, limits: AxisDynamics, pieces: int = 200) -> Fa
     with the cube at both ends, where its rate needs no zero then. The result is one from which no small change is
     faster, measured densely and slowed down by what it is beyond a limit between the places of the programs.
 
-    Parameters
-    ----------
-    path
-        Some axis must move everywhere.
-    limits
-        Those that are infinite do not count. Some axis needs a jerk.
-    pieces
-        On about so many pieces of the path the square of the rate is one polynomial; a path of many bends needs more.
+    path    some axis must move everywhere
+    limits  those that are infinite do not count. Some axis needs a jerk
+    pieces  on about so many pieces of the path the square of the rate is one polynomial; a path of many bends needs
+            more
 
-    Raises
-    ------
-    InputError
-        If SciPy is not installed.
-    ValueError
-        If no jerk is limited, a limit is not positive, breaks do not ascend, or the path does not move or is not
-        finite.
+    Raises ``InputError`` if SciPy is not installed.
+
+    Raises ``ValueError`` if no jerk is limited, a limit is not positive, breaks do not ascend, or the path does not
+    move or is not finite.
     """
     table = np.stack((limits.speed, limits.acceleration, limits.jerk))
     if not (table > 0.0).all():

@@ -155,12 +155,8 @@ def faster(
 ) -> Floats:
     """Coefficients of a run that keeps all limits at the places, and that no further program makes faster.
 
-    Parameters
-    ----------
-    coefficients
-        Of any run; a stretch of its time must make it keep the limits.
-    least_gain
-        Share of the time; a program that saves less was the last one.
+    coefficients  of any run; a stretch of its time must make it keep the limits
+    least_gain    share of the time; a program that saves less was the last one
     """
     matrix, weights = rates.quadrature()
 

@@ -41,14 +41,10 @@ class ReachedFeeds:
 def reached_feeds(run: Run, most: Floats, resting: Floats | None = None) -> ReachedFeeds:
     """Time a run with other feeds.
 
-    Parameters
-    ----------
-    run
-        The program as its control ran it.
-    most : (n,) float64
-        Feeds of the tip that rows have in place of the programmed ones; NaN: they have these.
-    resting : (n,) float64
-        What stands for these in rows in which rotary axes turn and the tip hardly moves; None: the same.
+    run      the program as its control ran it
+    most     (n,) float64: feeds of the tip that rows have in place of the programmed ones; NaN: they have these
+    resting  (n,) float64: what stands for these in rows in which rotary axes turn and the tip hardly moves; None: the
+             same
     """
     feeds, timer = RowFeeds(run), RunTimer(run)
     share, known, programmed = np.empty(len(run)), np.empty(len(run), np.bool_), np.empty(len(run))

@@ -156,19 +156,11 @@ def _moving(motion: _Motion, phase: Ints, times: Floats) -> tuple[Floats, Floats
 def time_run(run: Run, lengths: Mapping[int, float] = _ALL_LENGTHS, *, limits: AxisDynamics | None = None) -> TimedRun:
     """Give a run its motion in time.
 
-    Parameters
-    ----------
-    run
-        The program as its control ran it.
-    lengths
-        Of tools, from tip to gauge point, mm, by their index in ``Run.tools``; others have that of the machine.
-    limits
-        What the machine can do; None: what its definition states.
+    run      the program as its control ran it
+    lengths  of tools, from tip to gauge point, mm, by their index in ``Run.tools``; others have that of the machine
+    limits   what the machine can do; None: what its definition states
 
-    Raises
-    ------
-    InputError
-        If there is more motion than is kept in memory.
+    Raises ``InputError`` if there is more motion than is kept in memory.
     """
     dynamics = AxisDynamics.of(run.machine) if limits is None else limits
     n, schedule = len(run), Schedule(run, dynamics)

@@ -16,7 +16,8 @@ KINDS = {"rapid": Kind.RAPID, "line": Kind.LINEAR, "arc": Kind.ARC}
 
 def agree(run: Run, canon: Canon) -> None:
     """The reader's rows are the motions of LinuxCNC, which also prints motions of no length for a G word alone."""
-    assert [str(f) for f in run.errors] == []
+    # Offsets are written, and this machine has no workpiece zero: a fault, which the interpreter itself does not know.
+    assert [str(f) for f in run.errors if f.code != "NC352"] == []
     wanted = np.array([move.machine for move in canon.moves]).reshape(-1, 6)[:, [0, 1, 2, 3, 5]]
     kinds = np.array([KINDS[move.kind] for move in canon.moves])
     got = run.joints[:, COLUMNS]

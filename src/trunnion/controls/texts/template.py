@@ -12,10 +12,10 @@ from trunnion.controls.template import Printing, Template, Value
 from trunnion.controls.texts import filters, tree
 from trunnion.controls.texts.sandbox import SANDBOX
 from trunnion.controls.texts.syntax_faults import syntax_fault
-from trunnion.controls.texts.value_faults import value_fault
 from trunnion.controls.texts.values import ABSENT, MOST_CHARACTERS, Fault, Length, Rendering, as_number
 from trunnion.controls.words import WordRangeError
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording, phrase
 
 #: What Python says of an expression whose values do not fit.
 _FAULTS: Final = (jinja2.TemplateError, TypeError, ValueError, ArithmeticError, RecursionError, LookupError)
@@ -25,7 +25,21 @@ _TAG: Final = re.compile(r"\{%.*?%\}|\{#.*?#\}|\{\{.*?\}\}", re.DOTALL)
 _STATEMENT_LINE: Final = re.compile(r"\{[%#]")
 _PRINTED: Final = re.compile(r"\{\{-?\s*([A-Za-z_]\w*)\s*(?:\|\s*([A-Za-z_]\w*)\s*)?-?\}\}")
 
-_NOT_UNDERSTOOD: Final = "docs/templates.md has the language"
+#: Types of values, as people call them.
+_KINDS: Final = {
+    "str": "a_text",
+    "int": "number",
+    "float": "number",
+    "Length": "number",
+    "bool": "a_condition",
+    "NoneType": "an_absent_value",
+    "tuple": "a_list",
+    "list": "a_list",
+    "Record": "a_tool_or_an_operation",
+}
+
+_COMPARED: Final = re.compile(r"'([<>]=?)' not supported between instances of '(\w+)' and '(\w+)'")
+_SEARCHED: Final = re.compile(r"argument of type '(\w+)' is not (?:iterable|a container)")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,7 +131,7 @@ class TextTemplate(Template):
                 pieces.append(piece)
                 left -= len(piece)
                 if left < 0:
-                    raise Fault("writes too much", f"write at most {MOST_CHARACTERS} letters")
+                    raise Fault("writes_too_much", most=MOST_CHARACTERS)
         except (Fault, WordRangeError, *_FAULTS) as error:
             self._refuse(error)
         text = "".join(pieces)
@@ -131,12 +145,12 @@ class TextTemplate(Template):
                 line = trace.tb_lineno
             trace = trace.tb_next
         file, at = self.place_of(max(line, 1) - 1)
-        fault = error if isinstance(error, Fault) else value_fault(error)
+        fault = error if isinstance(error, Fault) else _value_fault(error)
         if isinstance(error, WordRangeError):
-            fault = Fault(
-                f"prints a {error.what}", "correct the value; the control's definition has the limits of formats"
-            )
-        raise InputError(Problem(file, at, f"template {self.name} {fault.what}", fault.cure, code="DEF580")) from None
+            fault = Fault("prints_beyond_format", fault=error.wording)
+        raise InputError(
+            Problem(file, at, Wording("DEF580", "template_fails", template=self.name, fault=fault.wording))
+        ) from None
 
 
 def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTemplate, Fault | None]:
@@ -154,8 +168,7 @@ def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTempl
     except jinja2.TemplateSyntaxError as error:
         return TextTemplate(name, lines, file, line), syntax_fault("\n".join(lines), error.lineno)
     except (RecursionError, SyntaxError, ValueError, ArithmeticError, MemoryError):
-        what = "has too much within each other, or a number that is none"
-        return TextTemplate(name, lines, file, line), Fault(what, _NOT_UNDERSTOOD)
+        return TextTemplate(name, lines, file, line), Fault("not_compiled")
     return TextTemplate(name, lines, file, line, found, attributes, code, cost), None
 
 
@@ -193,3 +206,18 @@ def _complete_lines(text: str) -> list[str]:
         if line and ABSENT not in line:
             lines.append(line)
     return lines
+
+
+def _value_fault(error: Exception) -> Fault:
+    """Return what an expression did that its values do not allow."""
+    if (found := _COMPARED.match(str(error))) is not None:
+        return Fault("compares_other_kinds", left=_kind(found[2]), right=_kind(found[3]), operator=found[1])
+    if (found := _SEARCHED.match(str(error))) is not None:
+        return Fault("looks_within_other_kind", value=_kind(found[1]))
+    if isinstance(error, RecursionError):
+        return Fault("too_deep")
+    return Fault("not_allowed_by_values")
+
+
+def _kind(name: str) -> Wording:
+    return phrase(_KINDS.get(name, "another_thing"))

@@ -118,7 +118,7 @@ def fit_field(
     """Return the field that turns least; None if its linear program finds no end.
 
     places   (n, k)
-    regions  A cone at each place; places without one do not count
+    regions  a cone at each place; places without one do not count
     spans    of the spline, for each parameter
     lengths  what a parameter from 0 to 1 is in mm, (k,)
     """

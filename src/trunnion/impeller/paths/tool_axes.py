@@ -106,7 +106,7 @@ def choose_axes(
 ) -> ToolAxes:
     """Choose the tool axes of a family of passes.
 
-    family     A family that is a spiral is closed along its first parameter
+    family     a family that is a spiral is closed along its first parameter
     obstacles  what the tool keeps clear of, in the frame of the passes
     wanted     clearances; where they cannot be had everywhere, a smaller share of all of them is tried
     reachable  tells of directions (n, 3) which the machine reaches, (n,)

@@ -9,9 +9,10 @@ from typing import Final
 
 from trunnion.cl import DIALECTS
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, PROGRAM_MEANINGS
+from trunnion.messages import Wording
 from trunnion.model.motion import PoleStrategy
 from trunnion.options.groups import POSTING
-from trunnion.options.kinds import Number
+from trunnion.options.kinds import Choice, Number
 from trunnion.options.option import Option
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 from trunnion.planning import PlanOptions
@@ -53,11 +54,29 @@ class RunSetting:
         limits = f"{low:g} to {high:g}" if high < _UNLIMITED else f"at least {low:g}"
         return f"{self.form}, {limits}, such as {self.example}"
 
-    def cure(self, key: str) -> str:
-        """Return what to write instead of a value that cannot be."""
+    def fault(self, key: str, value: object) -> Wording:
+        """Return the message about a value that cannot be; ``written`` says where it is no setting but an argument."""
+        shown, meaning, written = repr(value), self.meaning, f"{key}={self.form}"
         if self.choices:
-            return f"write {' or '.join(f'{key}={choice}' for choice in self.choices)}. {self.meaning}"
-        return f"write {key}={self.allowed}. {self.meaning}"
+            choices = tuple(f"{key}={choice}" for choice in self.choices)
+            return Wording("ARG220", "no_choice", value=shown, choices=choices, meaning=meaning)
+        if self.bounds is None:
+            return Wording("ARG220", "not_of_form", value=shown, written=written, example=self.example, meaning=meaning)
+        low, high = self.bounds
+        if high < _UNLIMITED:
+            return Wording(
+                "ARG220",
+                "out_of_range",
+                value=shown,
+                written=written,
+                low=low,
+                high=high,
+                example=self.example,
+                meaning=meaning,
+            )
+        return Wording(
+            "ARG220", "too_small", value=shown, written=written, low=low, example=self.example, meaning=meaning
+        )
 
 
 def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
@@ -65,9 +84,11 @@ def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
 
 
 def _declared(option: Option) -> RunSetting:
-    """Return the setting for which an option of numbers stands, as the option is declared."""
-    assert isinstance(option.kind, Number)
+    """Return the setting for which an option stands, as the option is declared."""
     meaning = f"{option.help[:1].upper()}{option.help[1:]}."
+    if isinstance(option.kind, Choice):
+        return _choice(meaning, *option.kind.words)
+    assert isinstance(option.kind, Number)
     bounds = option.kind.least, option.kind.most
     return RunSetting(meaning, bounds=bounds, form=option.kind.metavar, example=option.kind.how.rpartition(" ")[2])
 

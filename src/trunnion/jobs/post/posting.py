@@ -21,11 +21,11 @@ from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.expected_values import expectation
-from trunnion.jobs.post.left_over_files import left_over
+from trunnion.jobs.post.left_over_files import kept_files, left_over
 from trunnion.jobs.post.machining_times import new_time_token, prints_times, write_times
 from trunnion.jobs.post.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.planning import load_toolpaths, new_problems, plan_program
-from trunnion.jobs.post.post_job import FORCING, PostJob, prepare
+from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.program_places import ProgramPlaces
 from trunnion.jobs.post.proving import prove, report_proof
 from trunnion.jobs.post.reading import as_clamped
@@ -46,14 +46,14 @@ class Work:
     others     its other files, none of which is written over
     group      with whose files the program appears; None: alone
     is_placed  the head of the program says how the part is clamped, even if that is as it is drawn
-    forcing    what a refusal says of ``force``
+    can_force  whether refusals speak of ``force``
     later      takes the papers, and who gives it writes them; None: they are written
     """
 
     others: Sequence[FilePath] = ()
     group: OutputGroup | None = None
     is_placed: bool = False
-    forcing: str = FORCING
+    can_force: bool = True
     later: list[PostPapers] | None = None
 
 
@@ -173,7 +173,7 @@ def post_beside(
         columns=found["columns"],
     )  # fmt: skip
     existing, hook_files = (check_paths(name, found.get(name)) for name in ("subprograms", "hooks"))
-    job = replace(job, beside=tuple(existing), forcing=work.forcing, strict=found["strict"])
+    job = replace(job, beside=tuple(existing), can_force=work.can_force, strict=found["strict"])
     inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *work.others]
     if (simulation := found["simulation"]) is not None:
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input
@@ -181,7 +181,8 @@ def post_beside(
         read = tuple(simulation_files(simulation))
         job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
         inputs += read
-    with open_target(found["output"], papers=papers.by_name(), inputs=inputs, group=work.group) as target:
+    places, edited = papers.by_name(), job.settings.get("edited", "")
+    with open_target(found["output"], papers=places, inputs=inputs, group=work.group, edited=edited) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
@@ -254,6 +255,7 @@ def _with_papers(posting: Posting, program: Program, result: PostResult, later: 
     stay = left_over(
         target, target.papers.values() if later is not None else [place for _, place in target.files.papers]
     )
+    stay += kept_files(target)
     posting.observer.problems(stay)
     return replace(
         result,

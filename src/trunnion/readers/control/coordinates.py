@@ -18,6 +18,7 @@ from trunnion.machines.inverse import kinematic_parameters
 from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Orientation
+from trunnion.model.run_columns import BY_PARAMETER
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
 from trunnion.readers.control.event_recorder import Note
@@ -68,6 +69,8 @@ class CoordinateControl(RowRecorder):
         # each.
         self._stored_offsets: list[tuple[int, int, int, str, str]] = []
         self._stored_systems: dict[int, int] = {}
+        # Work offsets that other programs find as this one has written them: line, file and word.
+        self._changed_offsets: dict[int, tuple[int, int, str]] = {}
         self._trailing = TrailingModes(self._used_until)
         self._plane = AffineMap()
         self._program = AffineMap()
@@ -97,9 +100,25 @@ class CoordinateControl(RowRecorder):
         return self._plane.compose(self._program)
 
     @property
+    def _length_axis(self) -> int:
+        """Index of the linear axis along which the tool length counts where positions are those of the linear axes.
+
+        -1: none.
+        """
+        return -1
+
+    @property
     def _length_offset(self) -> Floats:
-        """What the tool length adds to slide positions X, Y, Z, (3,) mm."""
-        return np.zeros(3)
+        """What the tool length adds to positions of the linear axes X, Y, Z, (3,) mm."""
+        length = np.zeros(3)
+        if self._length_axis >= 0:
+            length[self._length_axis] = self.machine.tool_length or 0.0
+        return length
+
+    def record_length(self, by_parameter: int = -1) -> None:
+        """Record along which linear axis the tool length counts; ``by_parameter``: or along this one."""
+        axis = by_parameter + BY_PARAMETER if by_parameter >= 0 else self._length_axis
+        self.modal.length_axis.set(self.row, axis)
 
     def _vector_map(self, frame: AffineMap) -> Floats:
         """Return the map from programmed vectors to the workpiece frame, (3, 3)."""
@@ -187,16 +206,15 @@ class CoordinateControl(RowRecorder):
     def note_stored_offset(self, word: str, system: int, *, clears: bool, what: str = OFFSET) -> None:
         """Remember where the program wrote a work offset, or a position, that the control keeps beyond its end.
 
-        Parameters
-        ----------
-        word
-            Of the block, for messages.
-        system
-            Which offset it wrote; a number of its own for anything else.
-        clears
-            Whether it is zero now: that only tidies up an offset which the program wrote before it moved.
+        word    of the block, for messages
+        system  which offset it wrote; a number of its own for anything else
+        clears  whether it is zero now: that only tidies up an offset which the program wrote before it moved
         """
         first, used = self._stored_systems.setdefault(system, self.row), self._in_use.at_part
+        if clears:
+            self._changed_offsets.pop(system, None)
+        elif what == OFFSET and system:
+            self._changed_offsets[system] = self.line, self.modal.file.current, word
         if self._stored_offsets and self._stored_offsets[0][0] < used:
             self._stored_offsets.clear()
         if used and not (clears and first < used):
@@ -206,10 +224,15 @@ class CoordinateControl(RowRecorder):
         """Forget what ``note_stored_offset`` has remembered: the control is again as the program began."""
         self._stored_offsets.clear()
 
-    def warn_of_unknown_zero(self, word: str) -> None:
-        """Warn of the first block that writes values of a work offset, if they cannot be held against the zero."""
-        if self.machine.workpiece_zero is None and not self._stored_systems:
-            self.note(Wording("NC352", "offset_over_unknown_zero", word=word), Severity.WARNING)
+    def is_at_unknown_place(self, axis: int) -> bool:
+        """Whether it is not known where an axis stands in the workpiece: it went to a position of the machine.
+
+        Before the first motion it stands where an earlier program has left it.
+        """
+        if self.machine.workpiece_zero is not None:
+            return False
+        rows = np.flatnonzero(self.columns.programmed[: self.row] & (1 << axis))
+        return not len(rows) or bool(self.modal.machine_frame.part(int(rows[-1]), int(rows[-1]) + 1)[0])
 
     def report_unused_offsets(self) -> None:
         """Report each stored work offset behind the last motion at the part: only the next program moves with it.
@@ -223,6 +246,12 @@ class CoordinateControl(RowRecorder):
                 self.line = line if file == self.modal.file.current else here
                 variant = "offset_behind_motion" if what == OFFSET else "position_behind_motion"
                 self._note_left(Wording("NC351", variant, word=word, changes=what))
+                self._changed_offsets = {
+                    each: place for each, place in self._changed_offsets.items() if place != (line, file, word)
+                }
+        for line, file, word in self._changed_offsets.values() if self._in_use.cuts else ():
+            self.line = line if file == self.modal.file.current else here
+            self.note(Wording("NC351", "offset_stays", word=word), Severity.WARNING)
         self.line = here
 
     # What the next program begins with

@@ -1,25 +1,28 @@
 """What a program must have said before the tool moves at the part, because no position can be stated without it."""
 
-from trunnion.errors import Severity
+from collections.abc import Callable
+
 from trunnion.messages import Wording
-from trunnion.readers.control.event_recorder import Note
 
 
 class Preconditions:
     """The preconditions that are not met; true while there are any, so that plain blocks are not scanned."""
 
-    def __init__(self, note: Note) -> None:
-        self._note = note
-        self._unmet: dict[str, Wording] = {}
+    def __init__(self, note_at: Callable[[Wording, int], None]) -> None:
+        self._note_at = note_at
+        self._unmet: dict[str, tuple[Wording, int]] = {}
         self._reported: set[str] = set()
 
     def __bool__(self) -> bool:
         return bool(self._unmet)
 
-    def require(self, key: str, fault: Wording) -> None:
-        """From now on the tool must not move; ``fault`` is what a motion does wrong. It is reported once until met."""
-        if key not in self._reported:
-            self._unmet[key] = fault
+    def require(self, key: str, fault: Wording, line: int = 0) -> None:
+        """From now on the tool must not move; ``fault`` is what a motion does wrong. It is reported once until met.
+
+        It is reported at the motion, or at the first ``line`` before it that requires it.
+        """
+        if key not in self._reported and not (line and key in self._unmet):
+            self._unmet[key] = fault, line
 
     def meet(self, key: str) -> None:
         """Note that the program has said what was required."""
@@ -28,7 +31,7 @@ class Preconditions:
 
     def report_motion(self) -> None:
         """Report everything that is not met when the tool moves at the part."""
-        for fault in self._unmet.values():
-            self._note(fault, Severity.ERROR)
+        for fault, line in self._unmet.values():
+            self._note_at(fault, line)
         self._reported.update(self._unmet)
         self._unmet.clear()

@@ -57,13 +57,24 @@ class VirtualControl(CoordinateControl, ABC):
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note)
-        self.preconditions = Preconditions(note)
+        self.preconditions = Preconditions(self._fault_at)
         self.motion = LINEAR
         self.shortest = shortest
         self.compensates_in_space = False
         self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
         # Rotary positions, and the map (3, 4) from slide positions to the tip at these positions.
         self._slide_map: tuple[float, float, Floats] | None = None
+
+    def _fault_at(self, fault: Wording, line: int) -> None:
+        """Note an error at a line of the program, or at the present one for 0."""
+        here, self.line = self.line, line or self.line
+        self.note(fault, Severity.ERROR)
+        self.line = here
+
+    def require_known_zero(self, word: str, key: str) -> None:
+        """Let nothing move in an offset that a block writes over a workpiece zero that nobody has given."""
+        if self.machine.workpiece_zero is None:
+            self.preconditions.require(key, Wording("NC352", "offset_over_unknown_zero", word=word), self.line)
 
     # Scans
 

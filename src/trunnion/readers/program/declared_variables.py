@@ -16,14 +16,9 @@ NO_VARIABLES: Final[Mapping[str, float]] = MappingProxyType({})
 def read_variables(table: Table, names: re.Pattern[str], example: str) -> dict[str, float]:
     """Read the declared values; mistakes are added to the table's problems.
 
-    Parameters
-    ----------
-    table
-        ``[control.reading]``.
-    names
-        What variables of the family are called; zeros in front of a number do not count.
-    example
-        Such a name, for messages.
+    table    ``[control.reading]``
+    names    what variables of the family are called; zeros in front of a number do not count
+    example  such a name, for messages
     """
     own = table.table("variables")
     values: dict[str, float] = {}

@@ -72,10 +72,7 @@ class KnownWord:
 def known_words(machine: Machine) -> tuple[KnownWord, ...]:
     """Return the words that the definition of a machine's control declares.
 
-    Raises
-    ------
-    InputError
-        If one of them is written wrongly.
+    Raises ``InputError`` if one of them is written wrongly.
     """
     return _read(control_of(machine).table("known"), None)
 
@@ -83,10 +80,7 @@ def known_words(machine: Machine) -> tuple[KnownWord, ...]:
 def check_known_words(machine: Machine, is_own_word: Callable[[str], bool]) -> None:
     """Check the words that the definition of a machine's control declares.
 
-    Raises
-    ------
-    InputError
-        If one of them is written wrongly, declared twice, or a word that the control has itself.
+    Raises ``InputError`` if one of them is written wrongly, declared twice, or a word that the control has itself.
     """
     _read(control_of(machine).table("known"), is_own_word)
 

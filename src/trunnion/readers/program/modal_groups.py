@@ -10,14 +10,9 @@ def same_group(
 ) -> Iterator[Wording]:
     """Yield what is wrong with the G codes of a block: different ones of one group.
 
-    Parameters
-    ----------
-    codes
-        In the order of the block.
-    groups
-        The codes that set one mode, for each mode.
-    text_of
-        Gives the word of a code.
+    codes    in the order of the block
+    groups   the codes that set one mode, for each mode
+    text_of  gives the word of a code
     """
     if len(codes) < 2:
         return

@@ -53,15 +53,10 @@ def read_word_meanings(
 ) -> WordMeanings:
     """Read the words of a control; mistakes are added to the table's problems.
 
-    Parameters
-    ----------
-    table
-        ``[control.reading]``.
-    is_own_word
-        Whether the family has a word: only such a one can be what another means.
-    meanings
-        Meanings of G and of M words besides those that the family has words for: letter -> name -> code that stands
-        for it, of G in tenths.
+    table        ``[control.reading]``
+    is_own_word  whether the family has a word: only such a one can be what another means
+    meanings     meanings of G and of M words besides those that the family has words for: letter -> name -> code that
+                 stands for it, of G in tenths
     """
     own = table.table("words")
     g: dict[int, int | None] = {}

@@ -73,7 +73,7 @@ def load_mesh(
 ) -> TriangleMesh:
     """Read a mesh.
 
-    path       A file whose name ends in one of ``MESH_FORMATS``
+    path       a file whose name ends in one of ``MESH_FORMATS``
     unit       of its numbers; None: what the format says (3MF states one, GLB counts in m), else mm. STEP states its
                own
     name       what messages call it; empty: the name of the file

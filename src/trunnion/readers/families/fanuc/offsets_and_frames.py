@@ -98,6 +98,8 @@ class OffsetInterpreter(CallInterpreter):
         self._refuse_tilted()
         for axis, value in enumerate(self._shifted(block)):
             if value is not None:
+                if control.is_at_unknown_place(axis):
+                    control.require_known_zero(word.text, word.text)
                 control.preset[axis] += float(control.programmed_position[axis]) - value
         control.note_shift()
         rotation = control.rotation
@@ -139,8 +141,7 @@ class OffsetInterpreter(CallInterpreter):
             for value, was in zip(values, old, strict=True)
         ]
         new = _changed(old, added)
-        if new.any():
-            control.warn_of_unknown_zero(f"G10 L{kind:g} P{number:g}")
+        control.require_known_zero(f"G10 L{kind:g} P{number:g}", f"offset {system}")
         control.note_stored_offset(f"G10 L{kind:g} P{number:g}", system, clears=not new.any())
         control.set_values(system, new)
 

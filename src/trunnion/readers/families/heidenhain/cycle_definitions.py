@@ -313,10 +313,7 @@ class Definitions:
     def call(self, parameters: Parameters) -> list[HoleMotion]:
         """Return the motions of the defined cycle at the present position.
 
-        Raises
-        ------
-        CycleExecutionError
-            If no cycle is defined, or if it is not simulated or impossible.
+        Raises ``CycleExecutionError`` if no cycle is defined, or if it is not simulated or impossible.
         """
         cycle, control = self.defined_cycle, self._control
         if cycle is None:

@@ -91,14 +91,9 @@ class Hole:
 def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[HoleMotion]:
     """Return the motions of a cycle of the 200 series at one hole.
 
-    Parameters
-    ----------
-    number
-        A key of ``CYCLES``.
-    values
-        Q parameters by number.
-    rpm
-        Spindle speed, for rigid taps.
+    number  a key of ``CYCLES``
+    values  Q parameters by number
+    rpm     spindle speed, for rigid taps
     """
     for parameter, known in Q_VALUES.items():
         if parameter in values and values[parameter] not in known:
@@ -332,10 +327,7 @@ def legacy_spindle_work(number: int, values: Mapping[str, float], unit: float) -
 def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, here: float) -> list[HoleMotion]:
     """Return the motions of cycle 1, 2 or 17 from the present position, ``here`` along the tool axis.
 
-    Parameters
-    ----------
-    values
-        DIST, DEPTH, PLNGNG, DWELL, F and PITCH.
+    values  DIST, DEPTH, PLNGNG, DWELL, F and PITCH
     """
 
     def need(name: str) -> float:

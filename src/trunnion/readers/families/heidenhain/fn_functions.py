@@ -56,10 +56,7 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
 
     text   what follows FN
 
-    Raises
-    ------
-    KlartextError
-        If the function is not understood; the parameter that it sets has no value then.
+    Raises ``KlartextError`` if the function is not understood; the parameter that it sets has no value then.
     """
     match = _NUMBER.match(text)
     if match is None:

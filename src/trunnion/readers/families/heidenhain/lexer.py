@@ -91,10 +91,7 @@ def split_line(raw: str) -> Line:
 def words(statement: str, at: int = 0) -> list[Word]:
     """Split a statement, from a position on, into words.
 
-    Raises
-    ------
-    KlartextError
-        If there is something that is not a word.
+    Raises ``KlartextError`` if there is something that is not a word.
     """
     found: list[Word] = []
     end = len(statement.rstrip())

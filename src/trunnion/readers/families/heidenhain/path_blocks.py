@@ -83,10 +83,7 @@ class Block:
 def read_block(words: Sequence[Word], parameters: Parameters) -> Block:
     """Return the block of words.
 
-    Raises
-    ------
-    KlartextError
-        For a word that path blocks do not have, and for a parameter without a value.
+    Raises ``KlartextError`` for a word that path blocks do not have, and for a parameter without a value.
     """
     block = Block()
     for word in words:

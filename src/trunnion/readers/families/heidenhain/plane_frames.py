@@ -80,10 +80,7 @@ def _unit(vector: Floats) -> Floats:
 def plane(kind: str, values: Mapping[str, float]) -> Floats:
     """Return the matrix of a PLANE block, (3, 3); not of RELATIV and AXIAL, which depend on the axes.
 
-    Raises
-    ------
-    KlartextError
-        If a word is missing, or if the values define no plane.
+    Raises ``KlartextError`` if a word is missing, or if the values define no plane.
     """
 
     def need(*names: str) -> list[float]:

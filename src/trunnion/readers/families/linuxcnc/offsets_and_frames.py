@@ -58,6 +58,8 @@ class OffsetInterpreter(OWordInterpreter):
             raise BlockError(Wording("NC210", "shift_needs_axes"))
         for axis, value in enumerate(values):
             if value is not None:
+                if word.text == "G92" and axis < 3 and control.is_at_unknown_place(axis):
+                    control.require_known_zero("G92", "G92")
                 offset[axis] = value if word.text == "G52" else offset[axis] * active + position[axis] - value
             elif not active:
                 offset[axis] = 0.0
@@ -97,8 +99,7 @@ class OffsetInterpreter(OWordInterpreter):
             raise BlockError(Wording("NC215", "offset_larger_than_any_machine"))
         control.note_shift()
         clears = not offset.values.any() and not offset.rotation
-        if not clears:
-            control.warn_of_unknown_zero(f"G10 L{kind:g} P{system:g}")
+        control.require_known_zero(f"G10 L{kind:g} P{system:g}", f"offset {number}")
         control.note_stored_offset(f"G10 L{kind:g} P{system:g}", number, clears=clears)
         control.set_values(number, offset)
 

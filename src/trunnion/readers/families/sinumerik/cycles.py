@@ -74,14 +74,9 @@ _PITCH_PLACES: Final = {"CYCLE84": (9, 14), "CYCLE840": (11, 13)}
 def cycle_motions(name: str, arguments: Arguments, rpm: float) -> list[HoleMotion]:
     """Return the motions of a cycle at one hole.
 
-    Parameters
-    ----------
-    name
-        A key of ``CYCLES``.
-    arguments
-        As written; None for omitted ones.
-    rpm
-        Spindle speed in force, for taps without one of their own.
+    name       a key of ``CYCLES``
+    arguments  as written; None for omitted ones
+    rpm        spindle speed in force, for taps without one of their own
     """
     heights = _heights(arguments)
     motions = CYCLES[name](arguments, heights, rpm)

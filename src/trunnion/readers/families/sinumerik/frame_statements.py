@@ -14,12 +14,8 @@ _SAME: Final = 1e-9
 def frame_of_statement(word: str, values: Mapping[str, float], plane: int) -> AffineMap:
     """Return the frame of a statement; ``word`` without the A of additive statements.
 
-    Parameters
-    ----------
-    values
-        Words of the block: X, Y, Z (mm, degrees or factors) and RPL (degrees).
-    plane
-        Axis normal to the working plane: 2 for G17.
+    values  words of the block: X, Y, Z (mm, degrees or factors) and RPL (degrees)
+    plane   axis normal to the working plane: 2 for G17
     """
     x, y, z = (values.get(letter) for letter in "XYZ")
     match word:
