@@ -78,6 +78,7 @@ class PostArguments(ReadingArguments, SetUpArguments, ClampingArguments, total=F
     hooks: Sequence[FilePath]
     feed: Literal["programmed", "fastest"] | None
     max_tilt: float | None
+    edited: Literal["refuse", "keep", "replace"] | None
     force: bool
     explain: bool
     report: FilePath | None
