@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.locations import YL569
+from tests.support.locations import TESTS, YL569
 from trunnion.cli import main
 
 PROGRAM = YL569 / "3_blade_finish.expected.mpf"
@@ -370,3 +370,25 @@ def test_programs_are_compared_with_the_subprograms_that_are_named(
     text = 'EXTCALL("BLADE")\nM30\n'
     assert diff(capfd, tmp_path, text, PROGRAM, "--to-subprograms", str(sub))[0] == 0
     assert diff(capfd, tmp_path, text, PROGRAM, "--subprograms", str(sub))[0] == 1
+
+
+@pytest.mark.parametrize(
+    ("part", "old", "new", "says"),
+    [
+        ("holes", "G84", "G74", "right-hand thread, after which the spindle turns clockwise against left-hand thread"),
+        ("holes", "M30", "M99", "end of the program against nothing"),
+        ("contour", "M5\nN270 M0", "\nN270 M0", "stop against stop while the spindle turns clockwise"),
+    ],
+)
+def test_what_the_path_does_not_show_is_compared(
+    part: str, old: str, new: str, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    program, other = tmp_path / "one.nc", tmp_path / "two.nc"
+    cl = TESTS / "data" / "recall" / f"{part}.cls"
+    assert main(["post", str(cl), "--machine", "matsuura_mx330", "--output", str(program)]) == 0
+    text = program.read_text(encoding="utf-8")
+    assert old in text
+    other.write_text(text.replace(old, new), encoding="utf-8")
+    capfd.readouterr()
+    assert main(["diff", str(program), str(other), "--machine", "matsuura_mx330"]) == 1
+    assert says in capfd.readouterr().out

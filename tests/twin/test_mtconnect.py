@@ -46,6 +46,8 @@ class Agent:
         stamp, *fields = re.split(r"(?<!\\)\|", line)
         fields = [each[1:-1].replace("\\|", "|") if "\\|" in each else each for each in fields]
         time = datetime.strptime(stamp, "%Y-%m-%dT%H:%M:%S.%fZ").replace(tzinfo=UTC)
+        assert time >= self.last, "times are in order"
+        self.last = time
         first = fields[0]
         if self.categories[first] == "CONDITION":
             assert fields[1] in ("NORMAL", "WARNING", "FAULT", "UNAVAILABLE")

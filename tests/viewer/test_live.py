@@ -78,10 +78,18 @@ def test_axes_that_are_not_shown_are_named(twin: str, tmp_path: Path, capsys: py
     assert "does not show the axes C, B, Y, Z" in capsys.readouterr().err
 
 
-@pytest.fixture(scope="module", params=[[str(BLADE_FINISH)], []], ids=["with its program", "alone"])
-def page_address(twin: str, request: pytest.FixtureRequest) -> Iterator[str]:
-    command = [sys.executable, "-m", "trunnion", "view", *request.param, "--live", twin, "--machine", "yl569"]
-    command += ["--no-browser", "--tool-length", "100"]
+PAGES = {
+    "with its program": ([str(BLADE_FINISH), "--tool-length", "100"], 100.0),
+    "alone": (["--tool-length", "100"], 100.0),
+    "with its program and no length": ([str(BLADE_FINISH)], 0.0),
+}
+
+
+@pytest.fixture(scope="module", params=PAGES)
+def page_and_length(twin: str, request: pytest.FixtureRequest) -> Iterator[tuple[str, float]]:
+    arguments, length = PAGES[request.param]
+    command = [sys.executable, "-m", "trunnion", "view", *arguments, "--live", twin, "--machine", "yl569"]
+    command += ["--no-browser"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, encoding="utf-8"
@@ -90,15 +98,16 @@ def page_address(twin: str, request: pytest.FixtureRequest) -> Iterator[str]:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
         assert re.match(r"http://127\.0\.0\.1:\d+/", address), process.communicate()
-        yield address
+        yield address, length
     finally:
         process.terminate()
         process.communicate()
 
 
 @needs_browser
-def test_the_pose_that_is_shown_is_that_of_the_machine(page_address: str, browser: Browser) -> None:
+def test_the_pose_that_is_shown_is_that_of_the_machine(page_and_length: tuple[str, float], browser: Browser) -> None:
     machine = load_machine("yl569")
+    page_address, length = page_and_length
     with open_page(browser, page_address) as (page, errors):
         page.wait_for_function("() => page.space.values.some(value => value !== 0)")
         shown = page.evaluate(
@@ -106,14 +115,14 @@ def test_the_pose_that_is_shown_is_that_of_the_machine(page_address: str, browse
             while (found.length < 12 || places.size < 5) {
               places.add(page.space.values.join());
               const { tip, axis } = page.space.shownTool();
-              found.push([...page.space.values, ...tip, ...axis, page.program.lengthAt(page.row)]);
+              found.push([...page.space.values, ...tip, ...axis]);
               await new Promise(done => setTimeout(done, 60)); }
             return found; }"""
         )
         assert errors == []
         rows = np.array(shown)
         for row in rows:
-            tip, axis = forward(machine, row[None, :5], tool_length=float(row[11]))
+            tip, axis = forward(machine, row[None, :5], tool_length=length)
             np.testing.assert_allclose(row[5:8], tip[0], atol=1e-4)
             np.testing.assert_allclose(row[8:11], axis[0], atol=1e-6)
         assert len(np.unique(rows[:, :5], axis=0)) > 3

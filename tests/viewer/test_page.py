@@ -46,6 +46,18 @@ def test_the_columns_are_those_of_the_run(page: str) -> None:
         np.testing.assert_allclose(axis[last][known], run.joints[known, k] + shift, atol=COUNT)
 
 
+@pytest.mark.parametrize("tools", [[], ["2=ball:10,flutes=20"]])
+def test_a_size_that_is_only_drawn_does_not_count(tools: list[str]) -> None:
+    run = read_program(PROGRAM, machine="yl569")
+    content = prepare_view(PROGRAM, machine="yl569", tools=tools)
+    assert {tool["length"] for tool in content.scene["tools"]} == {0.0}
+    known = run.tcp & ~run.machine_frame
+    last = np.searchsorted(content.columns["row"], np.arange(len(run)), side="right")
+    for k in range(5):
+        axis = content.columns[f"axis-{k}"].astype(np.int64) * COUNT
+        np.testing.assert_allclose(axis[last][known], run.joints[known, k], atol=COUNT)
+
+
 def test_a_name_from_outside_is_text(tmp_path: Path) -> None:
     program = tmp_path / "a&b<script>alert(1)<!--.mpf"
     program.write_bytes(PROGRAM.read_bytes().replace(b"Engage Move", b"</script><script>alert(2)"))

@@ -96,7 +96,7 @@ def warn_of_old(names: Iterable[str]) -> None:
 
 
 def check_unnamed(target: str, *, alone: bool = True) -> None:
-    """Refuse a default name that is one of somebody else's file, or of one that was changed since a job wrote it.
+    """Refuse a default name that is one of somebody else's file.
 
     Parameters
     ----------
@@ -111,7 +111,10 @@ def check_unnamed(target: str, *, alone: bool = True) -> None:
         If it would be replaced, although nobody has named it.
     """
     place = resolve_output(target)
-    if place.is_stream or not place.path.exists() or EarlierJob(place.path).wrote(place.path):
+    if place.is_stream or not place.path.exists():
+        return
+    earlier = EarlierJob(place.path)
+    if earlier.wrote(place.path) or earlier.has_edited(place.path):  # of edited ones the job decides
         return
     what = "exists, and is not as a command has written it: it is replaced only where it is named"
     named = f"--output {target} replaces it, another name keeps it" if alone else "remove it, or choose another folder"

@@ -46,6 +46,13 @@ class EarlierJob:
         known = self._digests.get(os.path.normcase(file.name))
         return known is not None and _is_as_known(file, known)
 
+    def has_edited(self, file: Path) -> bool:
+        """Whether a file is one that these jobs have written, and that somebody has changed since; no empty one is."""
+        if file.parent != self._folder:
+            return EarlierJob(file).has_edited(file)
+        known = self._digests.get(os.path.normcase(file.name))
+        return bool(known) and file.is_file() and file.stat().st_size > 0 and not self.wrote(file)
+
     def wrote_paper(self, file: Path) -> bool:
         """Whether a file that exists is as any job has written it as a paper, or one of these jobs at all."""
         if self.wrote(file):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 from trunnion.errors import InputError, Problem
 from trunnion.files.dead_jobs import remove_temporary_folders, settle_and_log
 from trunnion.files.earlier_job import EarlierJob
+from trunnion.files.edited import place_of_edited
 from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.journal import Record
@@ -57,9 +58,13 @@ class OutputFiles:
         place: OutputPlace | None = None,
         claims: Claims | None = None,
         earlier: EarlierJob | None = None,
+        edited: str = "",
     ) -> None:
         self.path = folder / name
+        self._edited, self._kept = edited, dict[OutputPlace, OutputPlace]()
         self._place, self._claims, self._earlier = place, claims or Claims(), earlier
+        if place is not None:
+            self._keep_edited(place)
         self.main: BinaryIO = _open(self.path, place.name if place else name)
         self._subprograms: dict[Path, tuple[BinaryIO, OutputPlace]] = {}
         self._papers: list[tuple[Path, BinaryIO, OutputPlace]] = []
@@ -87,7 +92,9 @@ class OutputFiles:
         if place.is_stream:
             raise InputError(Problem(place.name, 0, Wording("FIL210", "subprogram_cannot_written")))
         self._claims.check(place)
-        if self._earlier is not None and place.path.exists() and not self._earlier.wrote(place.path):
+        if self._earlier is None or not place.path.exists() or self._earlier.wrote(place.path):
+            return place
+        if not self._earlier.has_edited(place.path):
             raise InputError(
                 Problem(
                     place.name,
@@ -100,7 +107,18 @@ class OutputFiles:
                     ),
                 )
             )
+        self._keep_edited(place)
         return place
+
+    @property
+    def kept(self) -> list[tuple[OutputPlace, OutputPlace]]:
+        """Programs that were edited since they were written, and where they are kept."""
+        return list(self._kept.items())
+
+    def _keep_edited(self, place: OutputPlace) -> None:
+        """Note where a program that was edited is kept; errors are those of ``place_of_edited``."""
+        if self._earlier is not None and (kept := place_of_edited(place, self._earlier, self._edited)) is not None:
+            self._kept[place] = kept
 
     def add_paper(self, place: OutputPlace) -> BinaryIO:
         """Begin a report or another file about the first one, which appears with it, and return its sink."""
@@ -163,6 +181,7 @@ class OutputFiles:
         for path, (sink, place) in self._subprograms.items():
             sink.close()
             path.unlink()
+            self._kept.pop(place, None)
             self._claims.release(place)
         self._subprograms.clear()
 
@@ -193,6 +212,8 @@ class OutputFiles:
         to_files = [(path, place) for path, place in self.papers if not place.is_stream]
         papers = [moves.add(hidden, path, place) for path, place in to_files]
         moves.withdrawn += [place for _, place in to_files]
+        for place, kept in self._kept.items():
+            moves.add(hidden, place.path, kept)
         if self._earlier is not None and main and self._place is not None:
             moves.records.append(Record(program[-1], tuple(program), tuple(papers)))
 
@@ -249,6 +270,7 @@ def atomic_output(
     papers: Iterable[OutputPlace] = (),
     inputs: Iterable[str | os.PathLike[str]] = (),
     is_job: bool = False,
+    edited: str = "",
 ) -> Iterator[OutputFiles]:
     """Files that reach their places together when the block ends, or not at all if it raises.
 
@@ -257,6 +279,8 @@ def atomic_output(
     inputs  files that are read: none of them is written over
     is_job  the further files get names that nobody chose: they replace only what earlier jobs of the first file have
             written, which is remembered
+    edited  of a job: ``keep`` or ``replace`` programs that were edited since jobs have written them; they are refused
+            otherwise
 
     Raises ``InputError`` if a file cannot be written. For the first file this is known when the block begins. Earlier
     files of the same names stay as they were.
@@ -273,7 +297,7 @@ def atomic_output(
     try:
         try:
             with ExitStack() as opened:
-                yield from _fill_and_publish(place, claims, hidden, opened, is_job)
+                yield from _fill_and_publish(place, claims, hidden, opened, edited if is_job else None)
         finally:
             hidden.remove()
     finally:
@@ -281,9 +305,9 @@ def atomic_output(
 
 
 def _fill_and_publish(
-    place: Destination, claims: Claims, hidden: HiddenFolders, opened: ExitStack, is_job: bool
+    place: Destination, claims: Claims, hidden: HiddenFolders, opened: ExitStack, edited: str | None
 ) -> Iterator[OutputFiles]:
-    """Yield the files to be filled, and bring them to their places."""
+    """Yield the files to be filled, and bring them to their places; ``edited`` is that of a job."""
     stream = None if isinstance(place, OutputPlace) else place
     own = place if isinstance(place, OutputPlace) else None
     if own is not None and own.is_stream:
@@ -292,8 +316,8 @@ def _fill_and_publish(
         remove_temporary_folders()
     folder = hidden.temporary() if is_stream or own is None else hidden.beside(own)
     name = "stream" if is_stream or own is None else Path(own.name).name
-    earlier = EarlierJob(own.path) if is_job and own is not None and stream is None else None
-    files = OutputFiles(folder, name, own, claims, earlier)
+    earlier = EarlierJob(own.path) if edited is not None and own is not None and stream is None else None
+    files = OutputFiles(folder, name, own, claims, earlier, edited or "")
     yield from _fill(files)
     files.publish(hidden, stream)
 

@@ -34,6 +34,7 @@ class OutputGroup:
         *,
         papers: Iterable[OutputPlace] = (),
         inputs: Iterable[str | os.PathLike[str]] = (),
+        edited: str = "",
     ) -> Iterator[OutputFiles]:
         """Yield the files of a job, as ``atomic_output`` has them; none appears before the group is published.
 
@@ -51,7 +52,7 @@ class OutputGroup:
         hidden = HiddenFolders()
         self._folders.append(hidden)
         earlier = EarlierJob(place.path) if self._remembers else None
-        files = OutputFiles(hidden.beside(place), Path(place.name).name, place, self._claims, earlier)
+        files = OutputFiles(hidden.beside(place), Path(place.name).name, place, self._claims, earlier, edited)
         with files.filled():
             yield files
         self._complete.append((files, hidden))

@@ -85,6 +85,7 @@ def open_target(
     papers: Mapping[str, str | os.PathLike[str] | None] | None = None,
     inputs: Iterable[str | os.PathLike[str]] = (),
     group: OutputGroup | None = None,
+    edited: str = "",
 ) -> Iterator[Target]:
     """Open the place of a result.
 
@@ -98,6 +99,8 @@ def open_target(
         Files that are read: none of them is written over.
     group
         Of jobs whose files appear together; None: the files of this one appear when the block ends.
+    edited
+        What becomes of programs there that were edited since they were written (the setting of that name).
 
     Raises
     ------
@@ -108,13 +111,13 @@ def open_target(
     if group is not None:
         assert isinstance(place, str | os.PathLike), "streams take one result alone"
         found = resolve_output(place)
-        with group.open(found, papers=beside.values(), inputs=inputs) as files:
+        with group.open(found, papers=beside.values(), inputs=inputs, edited=edited) as files:
             yield Target(files, found.name, Path(place), papers=beside)
         return
     if isinstance(place, str | os.PathLike):
         found = resolve_output(place)
         path = None if found.is_stream else Path(place)
-        with atomic_output(found, papers=beside.values(), inputs=inputs, is_job=True) as files:
+        with atomic_output(found, papers=beside.values(), inputs=inputs, is_job=True, edited=edited) as files:
             yield Target(files, found.name, path, papers=beside)
         return
     memory = io.BytesIO() if place is None else None

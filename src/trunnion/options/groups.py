@@ -19,7 +19,7 @@ from trunnion.options.kinds import (
 )
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.options.option import Group, Level, Many, Option
-from trunnion.options.words import FEEDS
+from trunnion.options.words import EDITED, FEEDS
 
 PAGE_OR_DATA: Final = (".html", ".json")
 
@@ -81,7 +81,7 @@ FEED: Final = Option(
 
 #: Options of a post that are settings of the same name: declared here, and read as settings where they act.
 POSTING: Final = Group(
-    "limits of a post",
+    "what a post must not do",
     (
         Option(
             "max_tilt",
@@ -89,6 +89,13 @@ POSTING: Final = Group(
             angle("a tilt", 0.0, 180.0, "30"),
             "refuse operations whose tool axis leans more than this from Z of the program",
             setting="max_tilt",
+        ),
+        Option(
+            "edited",
+            "--edited",
+            Choice(EDITED),
+            "a program there that was edited since it was written: refuse, keep it as NAME.edited-DATE, or replace it",
+            setting="edited",
         ),
     ),
 )

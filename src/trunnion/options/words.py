@@ -5,6 +5,9 @@ from typing import Final
 #: Values of the setting ``feed``.
 FEEDS: Final = ("programmed", "fastest")
 
+#: What becomes of a program that was edited since it was written, where a new one takes its place.
+EDITED: Final = ("refuse", "keep", "replace")
+
 #: What the best place is best for.
 GOALS: Final = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
 

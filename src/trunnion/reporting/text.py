@@ -1,9 +1,7 @@
-"""Text and numbers for every form of report: without characters that no file can hold, and without NaN.
+"""Text for every form of report: without characters that no file can hold.
 
 Escaping is left to each form.
 """
-
-import math
 
 from trunnion.wording import printable
 
@@ -15,8 +13,3 @@ def clean(text: str) -> str:
     'hub\ufffd \ufffd 轮毂'
     """
     return printable(text.encode("utf-16", "surrogatepass").decode("utf-16", "replace"))
-
-
-def finite_or_none(value: float | None) -> float | None:
-    """Return the value, or None for infinities and NaN."""
-    return value if value is not None and math.isfinite(value) else None

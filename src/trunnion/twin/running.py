@@ -8,11 +8,13 @@ import math
 import time
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
+from itertools import pairwise
 from typing import Final, Protocol
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.timing import TimedEvent
 from trunnion.twin.playback import Playback, PlayState, Stretch
 from trunnion.twin.snapshots import Snapshots, TwinProgram
 
@@ -208,12 +210,18 @@ class Twin:
         order = np.argsort(seconds, kind="stable")
         seconds, ended = seconds[order], ended[order]
         wall = stretch.wall(seconds)
-        for first in range(0, len(seconds), _AT_A_TIME):
-            part = slice(first, first + _AT_A_TIME)
+        messages = [each for each in self.program.events_within(stretch.begin, stretch.end) if _is_message(each)]
+        places = np.searchsorted(seconds, [each.seconds for each in messages], "right").tolist()
+        cuts = sorted({0, *range(0, len(seconds), _AT_A_TIME), *places, len(seconds)})
+        for first, end in pairwise([0, *cuts]):
+            part = slice(first, end)
             await self._wait_for_clients()
-            await self._show(seconds[part], ended[part], wall[part], self.playback.override / 100.0)
+            if end > first:
+                await self._show(seconds[part], ended[part], wall[part], self.playback.override / 100.0)
+            for message, place in zip(messages, places, strict=True):
+                if place == end:  # with what the machine shows then: times go on in order
+                    await self._tell_message(message, float(stretch.wall(np.array([message.seconds]))[0]))
             await asyncio.sleep(0.0)
-        await self._tell_events(stretch)
 
     def _samples(self, stretch: Stretch) -> Floats:
         """Return times between the ends of blocks at which the machine is looked at."""
@@ -234,11 +242,7 @@ class Twin:
         await self._show(now, np.full(1, -1), np.array([wall]), self.playback.share)
 
     async def _publish(self, snapshots: Snapshots, wall: Floats) -> None:
-        microseconds = []
-        for each in np.rint(wall * 1e6).astype(np.int64).tolist():
-            # Each time has a stamp of its own, so that what is told twice can be told apart from what changed.
-            self._last_stamp = max(each, self._last_stamp + 1)
-            microseconds.append(self._last_stamp)
+        microseconds = [self._next_stamp(each) for each in wall.tolist()]
         stamps = [_EPOCH + timedelta(microseconds=each) for each in microseconds]
         for outlet in self.outlets:
             await outlet.show(snapshots, stamps, microseconds)
@@ -262,12 +266,15 @@ class Twin:
                         await outlet.alarm_over(f"travel {axis.name}", text, stamps[k])
             self._beyond = beyond
 
-    async def _tell_events(self, stretch: Stretch) -> None:
-        for timed in self.program.events_within(stretch.begin, stretch.end):
-            if timed.event.kind == "message":
-                wall = float(stretch.wall(np.array([timed.seconds]))[0])
-                for outlet in self.outlets:
-                    await outlet.message(str(timed.event.value or ""), _EPOCH + timedelta(seconds=wall))
+    async def _tell_message(self, message: TimedEvent, wall: float) -> None:
+        stamp = _EPOCH + timedelta(microseconds=self._next_stamp(wall))
+        for outlet in self.outlets:
+            await outlet.message(str(message.event.value or ""), stamp)
+
+    def _next_stamp(self, wall: float) -> int:
+        """Return the microseconds of a time; each has its own, so that what is told twice can be told apart."""
+        self._last_stamp = max(round(wall * 1e6), self._last_stamp + 1)
+        return self._last_stamp
 
     async def _show_start(self, wall: float | None = None) -> None:
         self._watched = 0.0
@@ -275,5 +282,10 @@ class Twin:
 
     async def _tell_state(self, wall: float | None = None) -> None:
         self._told = self.clock()
+        stamp = self._next_stamp(self._told if wall is None else wall) / 1e6
         for outlet in self.outlets:
-            await outlet.changed(self.playback, self._told if wall is None else wall)
+            await outlet.changed(self.playback, stamp)
+
+
+def _is_message(timed: TimedEvent) -> bool:
+    return timed.event.kind == "message"

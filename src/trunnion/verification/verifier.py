@@ -39,25 +39,15 @@ def verify(
 ) -> Verification:
     """Make all checks of a program.
 
-    Parameters
-    ----------
-    run
-        The program as the machine's control ran it.
-    toolpaths
-        The CL files that it was made from, in that order; without them, the program is checked by itself.
-    tolerances
-        How far it may be from its CL points: for all operations, one for each operation that moves, or a function of
-        the operation, in the program's frame.
-    settings
-        What the CL files leave open.
-    columns
-        Whether the result has its columns, as a report needs them. The checks do not: without columns, a program of
-        any length takes the memory of the run and a few chunks.
+    run         the program as the machine's control ran it
+    toolpaths   the CL files that it was made from, in that order; without them, the program is checked by itself
+    tolerances  how far it may be from its CL points: for all operations, one for each operation that moves, or a
+                function of the operation, in the program's frame
+    settings    what the CL files leave open
+    columns     whether the result has its columns, as a report needs them. The checks do not: without columns, a
+                program of any length takes the memory of the run and a few chunks
 
-    Raises
-    ------
-    InputError
-        When the toolpaths have no motion.
+    Raises ``InputError`` when the toolpaths have no motion.
     """
     settings = settings or ExpectedValues()
     run = restore_rapids(run, settings.rapid_feed)
@@ -114,19 +104,11 @@ def _expected_path(
 def with_recording(verification: Verification, recording: Recording, tolerance: float) -> Verification:
     """Return a verification with the check of a recording of the machine.
 
-    Parameters
-    ----------
-    verification
-        Of the program.
-    recording
-        What the machine showed.
-    tolerance
-        How far its positions may be off the path, mm and degrees.
+    verification  of the program
+    recording     what the machine showed
+    tolerance     how far its positions may be off the path, mm and degrees
 
-    Raises
-    ------
-    InputError
-        If the recording has not all axes of the machine.
+    Raises ``InputError`` if the recording has not all axes of the machine.
     """
     from trunnion.verification.recorded import check_recorded, compare_recording  # most verifications have none
 

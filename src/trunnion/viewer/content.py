@@ -74,25 +74,14 @@ def view_content(
 ) -> ViewContent:
     """Put together what a page shows.
 
-    Parameters
-    ----------
-    verification
-        Of the program; with its columns, motions take their times.
-    texts
-        Of the files of its run, in their order.
-    cl_texts
-        Of its CL files, by the names that its operations have for them.
-    tools
-        Bodies of tools by their names in the program; others are drawn as needles.
-    part, fixtures
-        Meshes in the workpiece frame.
-    toolpaths
-        That the program was made from: they know the phases of its motions.
+    verification    of the program; with its columns, motions take their times
+    texts           of the files of its run, in their order
+    cl_texts        of its CL files, by the names that its operations have for them
+    tools           bodies of tools by their names in the program; others are drawn as needles
+    part, fixtures  meshes in the workpiece frame
+    toolpaths       that the program was made from: they know the phases of its motions
 
-    Raises
-    ------
-    InputError
-        If a mesh of the machine cannot be used.
+    Raises ``InputError`` if a mesh of the machine cannot be used.
     """
     run, machine = verification.run, verification.machine
     cl_files = {name: k for k, name in enumerate(cl_texts)}
@@ -155,12 +144,9 @@ def proof_scene(verification: Verification) -> dict[str, Any]:
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
     """Put a second program beside the first, where both go along the same tool path.
 
-    Parameters
-    ----------
-    first, second
-        What a page would show of each alone; the stock is that of the first.
-    alignment
-        Of their runs. Columns of the second begin with ``b-``; ``pair-one`` and ``pair-two`` are rows that go together.
+    first, second  what a page would show of each alone; the stock is that of the first
+    alignment      of their runs. Columns of the second begin with ``b-``; ``pair-one`` and ``pair-two`` are rows that
+                   go together
     """
     differences = [
         {"kind": "difference", "row": each.one, "text": each.text} | _place(first, each.one)
@@ -212,12 +198,15 @@ def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
 
 
 def _length(shape: ToolShape | None, machine: Machine) -> float:
-    """From tip to gauge point, mm: that of the definition or the command, else that of the tool's body."""
+    """From tip to gauge point, mm: that of the definition or the command, else of the tool; 0 if nothing states it.
+
+    What is only drawn counts for no length: tips and axis values are those of a control without one.
+    """
     if machine.tool_length is not None:
         return machine.tool_length
-    if shape is None:
-        return _NEEDLE[1]
-    return shape.length or max(section.outline[-1].end[1] for section in shape.sections)
+    if shape is None or shape.is_drawn_only:
+        return 0.0
+    return shape.length or shape.top
 
 
 def _needle(machine: Machine, name: str) -> Iterable[Body]:

@@ -41,14 +41,9 @@ class MotionColumns:
 def motion_columns(run: Run, seconds: Floats, lengths: Mapping[int, float]) -> MotionColumns:
     """Divide a run into pieces in which every axis moves evenly.
 
-    Parameters
-    ----------
-    run
-        The program as its control ran it.
-    seconds : (n,) float64
-        Of each row; without them, (0,), rows take equal times.
-    lengths
-        Of tools, from tip to gauge point, mm, by their index in ``Run.tools``.
+    run      the program as its control ran it
+    seconds  (n,) float64: of each row; without them, (0,), rows take equal times
+    lengths  of tools, from tip to gauge point, mm, by their index in ``Run.tools``
     """
     of_row = seconds if len(seconds) else np.full(len(run), _UNTIMED)
     joints, rows, shares, known = [np.asarray(run.start)[None]], [], [], []

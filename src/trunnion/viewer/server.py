@@ -31,19 +31,11 @@ _NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
 def view_application(content: ViewContent, access: Access, live: LiveView | None = None) -> Any:
     """Make the application.
 
-    Parameters
-    ----------
-    content
-        What its page shows.
-    access
-        Who may see it.
-    live
-        The machine whose motion it follows; None: it follows none.
+    content  what its page shows
+    access   who may see it
+    live     the machine whose motion it follows; None: it follows none
 
-    Raises
-    ------
-    InputError
-        If Starlette is not installed.
+    Raises ``InputError`` if Starlette is not installed.
     """
     responses, routing = (import_extra(f"starlette.{name}", "view") for name in ("responses", "routing"))
     if live is not None:

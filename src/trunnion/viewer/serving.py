@@ -106,10 +106,7 @@ def application_of(routes: list[Any], **more: Any) -> Any:
 def listen(host: str, port: int) -> socket.socket:
     """Take a port of this computer, before any work; 0: a free one.
 
-    Raises
-    ------
-    InputError
-        If it is taken, or the address is none of this computer's.
+    Raises ``InputError`` if it is taken, or the address is none of this computer's.
     """
     try:
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
@@ -126,19 +123,11 @@ def listen(host: str, port: int) -> socket.socket:
 def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callable[[str], None]) -> None:
     """Serve an application until the process is ended by Ctrl-C.
 
-    Parameters
-    ----------
-    make
-        Makes the application for those who may see it.
-    listening
-        Of ``listen``. On another address than this computer's own, a token is part of the page's address.
-    ready
-        Is called with the page's address when it can be opened.
+    make       makes the application for those who may see it
+    listening  of ``listen``. On another address than this computer's own, a token is part of the page's address
+    ready      is called with the page's address when it can be opened
 
-    Raises
-    ------
-    InputError
-        If the extra ``view`` is not installed.
+    Raises ``InputError`` if the extra ``view`` is not installed.
     """
     uvicorn = import_extra("uvicorn", "view")
     host, port = listening.getsockname()[:2]

@@ -150,7 +150,7 @@ def test_subprograms_of_another_program_stay(folder: Path) -> None:
     assert contents(folder) == before
     trunnion.post("part.cls", machine="mine.toml", output="one.mpf", settings={**settings, "title": "AGAIN"})
     Path("BLADE_FINISH.spf").write_bytes(before["BLADE_FINISH.spf"] + b"; mended by hand\n")
-    with pytest.raises(trunnion.InputError, match="would be replaced, although one"):
+    with pytest.raises(trunnion.InputError, match="was edited since it was written"):
         trunnion.post("part.cls", machine="mine.toml", output="one.mpf", settings=settings)
 
 
@@ -198,8 +198,10 @@ def test_a_file_that_nobody_named_is_replaced_only_as_it_was_written(
     assert main([*convert, "--output", "cl"]) == 0
     with Path("part.mpf").open("ab") as program:
         program.write(b"; tried on the machine\n")
-    assert main(["post", "part.cls", "--machine", "yl569"]) == 2
-    assert main(["post", "part.cls", "--machine", "yl569", "--output", "part.mpf"]) == 0
+    for output in ([], ["--output", "part.mpf"]):
+        assert main(["post", "part.cls", "--machine", "yl569", *output]) == 2
+        assert "write --set edited=keep to keep it as NAME.edited-DATE" in capfd.readouterr().err
+    assert main(["post", "part.cls", "--machine", "yl569", "--output", "part.mpf", "--edited", "replace"]) == 0
 
 
 def test_a_folder_of_programs_writes_over_none_of_them(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:

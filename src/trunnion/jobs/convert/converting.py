@@ -180,7 +180,8 @@ def _converted_cl(
     _refuse_for_cl(**{name: given[name] for name in ("to_machine", "subprograms", "zero", "tool_length", "force")})
     source = nc if is_stream(nc) else check_path("nc", nc)
     read = [source] if isinstance(source, Path) else []
-    with open_target(given["output"], inputs=read, group=group) as target:
+    edited = str((given["settings"] or {}).get("edited", ""))
+    with open_target(given["output"], inputs=read, group=group, edited=edited) as target:
         toolpath, remarks = convert_cl(source, target, given, observer)
     return ConvertResult(toolpath, {}, remarks, None, target.path, target.memory)
 
@@ -207,7 +208,8 @@ def _converted_program(
     check_conversion_settings(job, to_cl)
     definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
     source = set_up_machine(source, given["zero"], given["tool_length"])
-    with open_target(given["output"], inputs=[program, *others, *definitions], group=group) as target:
+    read, edited = [program, *others, *definitions], job.settings.get("edited", "")
+    with open_target(given["output"], inputs=read, group=group, edited=edited) as target:
         compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
         divided = job.subprograms(target.files, target.path) is not None
         converter = _ProgramConverter(str(program), observer, given["force"])

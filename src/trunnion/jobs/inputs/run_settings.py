@@ -11,7 +11,7 @@ from trunnion.cl import DIALECTS
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, PROGRAM_MEANINGS
 from trunnion.model.motion import PoleStrategy
 from trunnion.options.groups import POSTING
-from trunnion.options.kinds import Number
+from trunnion.options.kinds import Choice, Number
 from trunnion.options.option import Option
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 from trunnion.planning import PlanOptions
@@ -65,9 +65,11 @@ def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
 
 
 def _declared(option: Option) -> RunSetting:
-    """Return the setting for which an option of numbers stands, as the option is declared."""
-    assert isinstance(option.kind, Number)
+    """Return the setting for which an option stands, as the option is declared."""
     meaning = f"{option.help[:1].upper()}{option.help[1:]}."
+    if isinstance(option.kind, Choice):
+        return _choice(meaning, *option.kind.words)
+    assert isinstance(option.kind, Number)
     bounds = option.kind.least, option.kind.most
     return RunSetting(meaning, bounds=bounds, form=option.kind.metavar, example=option.kind.how.rpartition(" ")[2])
 

@@ -11,6 +11,7 @@ from typing import Final
 from trunnion.errors import Problem, Severity
 from trunnion.files import OutputPlace
 from trunnion.jobs.result_output import Target
+from trunnion.messages import Wording
 from trunnion.wording import counted
 
 _MOST_NAMED: Final = 5
@@ -26,6 +27,14 @@ def left_over(target: Target, papers: Iterable[OutputPlace]) -> list[Problem]:
     what = f"{named} {'is' if one else 'are'} of the program before"
     cure = f"write {'it' if one else 'them'} with this one, or delete {'it' if one else 'them'}"
     return [Problem(target.name, 0, what, cure, Severity.WARNING, code="FIL280")]
+
+
+def kept_files(target: Target) -> list[Problem]:
+    """Return a warning for each program that was edited since it was written, and that is kept under another name."""
+    return [
+        Problem(place.name, 0, Wording("FIL250", "kept", name=kept.path.name), severity=Severity.WARNING)
+        for place, kept in target.files.kept
+    ]
 
 
 def named_files(files: Sequence[Path], folder: Path | None) -> str:

@@ -21,7 +21,7 @@ from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.expected_values import expectation
-from trunnion.jobs.post.left_over_files import left_over
+from trunnion.jobs.post.left_over_files import kept_files, left_over
 from trunnion.jobs.post.machining_times import new_time_token, prints_times, write_times
 from trunnion.jobs.post.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.planning import load_toolpaths, new_problems, plan_program
@@ -181,7 +181,8 @@ def post_beside(
         read = tuple(simulation_files(simulation))
         job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
         inputs += read
-    with open_target(found["output"], papers=papers.by_name(), inputs=inputs, group=work.group) as target:
+    places, edited = papers.by_name(), job.settings.get("edited", "")
+    with open_target(found["output"], papers=places, inputs=inputs, group=work.group, edited=edited) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
@@ -254,6 +255,7 @@ def _with_papers(posting: Posting, program: Program, result: PostResult, later: 
     stay = left_over(
         target, target.papers.values() if later is not None else [place for _, place in target.files.papers]
     )
+    stay += kept_files(target)
     posting.observer.problems(stay)
     return replace(
         result,

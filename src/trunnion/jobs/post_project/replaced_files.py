@@ -31,11 +31,14 @@ def check_replaced(project: Project) -> None:
 def replaced_file(file: Path, first: Path, *, paper: bool = False) -> list[Problem]:
     """Return the problem of a file that is there, is not empty, and is not as posts of the ``first`` have written it.
 
-    A paper may be of a program that had another name: it is not yours if any post has written it as it is.
+    A paper may be of a program that had another name: it is not yours if any post has written it as it is. Whether a
+    program that was edited since is replaced, its own job decides.
     """
     place = resolve_output(file).path
     earlier = EarlierJob(resolve_output(first).path)
     if not place.exists() or not place.stat().st_size or (earlier.wrote_paper if paper else earlier.wrote)(place):
+        return []
+    if not paper and earlier.has_edited(place):
         return []
     what = "would be replaced, although no post has written it as it is"
     cure = "remove it, or take the new one over with trunnion test"

@@ -109,6 +109,7 @@ class ToolShape:
     length        from the tip to the gauge point, mm; 0 if it is not known
     flute_length  from the tip to where it stops cutting, mm
     remarks       what had to be taken for granted, in sentences
+    is_drawn_only nothing states how long it is: its size can be drawn, and counts for nothing
     """
 
     sections: tuple[Section, ...]
@@ -118,6 +119,7 @@ class ToolShape:
     flute_length: float = 0.0
     description: str = ""
     remarks: tuple[str, ...] = ()
+    is_drawn_only: bool = False
 
     @property
     def top(self) -> float:

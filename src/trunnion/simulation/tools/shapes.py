@@ -73,7 +73,8 @@ def tool_shape(sizes: ToolSizes, number: int | None = None, name: str = "", desc
         sections.append(Section(Role.SHANK, shank, "shank"))
     sections += _holder(sizes, length)
     gauge_length = sizes.gauge_length or (sections[-1].top if sizes.holder else 0.0)
-    return ToolShape(tuple(sections), name, number, gauge_length, flute_length, description, remarks)
+    is_drawn_only = not (sizes.length or sizes.gauge_length)
+    return ToolShape(tuple(sections), name, number, gauge_length, flute_length, description, remarks, is_drawn_only)
 
 
 def shape_faults(sizes: ToolSizes) -> tuple[SizeFault, ...]:

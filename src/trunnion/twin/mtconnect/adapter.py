@@ -14,6 +14,7 @@ from datetime import UTC, datetime
 from typing import Final
 
 from trunnion.twin.mtconnect.device import device_name
+from trunnion.twin.mtconnect.shdr import shdr_line
 from trunnion.twin.playback import Playback, PlayState
 from trunnion.twin.snapshots import Snapshots, TwinProgram, displayed
 
@@ -41,7 +42,8 @@ _FAREWELL: Final = 1.0
 
 UNAVAILABLE: Final = "UNAVAILABLE"
 
-_NORMAL: Final = "NORMAL||||"
+#: Level, code, severity, qualifier and text of a condition that is well.
+_NORMAL: Final = ("NORMAL", "", "", "", "")
 
 
 class _Agent:
@@ -74,7 +76,8 @@ class MTConnectAdapter:
         self._tasks: set[asyncio.Task[None]] = set()
         self._server: asyncio.Server | None = None
         self._values: dict[str, str] = {}
-        self._conditions: dict[str, str] = {"system": _NORMAL}
+        self._last = datetime.fromtimestamp(0.0, UTC)
+        self._conditions: dict[str, tuple[str, ...]] = {"system": _NORMAL}
         for axis in program.machine.axes:
             self._conditions[f"{axis.name}_travel"] = _NORMAL
         fixed = {"avail": "AVAILABLE", "estop": "ARMED", "mode": "AUTOMATIC", "main_program": program.name}
@@ -94,7 +97,7 @@ class MTConnectAdapter:
         """Tell agents that the machine is not there any more, and leave them."""
         if self._server is not None:
             self._server.close()
-        self._send(_line(datetime.now(UTC), {"avail": UNAVAILABLE}))
+        self._send(_line(self._in_order(datetime.now(UTC)), {"avail": UNAVAILABLE}))
         for agent in list(self._agents):
             agent.writer.close()
         if self._tasks:
@@ -112,7 +115,7 @@ class MTConnectAdapter:
         for k, stamp in enumerate(stamps):
             changed = self._changed(self._values_at(snapshots, k))
             if changed:
-                lines.append(_line(stamp, changed))
+                lines.append(_line(self._in_order(stamp), changed))
         self._send("".join(lines))
 
     async def changed(self, playback: Playback, wall: float) -> None:
@@ -124,16 +127,16 @@ class MTConnectAdapter:
         }
         stamp = datetime.fromtimestamp(wall, UTC)
         if changed := self._changed(now):
-            self._send(_line(stamp, changed))
+            self._send(_line(self._in_order(stamp), changed))
 
     async def message(self, text: str, stamp: datetime) -> None:
         """Send a message of the program."""
-        self._send(f"{_stamp(stamp)}|message||{_clean(text)}\n")
+        self._send(shdr_line(_stamp(self._in_order(stamp)), "message", "", text))
 
     async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
         """Send an alarm of the machine: a fault of the axis that it names, or of the system."""
         key = self._condition_of(identifier)
-        self._condition(stamp, key, f"FAULT|{_clean(identifier)}|||{_clean(text)}")
+        self._condition(stamp, key, ("FAULT", identifier, "", "", text))
 
     async def alarm_over(self, identifier: str, text: str, stamp: datetime) -> None:
         """Send that a fault is over."""
@@ -179,10 +182,15 @@ class MTConnectAdapter:
                 patience = 3.0 * HEARTBEAT / 1000.0
 
     def _everything(self) -> str:
-        now = datetime.now(UTC)
+        now = self._last if self._last.timestamp() else datetime.now(UTC)  # as old as what was told last
         head = f"* shdrVersion: 2.0\n* adapterVersion: 2.0\n* device: {device_name(self._program.machine)}\n"
-        conditions = "".join(f"{_stamp(now)}|{key}|{told}\n" for key, told in self._conditions.items())
+        conditions = "".join(shdr_line(_stamp(now), key, *told) for key, told in self._conditions.items())
         return head + _line(now, self._values) + conditions
+
+    def _in_order(self, stamp: datetime) -> datetime:
+        """Return a time that is not before what was told last."""
+        self._last = max(stamp, self._last)
+        return self._last
 
     def _send(self, text: str) -> None:
         if text:
@@ -202,19 +210,19 @@ class MTConnectAdapter:
         kind, _, axis = identifier.partition(" ")
         return f"{axis}_{kind}" if f"{axis}_{kind}" in self._conditions else "system"
 
-    def _condition(self, stamp: datetime, key: str, told: str) -> None:
+    def _condition(self, stamp: datetime, key: str, told: tuple[str, ...]) -> None:
         self._conditions[key] = told
-        self._send(f"{_stamp(stamp)}|{key}|{told}\n")
+        self._send(shdr_line(_stamp(self._in_order(stamp)), key, *told))
 
     def _values_at(self, snapshots: Snapshots, k: int) -> dict[str, str]:
         block, machine = snapshots.blocks[k], self._program.machine
         rpm = float(snapshots.rpm[k])
         values = {
             "program": block.file,
-            "block": _clean(block.blocks[1]),
+            "block": block.blocks[1],
             "line": str(block.line),
             "block_number": block.number or UNAVAILABLE,
-            "tool": _clean(block.tool) or UNAVAILABLE,
+            "tool": block.tool or UNAVAILABLE,
             "feed": _number(float(snapshots.feed[k])),
             "tip": " ".join(map(_number, snapshots.tip[k].tolist())),
             "S_actual": _number(abs(rpm)),
@@ -232,7 +240,7 @@ class MTConnectAdapter:
 
 
 def _line(stamp: datetime, values: Mapping[str, str]) -> str:
-    return "|".join((_stamp(stamp), *(f"{key}|{value}" for key, value in values.items()))) + "\n"
+    return shdr_line(_stamp(stamp), *(part for pair in values.items() for part in pair))
 
 
 def _stamp(moment: datetime) -> str:
@@ -242,9 +250,3 @@ def _stamp(moment: datetime) -> str:
 def _number(value: float) -> str:
     """Return a number from which the same one is read; what is not known is unavailable."""
     return repr(value + 0.0) if math.isfinite(value) else UNAVAILABLE
-
-
-def _clean(text: str) -> str:
-    """Return a text that ends neither its field nor its line: agents read a text in quotes with its bars escaped."""
-    line = " ".join(text.split())
-    return '"' + line.replace("|", "\\|") + '"' if "|" in line else line

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.model.toolpath import Kind
@@ -58,14 +58,9 @@ def hole_faults(
 ) -> Iterator[HoleFault]:
     """Yield what is wrong with one hole.
 
-    Parameters
-    ----------
-    dwells
-        The dwells of the run by row, in seconds, or spindle revolutions if negative.
-    spindle_work
-        What cycles do with the spindle, by the row at which they begin.
-    clearance
-        As ``clearance_between_holes`` gives it, from the hole before.
+    dwells        the dwells of the run by row, in seconds, or spindle revolutions if negative
+    spindle_work  what cycles do with the spindle, by the row at which they begin
+    clearance     as ``clearance_between_holes`` gives it, from the hole before
     """
     rows = np.arange(max(match.first - 1, 0), match.end)
     positions = run.positions(rows)
@@ -93,7 +88,8 @@ def hole_faults(
     yield from _height_faults(hole, motions)
     yield from peck_faults(hole, motions)
     yield from _exit_faults(hole, motions)
-    yield from _feed_faults(run, hole, motions.row[kind == Kind.LINEAR], rpm)
+    way = np.linalg.norm(np.diff(positions.tip, axis=0), axis=1) if match.by_motion else np.full(len(kind), np.nan)
+    yield from _feed_faults(run, hole, motions.row[kind == Kind.LINEAR], rpm, way[kind == Kind.LINEAR])
     yield from _dwell_faults(hole, match, bottom, dwells, rpm)
     yield from _spindle_faults(run, hole, match, bottom)
     yield from _work_faults(hole, match, spindle_work)
@@ -145,10 +141,13 @@ def _exit_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
         yield motions.fault(after, height, f"leaves the hole at a feed to another height than {hole.cycle.clearance:g}")
 
 
-def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[HoleFault]:
-    """Yield the feed of the cycle, in all lines."""
+def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float, way: Floats) -> Iterator[HoleFault]:
+    """Yield the feed of the cycle, in all lines; what inverse time means within a cycle is not known.
+
+    way  (k,) length of the lines, NaN within a cycle
+    """
     mode, programmed = run.state.feed_mode.at(lines), run.state.feed.at(lines)
-    feed = np.where(mode == 95, programmed * rpm, programmed)
+    feed = np.where(mode == 95, programmed * rpm, np.where(mode == 93, programmed * way, programmed))
     wanted = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
     pitch = _PITCH * np.where(run.state.inches.at(lines), _INCH, 1.0)
     digit = (min(hole.feed_tolerance, _FEED) if hole.cycle.mode[0] == "TAP" else hole.feed_tolerance) + _NOISE
@@ -157,8 +156,9 @@ def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[Hole
     if off.any():
         k = int(np.argmax(off))
         unit = f" ({hole.cycle.feed:g} mm/rev)" if hole.cycle.per_rev else ""
-        text = f"moves with {feed[k]:g} mm/min; the CL file wants {wanted:g}{unit}"
-        yield HoleFault(int(lines[k]), float(feed[k]), text)
+        found = f"moves with {feed[k]:g} mm/min" if feed[k] == feed[k] else "has its F in inverse time (G93)"
+        text = f"{found}; the CL file wants {wanted:g}{unit}"
+        yield HoleFault(int(lines[k]), float(np.nan_to_num(feed[k])), text)
 
 
 def _dwell_faults(

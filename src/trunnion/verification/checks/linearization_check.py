@@ -1,26 +1,107 @@
-"""How far the tool leaves its path between the points."""
+"""How far the tool leaves its path between the points: motions, lines and arcs for arcs, and splines."""
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, fields
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
-from trunnion.verification.checks.arc_chord_faults import arc_chord_faults, chord_heights
-from trunnion.verification.checks.spline_faults import SplineFaults, spline_faults
+from trunnion.arrays import Floats, Ints
+from trunnion.model.columns import StepColumn
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.linearization import LinearizationErrors
 from trunnion.verification.expected.arcs import circle_of
+from trunnion.verification.expected.path import WrittenSpline
+from trunnion.verification.expected.splines import dense_points, span_counts
 from trunnion.verification.kinematics.axis_motion import AxisMotion
 from trunnion.verification.matching.pairs import ArcSegments
-from trunnion.verification.results import Check
+from trunnion.verification.results import Check, Place
 
 #: What comes of arithmetic only, mm.
 _NOISE: Final = 1e-9
 
 #: Fractions of a circle at which it is compared with the arc that it is a piece of.
 _WAY: Final = np.linspace(0.125, 0.875, 7)
+
+#: A point whose three coordinates are off by one each is off by this much.
+_DIAGONAL: Final = math.sqrt(3.0) + 1e-6
+
+#: Share by which a chord may be higher than its tolerance: arithmetic, and ends of arcs that the CL file rounds.
+_SHARE: Final = 1.01
+
+#: What the digits of coefficients come to, mm.
+_COEFFICIENTS: Final = 2e-5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SplineFaults:
+    """What is wrong with the splines of a program, and how far one leaves that of the CL file at most, mm, before the
+    end of which row; 0 and -1 for none.
+    """
+
+    places: tuple[Place, ...] = ()
+    deviation: float = 0.0
+    row: int = -1
+
+
+def spline_faults(context: ComparedContext) -> SplineFaults:
+    """Find splines that leave those of the CL files, or along which something changes."""
+    written = context.expected.written_splines
+    if not written:
+        return SplineFaults()
+    events = np.sort(np.array([event.before_row for event in context.run.events], np.int64))
+    places: list[Place] = []
+    deviation, row = 0.0, -1
+    for spline in written:
+        off = _deviations(context, spline)
+        if float(off.max()) > deviation:
+            deviation, row = float(off.max()), spline.last
+        places += _too_far(context, spline, off)
+        if changed := _change_inside(context.run, spline, events):
+            places.append(context.place(spline.last, 0.0, f"{changed} along a spline of the CL file"))
+    return SplineFaults(tuple(places), deviation, row)
+
+
+def _too_far(context: ComparedContext, written: WrittenSpline, off: Floats) -> Iterator[Place]:
+    """Yield the end of the spline of the program that is farthest from that of the CL file, if that is too far."""
+    limit = context.expected.sections[written.section].tolerances.tip + _COEFFICIENTS
+    worst = float(off.max())
+    if not worst <= limit:
+        splines, end = context.run.splines, written.begin + written.count
+        ends = np.cumsum(span_counts(splines)[written.begin : end])
+        own = written.begin + int(np.searchsorted(ends, int(np.argmax(off.max(axis=1))), "right"))
+        text = f"the spline is {worst:.5f} mm off that of the CL file, {limit:.5f} is allowed"
+        yield context.place(int(splines.last[own]), worst, text)
+
+
+def _deviations(context: ComparedContext, written: WrittenSpline) -> Floats:
+    """(s, 9): the greatest deviation of a coordinate at points of each span, mm."""
+    wanted = context.expected.sections[written.section].operation.splines
+    actual = dense_points(context.run.splines, written.begin, written.begin + written.count)
+    return np.asarray(np.abs(actual - dense_points(wanted, written.number, written.number + 1)).max(axis=2))
+
+
+def _change_inside(run: Run, written: WrittenSpline, events: Ints) -> str:
+    """Return what changes between the rows of a spline, in words; empty for nothing.
+
+    ``events`` are their rows, sorted.
+    """
+    first, last = written.first, written.last
+    if (run.kind[first : last + 1] != Kind.LINEAR).any():
+        return "the motion changes"
+    for each in fields(run.state):
+        column: StepColumn = getattr(run.state, each.name)
+        if _is_one_inside(column.rows, first, last):
+            return f"the state {each.name} changes"
+    return "a command stands" if _is_one_inside(events, first, last) else ""
+
+
+def _is_one_inside(rows: Ints, first: int, last: int) -> bool:
+    """Whether one of sorted rows is behind ``first`` and up to ``last``."""
+    return bool(np.searchsorted(rows, first, "right") < np.searchsorted(rows, last, "right"))
 
 
 def check_between_points(context: Context, motion: AxisMotion, errors: LinearizationErrors) -> Check:
@@ -104,3 +185,56 @@ def _off_helix(context: ComparedContext, segments: ArcSegments) -> Floats:
         away = circle_of(context.run, row).at(_WAY) - segments.arc.at(begin + (end - begin) * _WAY)
         off.append(float(np.linalg.norm(away, axis=1).max()))
     return np.array(off)
+
+
+def arc_chord_faults(context: ComparedContext) -> Iterator[Place]:
+    """Chords that are too high for their arc, and those that go back along it, in the order of the program."""
+    for segments in context.matching.arc_segments:
+        if segments.pieces is None:
+            yield from _faults(context, segments)
+
+
+def chord_heights(context: ComparedContext, segments: ArcSegments) -> Floats:
+    """How far each line that stands for an arc is off it, (k + 1,) mm; the last one goes to its end."""
+    return _heights(segments.arc.radius, _turns(context, segments))
+
+
+def _turns(context: ComparedContext, segments: ArcSegments) -> Floats:
+    """How far each line goes round, (k + 1,) radians; less than 0 where it goes back."""
+    arc = segments.arc
+    fractions = np.concatenate(([0.0], arc.fractions(context.run.positions(segments.nc).tip), [1.0]))
+    return np.asarray(np.diff(fractions) * arc.sweep)
+
+
+def _heights(radius: float, turns: Floats) -> Floats:
+    # A line in place of a whole turn, or of several, is off by the diameter.
+    return np.asarray(radius * (1.0 - np.cos(np.minimum(0.5 * np.abs(turns), np.pi))))
+
+
+def _faults(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
+    arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
+    turns = _turns(context, segments)
+    heights = _heights(arc.radius, turns)
+    # Both ends of a chord are rounded, and seen from the axis each is off by this angle at most.
+    rounding = math.asin(min(1.0, _DIAGONAL * tolerances.tip / max(arc.radius, 1e-9)))
+    half = 2.0 * math.asin(math.sqrt(min(1.0, 0.5 * _SHARE * tolerances.chord / max(arc.radius, 1e-9))))
+    back = turns < -2.0 * rounding - 1e-9
+    bad = (0.5 * np.abs(turns) > half + rounding + 1e-9) | back
+    for k in np.flatnonzero(bad).tolist():
+        if back[k]:
+            value = 2.0 * arc.radius * math.sin(min(-0.5 * float(turns[k]), 0.5 * math.pi))
+            text = f"goes back along the arc that it stands for, by {value:.5f} mm"
+        else:
+            value = float(heights[k])
+            text = f"is {value:.5f} mm off the arc that it stands for, {tolerances.chord:g} mm is allowed"
+        yield context.place_with_cl(_row(context, segments, k), value, text, segments.cl)
+
+
+def _row(context: ComparedContext, segments: ArcSegments, k: int) -> int:
+    """Return the row of the k-th line; the last one is paired with the end of the arc."""
+    matching = context.matching
+    if k < len(segments.nc):
+        return int(segments.nc[k])
+    if segments.cl in matching.cl:
+        return matching.nc[matching.cl.count_before(segments.cl)]
+    return int(segments.nc[-1])

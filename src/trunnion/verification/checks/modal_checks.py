@@ -7,8 +7,7 @@ import numpy as np
 
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.verification.checks.compensation_corners import compensated_blind
-from trunnion.verification.checks.compensation_planes import compensated_askew
+from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
 from trunnion.verification.checks.low_rapids import low_rapids
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import ComparedContext, Context, check_from_places

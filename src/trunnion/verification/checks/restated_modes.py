@@ -59,12 +59,8 @@ class RestatedModes:
     def unsaid(self, place: int, row: int, wanted_coolant: str) -> str:
         """Return what runs in the first cut after a stop, and was switched on before it; empty if all was said again.
 
-        Parameters
-        ----------
-        place, row
-            The stop's place among the events, and the row before which it stands.
-        wanted_coolant
-            The CL file's word for coolant in that cut.
+        place, row      the stop's place among the events, and the row before which it stands
+        wanted_coolant  the CL file's word for coolant in that cut
         """
         cut = int(np.searchsorted(self._cuts, row))
         if cut == len(self._cuts):

@@ -1,4 +1,4 @@
-"""The spindle of a program against SPINDL in the CL files."""
+"""The spindle of a program against SPINDL in the CL files, and against the range that the machine has."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -7,17 +7,22 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.machines import spindle_speed_fault, states_spindle_range
 from trunnion.model.run import Run
 from trunnion.verification.checks.matched_rows import first_wrong_pair
-from trunnion.verification.context import ComparedContext, check_from_places
+from trunnion.verification.context import ComparedContext, Context, Faults, check_from_places
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle
 from trunnion.verification.expected.states import all_spindles, spindle_states
 from trunnion.verification.results import Check, Place
+from trunnion.verification.row_ranges import chunk_bounds
 
 #: Spindle speeds are printed without decimals: this much is rounding, rev/min.
 RPM_TOLERANCE: Final = 0.5 + 1e-6
 
 _SENSES: Final = {"clockwise": 1, "counter-clockwise": -1}
+
+_RANGE = "rpm"
+_RANGE_TITLE = "spindle speeds that the machine has"
 
 
 def check_spindle(context: ComparedContext) -> Check:
@@ -76,3 +81,25 @@ def _words(spindle: ExpectedSpindle) -> str:
     if spindle.sense == 0:
         return "spindle off"
     return f"{spindle.rpm:g} rev/min {'clockwise' if spindle.sense > 0 else 'counterclockwise'}"
+
+
+def check_spindle_range(context: Context) -> Check:
+    """Every speed at which the spindle turns during a motion; a place for each change to a wrong one."""
+    run = context.run
+    if not states_spindle_range(run.machine):
+        return Check(_RANGE, _RANGE_TITLE, True, "")
+    found = Faults()
+    speeds: set[float] = set()
+    last = 0.0
+    for start, end in chunk_bounds(len(run)):
+        rpm = np.where(run.state.spindle.part(start, end) != 0, run.state.rpm.part(start, end), 0.0)
+        for k in np.flatnonzero(np.diff(rpm, prepend=last)).tolist():
+            speed = float(rpm[k])
+            if speed > 0.0:
+                speeds.add(speed)
+                fault = spindle_speed_fault(run.machine, speed)
+                if fault:
+                    found.add(context.place(start + k, speed, str(fault)))
+        last = float(rpm[-1])
+    good = f"{min(speeds):g} to {max(speeds):g} rev/min" if speeds else "the spindle does not turn"
+    return found.check(_RANGE, _RANGE_TITLE, good)

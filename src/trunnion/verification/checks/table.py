@@ -23,8 +23,7 @@ from trunnion.verification.checks.motion_checks import check_kind, check_order
 from trunnion.verification.checks.normal_checks import check_normals
 from trunnion.verification.checks.position_checks import check_axis, check_tip
 from trunnion.verification.checks.reach_check import check_reach
-from trunnion.verification.checks.spindle_checks import check_spindle
-from trunnion.verification.checks.spindle_range_check import check_spindle_range
+from trunnion.verification.checks.spindle_checks import check_spindle, check_spindle_range
 from trunnion.verification.checks.stop_checks import check_stops
 from trunnion.verification.checks.tool_checks import check_tool
 from trunnion.verification.checks.turn_checks import check_turns

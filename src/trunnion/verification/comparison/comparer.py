@@ -1,5 +1,6 @@
 """Follows two programs together and notes where they differ."""
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Final
 
@@ -153,9 +154,8 @@ class Comparer:
         one, two = (events.take(first, last) for events, first, last in zip(self._events, begin, end, strict=True))
         if one != two:
             self._count += 1
-            self._note_first(
-                _PathDifference(*begin, 0.0, f"{', '.join(one) or 'nothing'} against {', '.join(two) or 'nothing'}")
-            )
+            alone = [", ".join((Counter(a) - Counter(b)).elements()) or "nothing" for a, b in ((one, two), (two, one))]
+            self._note_first(_PathDifference(*begin, 0.0, " against ".join(alone)))
 
     def _compare_states(self, i: int, j: int, count: int) -> None:
         a, b = self._one.rows[i : i + count], self._two.rows[j : j + count]

@@ -18,14 +18,10 @@ def compare(
 ) -> Comparison:
     """Compare two runs.
 
-    Parameters
-    ----------
-    tolerance
-        How far tips, mm, and tool axes, degrees, may be apart.
-    axis_tolerance
-        Another tolerance for tool axes, degrees.
-    path
-        Compare only where the tool goes, and whether at rapid; not feed, spindle, tool, coolant, stops and dwells.
+    tolerance       how far tips, mm, and tool axes, degrees, may be apart
+    axis_tolerance  another tolerance for tool axes, degrees
+    path            compare only where the tool goes, and whether at rapid; not feed, spindle, tool, coolant, stops and
+                    dwells
     """
     return Comparer(one, two, tolerance, tolerance if axis_tolerance is None else axis_tolerance, path).compare()
 
@@ -33,9 +29,6 @@ def compare(
 def align(one: Run, two: Run, tolerance: float = 0.001) -> Alignment:
     """Follow two runs together, and return which of their rows go to the same points, and where they differ.
 
-    Parameters
-    ----------
-    tolerance
-        How far tips, mm, and tool axes, degrees, may be apart.
+    tolerance  how far tips, mm, and tool axes, degrees, may be apart
     """
     return Comparer(one, two, tolerance, tolerance, False).follow()

@@ -1,21 +1,33 @@
 """Events of two programs that the machine waits at or acts upon, at their places in the path.
 
 In:     the rows of a run in which its tool moves.
-Out:    which events come before each of these motions, and after the last one.
+Out:    which events come before each of these motions, and after the last one: stops and dwells, the end of the
+        program, and what cycles do with the spindle, which the path does not show (a left-hand thread goes where a
+        right-hand one does).
 """
 
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.model.run import Run, RunEvent
+from trunnion.model.spindle_work import SpindleHole, SpindleTask
 
 #: What every control has, and messages call it.
 _OF_ALL: Final = {"stop": "stop", "optional_stop": "optional stop", "dwell": "dwell"}
 
-#: Words of the machine's builder: they mean the same on the same machine only.
-_OF_MACHINE: Final = {"m": "M", "h": "H", "known": ""}
+_TASKS: Final = {
+    SpindleTask.STOP: "a bore that is left with the spindle standing",
+    SpindleTask.LIFT: "a bore that is left with the tool lifted off",
+    SpindleTask.MANUAL: "a bore that is left by hand",
+}
+
+_SENSES: Final = {1: "turns clockwise", -1: "turns counter-clockwise", 0: "stands"}
+
+#: Words that mean the same on the same machine only: those of its builder, and what ends a program of its control.
+_OF_MACHINE: Final = {"m": "M", "h": "H", "known": "", "end": "end of the program"}
 
 #: Dwells are the same within this, seconds or revolutions: programs print no more digits.
 _DIGITS: Final = 3
@@ -30,11 +42,12 @@ class PathEvents:
 
     def __init__(self, run: Run, rows: Ints, *, same_machine: bool) -> None:
         names = {**_OF_ALL, **(_OF_MACHINE if same_machine else {})}
-        found = [event for event in run.events if event.kind in names]
-        at = np.searchsorted(rows, [event.before_row for event in found])
+        found = [(event.before_row, text) for event, text in _texts(run, names)]
+        found += [(hole.first, _spindle_words(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
+        at = np.searchsorted(rows, [row for row, _ in found])
         self._events: dict[int, list[str]] = {}
-        for motion, event in zip(at.tolist(), found, strict=True):
-            self._events.setdefault(motion, []).append(_words(names[event.kind], event))
+        for motion, (_, text) in zip(at.tolist(), found, strict=True):
+            self._events.setdefault(motion, []).append(text)
         self.motions: Ints = np.unique(at).astype(np.int64)
 
     def take(self, first: int, end: int) -> list[str]:
@@ -51,7 +64,37 @@ class PathEvents:
         return [int(motion) for motion in self.motions[low:high]]
 
 
+def _texts(run: Run, names: Mapping[str, str]) -> Iterator[tuple[RunEvent, str]]:
+    """Yield the events that are compared, in words; a stop says whether the spindle turns there."""
+    turns = ""
+    for event in run.events:
+        if event.kind == "spindle":
+            turns = str(event.value) if event.value in ("clockwise", "counter-clockwise") else ""
+        elif event.kind in names:
+            text = _words(names[event.kind], event)
+            yield event, f"{text} while the spindle turns {turns}" if turns and event.kind == "stop" else text
+
+
+def _spindle_words(run: Run, hole: SpindleHole, *, chuck: bool) -> str:
+    """Return what a cycle does with the spindle, in words that are the same for what is the same.
+
+    chuck  a compensating chuck counts: another machine may do without
+    """
+    work, row = hole.work, hole.first
+    sense = int(run.spindle[row])
+    after = work.after if work.after is not None else sense
+    then = f", after which the spindle {_SENSES[after]}"
+    if work.task is not SpindleTask.TAP:
+        return _TASKS[work.task] + then
+    hand = {1: "right-hand", -1: "left-hand"}.get(work.hand or sense, "")
+    stroke = f" in strokes of {work.stroke:g} mm" if work.stroke else ""
+    held = " in a compensating chuck" if chuck and work.floating else ""
+    return f"{hand} thread".strip() + held + stroke + then
+
+
 def _words(name: str, event: RunEvent) -> str:
+    if event.kind == "end":
+        return name
     value = event.value
     if event.kind == "dwell" and isinstance(value, int | float):
         amount = round(float(value), _DIGITS)

@@ -71,12 +71,8 @@ def longest(seconds: float) -> float:
 def reached_rows(run: Run, expected: ExpectedPath, matching: Matching, limit: float | None) -> ReachedRows:
     """Find what the axes reach.
 
-    Parameters
-    ----------
-    expected
-        With the feeds of the CL files.
-    limit
-        Greatest feed of cuts, mm/min; None: that of the CL files.
+    expected  with the feeds of the CL files
+    limit     greatest feed of cuts, mm/min; None: that of the CL files
     """
     return _TimedRows(run, expected, matching, limit).reached
 

@@ -137,10 +137,7 @@ class HoleSource(NamedTuple):
 def holes_of_operation(operation: Operation, hole_rows: Flags, source: HoleSource) -> list[Hole]:
     """Return the holes of an operation as the CL file has it.
 
-    Parameters
-    ----------
-    hole_rows : (n,) bool
-        Which rows of the operation are holes.
+    hole_rows  (n,) bool: which rows of the operation are holes
     """
     file, first, tolerances, tool, spindle = source
     rows = np.flatnonzero(hole_rows)

@@ -13,10 +13,7 @@ from trunnion.verification.row_ranges import chunk_bounds
 def restore_rapids(run: Run, feed: float | None) -> Run:
     """Return the run with lines at the feed that replaces rapid motion as rapids.
 
-    Parameters
-    ----------
-    feed
-        That feed, mm/min; None where rapids are written as rapids: the run itself is returned.
+    feed  that feed, mm/min; None where rapids are written as rapids: the run itself is returned
     """
     if feed is None:
         return run

@@ -33,12 +33,8 @@ def hole_approach_rows(run: Run, extra: Sequence[int], holes: Sequence[MatchedHo
     They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, over
     the hole at that height, and straight down; or, from home or while the tool turns, over the hole itself.
 
-    Parameters
-    ----------
-    extra
-        Rows without a CL point.
-    tip_tolerance
-        How far each coordinate of motions that belong to no cycle may be off, mm.
+    extra          rows without a CL point
+    tip_tolerance  how far each coordinate of motions that belong to no cycle may be off, mm
     """
     approaches, candidates = set(approach_rows(run).tolist()), set(extra)
     found = set()

@@ -80,12 +80,9 @@ def follow_path(
 ) -> FollowedPath:
     """Follow CL points as far as motions go to them, directly or by intermediate points.
 
-    Parameters
-    ----------
-    positions, kind
-        Of n motions in their order; a ``Kind`` each.
-    points
-        CL points, led by the one from which the first motion starts. Circles are reached directly or not at all.
+    positions, kind  of n motions in their order; a ``Kind`` each
+    points           CL points, led by the one from which the first motion starts. Circles are reached directly or not
+                     at all
     """
     cl_point, arrives = np.zeros(len(kind), np.int64), np.zeros(len(kind), np.bool_)
     motions, reached = _follow(

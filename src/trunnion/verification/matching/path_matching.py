@@ -74,11 +74,8 @@ def match_by_position(
 ) -> Matching:
     """Match by position, whatever was dropped, doubled or swapped.
 
-    Parameters
-    ----------
-    axis_deviation
-        How far the tool axis may be off the great circle at intermediate points, degrees; None: there may be no
-        intermediate points.
+    axis_deviation  how far the tool axis may be off the great circle at intermediate points, degrees; None: there may
+                    be no intermediate points
     """
     return _PathMatcher(run, expected, axis_deviation, least_turn).match()
 

@@ -12,16 +12,8 @@ def find_resync(fits: Flags, ends: Sequence[bool]) -> tuple[int, int] | None:
 
     One fit suffices right before the end of either side; where both sides end and nothing fits, it is both ends.
 
-    Parameters
-    ----------
-    fits : (a, b) bool
-        Whether each motion of one side fits each one of the other.
-    ends
-        Whether the window reaches the end of each side.
-
-    Returns
-    -------
-    How many motions of either side come before; None if they do not fit again within the window.
+    fits  (a, b) bool: whether each motion of one side fits each one of the other
+    ends  whether the window reaches the end of each side
     """
     a, b = fits.shape
     twice = fits.copy()

@@ -50,12 +50,8 @@ class RewindRetract:
 def find_rewind_retracts(run: Run, extra: Sequence[int], tip_tolerance: float) -> list[RewindRetract]:
     """Which of the motions without a CL point are rewind retracts.
 
-    Parameters
-    ----------
-    extra
-        Rows of the run, increasing.
-    tip_tolerance
-        How far a coordinate may be off, mm.
+    extra          rows of the run, increasing
+    tip_tolerance  how far a coordinate may be off, mm
     """
     found = []
     rows = np.array(extra, np.int64)

@@ -80,10 +80,7 @@ def repeats_of_another_kind(run: Run, expected: ExpectedPath, nc: Ints, cl: Ints
 
     Such a point makes no block: the motion is another, as one that only turns the rotary axes at the pole.
 
-    Parameters
-    ----------
-    nc, cl : (k,)
-        Rows of the run and CL rows.
+    nc, cl  (k,): rows of the run and CL rows
     """
     kind, wanted = run.kind[nc], expected.kind(cl)
     found = (kind != wanted) & (kind != Kind.ARC) & (wanted != Kind.ARC)

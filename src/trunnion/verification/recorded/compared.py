@@ -98,10 +98,7 @@ class RecordedComparison:
 def compare_recording(run: Run, recording: Recording, tolerance: float) -> RecordedComparison:
     """Compare a recording with a run.
 
-    Raises
-    ------
-    InputError
-        If the recording has not all axes of the machine.
+    Raises ``InputError`` if the recording has not all axes of the machine.
     """
     joints, tip, axis = _poses(run.machine, recording)
     whole = np.isfinite(tip).all(axis=1) & np.isfinite(axis).all(axis=1)

@@ -1,4 +1,4 @@
-"""Blocks and stops within radius compensation across which the control does not see the next corner."""
+"""Radius compensation in a plane that the tool axis leaves, and blocks across which it does not see the next corner."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -13,6 +13,9 @@ from trunnion.verification.results import Place
 
 #: A smaller motion in the plane, mm, is none.
 _STILL: Final = 1e-6
+
+#: The tool axis may be off the normal of the plane by so much, degrees: more than the rounding of printed angles.
+_ASKEW: Final = 0.05
 
 
 def compensated_blind(context: Context) -> Iterator[Place]:
@@ -86,3 +89,23 @@ def _count_at(rows: Ints, found: set[tuple[int, int, int]], lines: Ints) -> Ints
     here = [row for row, _, line in found if row >= len(lines) or (line != lines[row] and line != lines[row - 1])]
     counts = np.bincount(np.array(here, np.int64), minlength=len(lines) + 1)
     return np.asarray(counts[rows])
+
+
+def compensated_askew(context: Context) -> Iterator[Place]:
+    """Yield the first motion under compensation whose tool axis is not perpendicular to the plane of compensation."""
+    run = context.run
+    if not len(run.compensation_planes):
+        return
+    on = np.flatnonzero(run.compensation != 0)
+    on = on[(run.state.compensation_plane.at(on) >= 0) & ~run.state.machine_frame.at(on)]
+    for first in range(0, len(on), CHUNK_ROWS):
+        rows = on[first : first + CHUNK_ROWS]
+        normal = run.compensation_planes[run.state.compensation_plane.at(rows)]
+        along = np.abs(np.einsum("ij,ij->i", run.positions(rows).axis, normal))
+        angle = np.degrees(np.arccos(np.minimum(along, 1.0)))
+        askew = np.flatnonzero(angle > _ASKEW)
+        if len(askew):
+            worst = float(angle[askew[0]])
+            text = f"radius compensation in a plane to which the tool is not perpendicular, by {worst:.2f} degrees"
+            yield context.place(int(rows[askew[0]]), worst, f"{text}: it offsets the path along the tool as well")
+            return

@@ -1,0 +1,92 @@
+"""A program that was edited by hand is not replaced unseen: by no output, project or subprogram."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import trunnion
+from tests.support.locations import YL569
+
+HUB = YL569 / "2_hub_rough.cls"
+EDIT = "; feed lowered at the machine\n"
+
+
+def post(folder: Path, **settings: Any) -> Any:
+    return trunnion.post(HUB, machine="yl569", output=folder / "hub.mpf", settings=settings)
+
+
+def edit(file: Path) -> bytes:
+    """Edit a file on a day that is known."""
+    file.write_text(file.read_text(encoding="utf-8") + EDIT, encoding="utf-8")
+    os.utime(file, (1_700_000_000, 1_700_000_000))
+    return file.read_bytes()
+
+
+def test_an_edited_output_is_refused_kept_or_replaced_as_is_said(tmp_path: Path) -> None:
+    file = tmp_path / "hub.mpf"
+    post(tmp_path)
+    written = file.read_bytes()
+    post(tmp_path)
+    edited = edit(file)
+    for settings in ({}, {"edited": "refuse"}):
+        with pytest.raises(trunnion.InputError, match="was edited since it was written") as refused:
+            post(tmp_path, **settings)
+        assert "edited=keep" in refused.value.problems[0].cure
+        assert file.read_bytes() == edited
+    result = post(tmp_path, edited="keep")
+    kept = tmp_path / "hub.mpf.edited-2023-11-14"
+    assert (file.read_bytes(), kept.read_bytes()) == (written, edited)
+    assert f"it is kept as {kept.name}" in "\n".join(map(str, result.problems))
+    edit(file)
+    post(tmp_path, edited="keep")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["hub.mpf", kept.name, f"{kept.name}-2"]
+    edit(file)
+    post(tmp_path, edited="replace")
+    assert file.read_bytes() == written
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_an_edited_subprogram_stays_with_its_program(tmp_path: Path) -> None:
+    post(tmp_path, programs="operations")
+    (subprogram,) = (path for path in tmp_path.iterdir() if path.suffix.lower() == ".spf")
+    edited = edit(subprogram)
+    there = (tmp_path / "hub.mpf").read_bytes()
+    with pytest.raises(trunnion.InputError, match=rf"{subprogram.name}: error: was edited since"):
+        post(tmp_path, programs="operations", title="NEW")
+    assert (subprogram.read_bytes(), (tmp_path / "hub.mpf").read_bytes()) == (edited, there)
+    post(tmp_path, programs="operations", edited="keep")
+    assert subprogram.read_bytes() != edited
+    assert subprogram.with_name(f"{subprogram.name}.edited-2023-11-14").read_bytes() == edited
+
+
+def test_an_edited_program_of_a_project_is_refused_and_kept_where_it_says_so(tmp_path: Path) -> None:
+    project = tmp_path / "part.toml"
+    (tmp_path / "hub.cls").write_bytes(HUB.read_bytes())
+    text = 'machine = "yl569"\ncl = ["hub.cls"]\noutput = "hub.mpf"\n'
+    project.write_text(text, encoding="utf-8")
+    trunnion.post_project(project)
+    edited = edit(tmp_path / "hub.mpf")
+    with pytest.raises(trunnion.InputError, match="was edited since it was written"):
+        trunnion.post_project(project)
+    assert (tmp_path / "hub.mpf").read_bytes() == edited
+    project.write_text(f'{text}[settings]\nedited = "keep"\n', encoding="utf-8")
+    trunnion.post_project(project)
+    assert (tmp_path / "hub.mpf.edited-2023-11-14").read_bytes() == edited
+
+
+def test_a_file_that_no_job_has_written_is_replaced_where_it_is_named(tmp_path: Path) -> None:
+    (tmp_path / "hub.mpf").write_text("somebody's", encoding="utf-8")
+    assert post(tmp_path).passed
+
+
+def test_an_edited_program_of_a_conversion_is_kept(tmp_path: Path) -> None:
+    source, file = YL569 / "2_hub_rough.expected.mpf", tmp_path / "hub.h"
+    for settings in ({}, {"edited": "keep"}):
+        edited = edit(file) if file.exists() else b""
+        trunnion.convert(source, machine="yl569", to_machine="dmu65", output=file, settings=settings)
+    edit(file)
+    with pytest.raises(trunnion.InputError, match="was edited since it was written"):
+        trunnion.convert(source, machine="yl569", to_machine="dmu65", output=file)
+    assert (tmp_path / "hub.h.edited-2023-11-14").read_bytes() == edited
