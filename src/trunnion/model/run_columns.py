@@ -1,6 +1,7 @@
 """Columns of a run that have no row for each motion: modal values by their changes, and surface normals."""
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -30,6 +31,10 @@ class SurfaceNormals:
         return SurfaceNormals(np.zeros(0, np.int64), np.zeros((0, 3)))
 
 
+#: Added to ``ModalState.length_axis`` where a parameter of the control decides.
+BY_PARAMETER: Final = 3
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ModalState:
     """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
@@ -40,6 +45,8 @@ class ModalState:
     radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
     machine_steps  in coordinates of the machine: bits of the linear axes that a block moves from where they are (G91)
     feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
+    length_axis  along which of X, Y and Z the tool length counts where positions are those of the linear axes: 0, 1, 2;
+                -1: none; ``BY_PARAMETER`` more: along that one or along Z, as a parameter of the control says
     """
 
     file: StepColumn
@@ -61,3 +68,4 @@ class ModalState:
     xyz_is_tip: StepColumn
     plane: StepColumn
     feed_path: StepColumn
+    length_axis: StepColumn

@@ -18,6 +18,7 @@ from trunnion.machines.inverse import kinematic_parameters
 from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Orientation
+from trunnion.model.run_columns import BY_PARAMETER
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
 from trunnion.readers.control.event_recorder import Note
@@ -99,9 +100,25 @@ class CoordinateControl(RowRecorder):
         return self._plane.compose(self._program)
 
     @property
+    def _length_axis(self) -> int:
+        """Index of the linear axis along which the tool length counts where positions are those of the linear axes.
+
+        -1: none.
+        """
+        return -1
+
+    @property
     def _length_offset(self) -> Floats:
-        """What the tool length adds to slide positions X, Y, Z, (3,) mm."""
-        return np.zeros(3)
+        """What the tool length adds to positions of the linear axes X, Y, Z, (3,) mm."""
+        length = np.zeros(3)
+        if self._length_axis >= 0:
+            length[self._length_axis] = self.machine.tool_length or 0.0
+        return length
+
+    def record_length(self, by_parameter: int = -1) -> None:
+        """Record along which linear axis the tool length counts; ``by_parameter``: or along this one."""
+        axis = by_parameter + BY_PARAMETER if by_parameter >= 0 else self._length_axis
+        self.modal.length_axis.set(self.row, axis)
 
     def _vector_map(self, frame: AffineMap) -> Floats:
         """Return the map from programmed vectors to the workpiece frame, (3, 3)."""

@@ -33,6 +33,7 @@ class ModalBuilder:
         self.xyz_is_tip = StepColumnBuilder(False)
         self.plane = StepColumnBuilder(-1)
         self.feed_path = StepColumnBuilder(int(FeedPath.SLIDES))
+        self.length_axis = StepColumnBuilder(-1)
 
     def state(self, n: int) -> ModalState:
         """Return the columns with n rows; nothing may be added afterwards."""
@@ -56,4 +57,5 @@ class ModalBuilder:
             xyz_is_tip=self.xyz_is_tip.steps(n, np.bool_),
             plane=self.plane.steps(n, np.int32),
             feed_path=self.feed_path.steps(n, np.uint8),
+            length_axis=self.length_axis.steps(n, np.int8),
         )

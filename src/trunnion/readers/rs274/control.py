@@ -4,8 +4,6 @@ from collections.abc import Hashable, Mapping
 from functools import partial
 from typing import Final
 
-import numpy as np
-
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
 from trunnion.messages import Wording
@@ -52,8 +50,8 @@ class Rs274Control(VirtualControl):
         return None
 
     @property
-    def _length_offset(self) -> Floats:
-        return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self.length_active else np.zeros(3)
+    def _length_axis(self) -> int:
+        return 2 if self.length_active else -1
 
     def set_length(self, on: bool) -> None:
         """Switch the tool length; it counts along Z if it is known."""
@@ -61,9 +59,10 @@ class Rs274Control(VirtualControl):
             return
         if not self.machine.tool_length:
             self.length_active = on
-            return
-        with self.frame_change():
-            self.length_active = on
+        else:
+            with self.frame_change():
+                self.length_active = on
+        self.record_length()
 
     def circle(self, words: Mapping[str, float], turns: int = 0) -> Circle | None:
         """Return the circle of a block in the motion in force; None if that is a line.

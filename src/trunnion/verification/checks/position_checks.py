@@ -7,9 +7,16 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.messages import Wording, phrase
 from trunnion.model.arcs import ARC_POINT_TOLERANCE
-from trunnion.verification.context import MAX_PLACES, ComparedContext
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, misplaced_lean_positions
+from trunnion.verification.deviations.nominal_values import (
+    depends_on_length,
+    depends_on_zero,
+    moved_tips,
+    with_linear_positions,
+)
 from trunnion.verification.deviations.point_deviations import DeviationSummary
 from trunnion.verification.expected.arcs import great_circle_points
 from trunnion.verification.kinematics.axis_difference import degrees_apart
@@ -48,8 +55,36 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
         positioned = None if run.state.tcp[first] else context.rotary_positioning_place(first)
         places += [positioned] if positioned is not None else []
     on_arcs = [place for segments in matching.arc_segments for place in _tips_off_arc(context, segments)]
-    count = deviations.count + len(on_arcs)
-    return _measured("tip", "tool tip against the CL points", context, deviations, places + on_arcs, count)
+    nominal = Faults()
+    missing = _depends_on_values(context, nominal)
+    count = deviations.count + len(on_arcs) + nominal.count
+    places += [*on_arcs, *nominal.places]
+    check = _measured("tip", "tool tip against the CL points", context, deviations, places, count)
+    return replace(check, missing=missing)
+
+
+def _depends_on_values(context: ComparedContext, found: Faults) -> tuple[Wording, ...]:
+    """Take the points at which the tip moves with the tool length; returns what points stand on and nobody has stated.
+
+    Only where positions are those of the linear axes: elsewhere the control knows the length.
+    """
+    run = context.run
+    if run.state.xyz_is_tip.values.all():
+        return ()
+    on_length = on_zero = False
+    for nc, cl in context.matching.pair_chunks():
+        rows = with_linear_positions(run, nc)
+        on_length, on_zero = on_length or depends_on_length(run, rows), on_zero or depends_on_zero(run, rows)
+        moved = moved_tips(run, rows)
+        points = cl[np.searchsorted(nc, [tip.row for tip in moved])].tolist()
+        found.add_rows(
+            len(moved),
+            (
+                context.place_with_cl(tip.row, tip.share, f"the tip is elsewhere with a longer tool: {tip.why}", point)
+                for tip, point in zip(moved, points, strict=True)
+            ),
+        )
+    return (*((phrase("no_zero"),) if on_zero else ()), *((phrase("no_tool_length"),) if on_length else ()))
 
 
 def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
@@ -113,9 +148,9 @@ def _measured(
     unit = _UNITS[key]
     if not len(context.matching.nc) and len(context.expected):
         return Check(key, title, False, "no block goes to any CL point", unit=unit)
-    each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
+    each = "X, Y or Z" if unit == "mm" else "a rotary axis"
     largest, limit = deviations.largest, deviations.limit
-    summary = f"largest {largest:.6f} {unit} in {each}, rms {whole} {deviations.rms:.6f}, allowed {limit:.6f}"
+    summary = f"largest {largest:.6f} {unit} in {each}, rms {deviations.rms:.6f}, allowed {limit:.6f}"
     if count:
         summary += f", {counted(count, 'point')} off, first in {min(places, key=lambda p: p.nc_line).block_name}"
     return Check(key, title, not count, summary, largest, limit, unit, tuple(places))

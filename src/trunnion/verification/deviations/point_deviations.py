@@ -8,7 +8,6 @@ Units:  mm and degrees.
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
@@ -20,16 +19,13 @@ from trunnion.verification.expected.path import ExpectedPath, Section
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry, RotaryPair, axis_difference, degrees_apart
 from trunnion.verification.matching.pairs import Matching
 
-#: Square degrees in a square radian.
-_SQUARE_DEGREES: Final = (180.0 / math.pi) ** 2
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DeviationSummary:
     """Deviations of one kind.
 
     largest  the deviation that takes the largest share of its tolerance
-    rms      root mean square of all
+    rms      root mean square of all, of the same quantity
     limit    that tolerance
     bad      pairs beyond their tolerance as (pair, deviation): the worst, worst first, and the first of all
     count    how many pairs are beyond it
@@ -71,7 +67,7 @@ class PointDeviations:
         row = self._matching.nc.rows(start, start + count)
         nc, cl = row - (first - 1), self._matching.cl.rows(start, start + count) - section.first
         off_tip, off_axis = np.empty(count), np.empty(count)
-        squares = compare_rows(
+        compare_rows(
             positions.tip, positions.axis, positions.joints, moves.tip, moves.axis, nc, cl, geometry.column,
             geometry.pair, off_tip, off_axis,
         )  # fmt: skip
@@ -82,8 +78,8 @@ class PointDeviations:
             beyond = np.flatnonzero(off_axis > tolerances.angle)
             angle = degrees_apart(positions.axis[nc[beyond]], moves.axis[cl[beyond]])
             off_axis[beyond] = np.minimum(angle, off_axis[beyond])
-        self._tip.add(start, off_tip, squares[0], tolerances.tip)
-        self._axis.add(start, off_axis, squares[1], tolerances.angle)
+        self._tip.add(start, off_tip, tolerances.tip)
+        self._axis.add(start, off_axis, tolerances.angle)
 
     def result(self) -> tuple[DeviationSummary, DeviationSummary]:
         """Tip and tool axis, once all rows have been added."""
@@ -103,9 +99,9 @@ class _Collector:
         self._worst_share = -1.0
         self._largest = self._limit = 0.0
 
-    def add(self, start: int, off: Floats, squares: float, limit: float) -> None:
-        """Add a chunk: deviations of the pairs from ``start`` on, and the sum of their squares."""
-        self._squares += squares
+    def add(self, start: int, off: Floats, limit: float) -> None:
+        """Add a chunk: deviations of the pairs from ``start`` on."""
+        self._squares += float(off @ off)
         self._pairs += len(off)
         k = int(np.argmax(off))
         share = float(off[k]) / limit if limit else float(off[k])
@@ -143,22 +139,16 @@ def compare_rows(
     pair: RotaryPair,
     off_tip: Floats,
     off_axis: Floats,
-) -> tuple[float, float]:
+) -> None:
     """Write the largest deviation of each pair in X, Y or Z (mm) and in either rotary axis (deg).
 
-    Returns the sums of squared distances: of tips in mm, of tool axes in degrees. ``column`` is that of
-    ``RotaryGeometry``.
+    ``column`` is that of ``RotaryGeometry``.
     """
-    squares_tip = 0.0
-    squares_axis = 0.0
     for k in range(nc.shape[0]):
         i, j = nc[k], cl[k]
         dx = nc_tip[i, 0] - cl_tip[j, 0]
         dy = nc_tip[i, 1] - cl_tip[j, 1]
         dz = nc_tip[i, 2] - cl_tip[j, 2]
-        squares_tip += dx * dx + dy * dy + dz * dz
         largest = max(abs(dx), abs(dy), abs(dz))
         off_tip[k] = largest if largest == largest else np.inf
-        angle, off_axis[k] = axis_difference(nc_axis, i, cl_axis, j, joints[i, column], pair)
-        squares_axis += angle * angle
-    return squares_tip, squares_axis * _SQUARE_DEGREES
+        _, off_axis[k] = axis_difference(nc_axis, i, cl_axis, j, joints[i, column], pair)

@@ -130,11 +130,8 @@ class HeidenhainControl(PlaneControl):
     # Tools
 
     @property
-    def _length_offset(self) -> Floats:
-        length = np.zeros(3)
-        if self._length_active:
-            length[self.plane_axis] = self.machine.tool_length or 0.0
-        return length
+    def _length_axis(self) -> int:
+        return self.plane_axis if self._length_active else -1
 
     def call_tool(self, name: str | None, tool_axis: int | None) -> None:
         """TOOL CALL: another tool, or None; and another tool axis, which is normal to the working plane, or None."""
@@ -149,6 +146,7 @@ class HeidenhainControl(PlaneControl):
                 self._length_active, self.plane_axis = active, along
         else:
             self._length_active, self.plane_axis = active, along
+        self.record_length()
         if name is not None:
             self.end_operation("changes_tool_with_m126")
             self.change_tool()

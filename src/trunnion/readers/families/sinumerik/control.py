@@ -89,19 +89,17 @@ class SinumerikControl(VirtualControl):
         return np.eye(3) if self._machine_vectors else super()._vector_map(frame)
 
     @property
-    def _length_offset(self) -> Floats:
-        length = np.zeros(3)
-        if self.modal.edge.current > 0:
-            length[self.plane_axis] = self.machine.tool_length or 0.0
-        return length
+    def _length_axis(self) -> int:
+        return self.plane_axis if self.modal.edge.current > 0 else -1
 
     def set_edge(self, edge: int) -> None:
         """Select the edge (D word) whose offsets hold."""
         if not self.machine.tool_length or (edge > 0) == (self.modal.edge.current > 0):
             self.modal.edge.set(self.row, edge)
-            return
-        with self.frame_change():
-            self.modal.edge.set(self.row, edge)
+        else:
+            with self.frame_change():
+                self.modal.edge.set(self.row, edge)
+        self.record_length()
 
     def compensate(self, side: int) -> None:
         """Switch radius compensation: 1 left of the path, -1 right of it, 0 off."""
@@ -126,9 +124,10 @@ class SinumerikControl(VirtualControl):
         """Select the working plane (G17, G18, G19) by its normal axis."""
         if not self.machine.tool_length or plane == self.plane_axis:
             self.plane_axis = plane
-            return
-        with self.frame_change():
-            self.plane_axis = plane
+        else:
+            with self.frame_change():
+                self.plane_axis = plane
+        self.record_length()
 
     def set_machine_vectors(self, on: bool) -> None:
         """Select whether vectors are in the machine frame (ORIMKS) or the workpiece frame (ORIWKS)."""
