@@ -289,7 +289,7 @@ def test_a_refused_program_has_its_report_all_the_same(
     ("arguments", "word"),
     [
         ([CL, "--output", "p.mpf", "--report", "page.pdf"], ".html"),
-        ([CL, YL569 / "2_hub_rough.cls", "--output", ".", "--report", "r.json"], "one report for 2 programs"),
+        ([CL, YL569 / "2_hub_rough.cls", "--output", ".", "--report", "r.json"], "is one file for 2 programs"),
     ],
 )
 def test_a_report_that_cannot_be_is_said_before_any_work(

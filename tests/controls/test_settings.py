@@ -68,7 +68,11 @@ def test_the_page_of_the_commands_names_every_setting_of_a_post() -> None:
             "tilted",
             "plane is 'tilted'; write cycle800 or frames. The command for a tilted plane: CYCLE800, or",
         ),
-        ("stock", "x", "write a number of at least -1000 and of at most 1000, mm. Stock that the operation leaves, mm"),
+        (
+            "stock",
+            "x",
+            "write a number in mm of at least -1000 and of at most 1000. Stock that the operation leaves, mm",
+        ),
         ("rewind", "no", "rewind is 'no'; write rewind=insert or rewind=none. Insert a retract where a rotary axis"),
         ("pole_angle", "40", "write pole_angle=DEGREES, 0.001 to 10, such as 0.1. How far the tool axis may lean"),
         (

@@ -85,9 +85,9 @@ def test_a_common_mistake_is_told_in_plain_words(tmp_path: Path, text: str, line
 def test_any_line_is_told_somehow(text: str, line: int, message: str) -> None:
     fault = toml_fault(text, line, message)
     assert 0 <= fault.line <= max(line, text.count("\n") + 1)
-    assert fault.what
-    assert fault.cure
-    assert len(fault.what + fault.cure) < 400
+    assert fault.wording.what
+    assert fault.wording.cure
+    assert len(fault.wording.what + fault.wording.cure) < 400
 
 
 def test_a_mistake_that_nobody_knows_is_told_in_the_words_of_the_parser(tmp_path: Path) -> None:

@@ -78,7 +78,7 @@ def test_a_damaged_notice_is_told_and_not_believed(texts: tuple[str, ...], line:
     assert found.clamping is None
     (fault,) = found.faults
     assert fault[0] == line
-    assert why in fault[1]
+    assert why in fault[1].what
 
 
 def test_a_damaged_zero_leaves_the_clamping() -> None:

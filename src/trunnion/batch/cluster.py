@@ -266,9 +266,11 @@ class DaskWorkers:
         ):
             return None
         is_other = isinstance(error, OtherVersionError | ImportError)
-        what = str(error) if is_other else f"a worker cannot work: {name}: {str(error)[:300]}"
-        cure = "install the same Trunnion on all workers" if is_other else "its log says more"
-        raise InputError(Problem(self._address, 0, what, cure, code="BAT210"))
+        if is_other:
+            wording = Wording("BAT210", "worker_of_other_version", reason=str(error))
+        else:
+            wording = Wording("BAT210", "worker_fails", error=name, reason=str(error)[:300])
+        raise InputError(Problem(self._address, 0, wording))
 
     def _look(self, asked: "Mapping[str, _Asked]") -> None:
         """Connect again if the scheduler is gone, and give it all tasks that it does not know any more."""

@@ -42,7 +42,7 @@ from trunnion.jobs.simulate.simulating import simulate
 from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, foreign
 from trunnion.options.kinds import FileIn
 from trunnion.simulation.cutting.shares import DamagedShareError, Share
 from trunnion.verification import Check, Verification
@@ -236,7 +236,7 @@ def _failures(file: str, found: Verification) -> list[Problem]:
 
 def _failure(file: str, check: Check) -> Problem:
     line = next((place.nc_line for place in check.places if not place.nc_file), 0)
-    return Problem(shown(file), line, check.summary, code=check.key)
+    return Problem(shown(file), line, foreign(check.summary, "", check.key))
 
 
 def _simulate(

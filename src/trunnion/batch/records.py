@@ -17,7 +17,7 @@ from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Store, TakenError
 from trunnion.batch.worker_task import NO_COSTS, Costs, Outcome, Status
 from trunnion.errors import InputError, Problem, Severity, key_subject
-from trunnion.messages import Wording
+from trunnion.messages import Wording, foreign
 from trunnion.results import Figure
 
 #: The folder of records within the results; no output has a name that begins with a point.
@@ -125,7 +125,8 @@ def _values(problem: Problem) -> dict[str, Any]:
 def _problem(values: dict[str, Any]) -> Problem:
     file, line, what, cure = (values[name] for name in ("file", "line", "what", "cure"))
     subject = key_subject(values["key"]) if values["key"] else None
-    return Problem(file, line, what, cure, Severity(values["severity"]), subject=subject, code=values["code"])
+    wording = foreign(what, cure, values["code"])
+    return Problem(file, line, wording, severity=Severity(values["severity"]), subject=subject)
 
 
 def read_records(store: Store, places: Sequence[str]) -> Iterator[Record | None]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.builder.document import with_value
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
 from trunnion.schemas import first_line
@@ -47,7 +47,7 @@ def chain_text(chain: str, name: str, control: str) -> str:
     Raises ``InputError`` if there is no such chain.
     """
     if chain not in CHAINS:
-        near = did_you_mean(chain, CHAINS)
+        near = meant_word(chain, CHAINS)
         wording = (
             Wording("PAG210", "no_chain_but_near", chain=chain, near=near)
             if near

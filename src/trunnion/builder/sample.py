@@ -25,7 +25,7 @@ _MOST_LINES: Final = 20_000
 _MOST_COMPARED: Final = 3_000
 
 #: How a refusal ends.
-_NOTHING_WRITTEN: Final = "no program is written"
+_NOTHING_WRITTEN: Final = "CTL940"
 
 #: A block number, after the block-skip sign, with a letter or, as Klartext has it, without.
 _BLOCK_NUMBER: Final = re.compile(r"^(/?)[A-Z:]?[0-9]+ ")
@@ -77,7 +77,7 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
 
 def without_program(problems: Sequence[Problem] = (), checks: Sequence[Check] = ()) -> dict[str, Any]:
     """Return the answer where there is no program: the CL file cannot be posted, or it fails its proof."""
-    told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
+    told = [_problem(each) for each in problems if each.code != _NOTHING_WRITTEN]
     shown = list(map(_check, checks))
     none = {"lines": [], "changed": [], "removed": 0, "all": 0, "standing": None}
     return {**none, "checks": shown, "problems": told, "passed": False}

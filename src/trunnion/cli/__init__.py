@@ -15,6 +15,7 @@ from typing import NoReturn
 from trunnion.cli.process import Ended, end_cleanly, let_messages_go
 from trunnion.errors import Problem, RefusedError, TrunnionError
 from trunnion.jobs.job import Given
+from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, FileOut
 from trunnion.options.option import outputs
 
@@ -45,7 +46,7 @@ def run_and_exit() -> NoReturn:
         sys.stdout.flush()
     except OSError as error:
         if code == 0 and not isinstance(error, BrokenPipeError):
-            print(Problem("stdout", 0, f"cannot be written: {error.strerror}", code="FIL230"), file=sys.stderr)
+            print(Problem("stdout", 0, Wording("FIL230", "stdout_broken", reason=error.strerror)), file=sys.stderr)
         code = code or 2
     sys.stderr.flush()
     os._exit(code)

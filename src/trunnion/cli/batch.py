@@ -18,6 +18,7 @@ from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.job import Given
+from trunnion.messages import Wording
 from trunnion.wording import counted
 
 #: Files that failed which are printed; the summary has all of them.
@@ -39,9 +40,7 @@ def run(given: Given) -> int:
     tls = [given.tls_ca, given.tls_cert, given.tls_key]
     if given.scheduler is None and any(tls):
         name = next(name for name in ("tls_ca", "tls_cert", "tls_key") if given.values[name])
-        raise InputError(
-            argument_problem(name, "is for a scheduler", "add --scheduler, or leave it out", code="ARG130")
-        )
+        raise InputError(argument_problem(name, Wording("ARG130", "tls_without_scheduler")))
     files = (None if value is None else Path(value) for value in tls)
     try:
         result = run_batch(**given.arguments(), tls=Tls(*files) if any(tls) else None, observer=_Terminal())

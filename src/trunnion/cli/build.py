@@ -8,6 +8,7 @@ from trunnion.cli.serving import announce
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines
+from trunnion.messages import Wording
 from trunnion.viewer.serving import listen, serve
 
 
@@ -15,8 +16,16 @@ def run(given: Given) -> int:
     """Serve the builder until the user ends it."""
     file = Path(given.file) if given.file else None
     if file is not None and file.suffix != ".toml":
-        cure = "give none, and start from it in the builder" if str(file) in shipped_machines() else "name a .toml file"
-        raise InputError(Problem(str(file), 0, "is not the file of a definition", cure, code="ARG130"))
+        raise InputError(
+            Problem(
+                str(file),
+                0,
+                Wording(
+                    "ARG130",
+                    "builder_starts_from_shipped" if str(file) in shipped_machines() else "builder_wants_definition",
+                ),
+            )
+        )
     session = BuilderSession(file.parent, file.name) if file is not None else BuilderSession(Path())
     session.start()
     with listen(given.host, given.port) as listening:

@@ -11,6 +11,7 @@ from trunnion.cl.watched import read_watched
 from trunnion.cli.progress import progress
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.job import STDIN, streams
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Toolpath
 
 #: Endings that archives add to the name of what they hold.
@@ -26,9 +27,7 @@ def result_stem(file: str) -> str:
         For stdin, which has no name.
     """
     if file == STDIN:
-        raise InputError(
-            Problem("stdin", 0, "has no name that the result could have", "name the output", code="FIL270")
-        )
+        raise InputError(Problem("stdin", 0, Wording("FIL270", "result_without_name")))
     path = Path(file)
     return Path(path.stem).stem if path.suffix.lower() in _PACKED else path.stem
 

@@ -11,7 +11,7 @@ from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
 from trunnion.definitions import load_table
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.definitions.resolved import resolved_text
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.errors import InputError, Problem, argument_problem
@@ -22,6 +22,7 @@ from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.job import Given
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
+from trunnion.messages import Wording
 from trunnion.readers import check_reading
 from trunnion.results import to_data
 from trunnion.schemas import first_line
@@ -33,7 +34,7 @@ _OF_LIST: Final = ("key", "name", "description", "axes")
 def machines(given: Given) -> int:
     """List the shipped machines, or print one definition as its file has it, or with all that it extends."""
     if given.resolved and not given.name:
-        raise InputError(argument_problem("resolved", "wants a machine", "name one, or the file of one", code="ARG130"))
+        raise InputError(argument_problem("resolved", Wording("ARG130", "resolved_without_machine")))
     if given.name and given.json is not None:
         load_machine(given.name)
         definition = with_control(load_table(given.name, machine_library(), kind="machine"))
@@ -97,10 +98,16 @@ def _check_is_known(name: str) -> None:
     known = [*shipped_machines(), *shipped_controls()]
     if name in known or name.endswith(".toml") or Path(name).exists():
         return
-    near = did_you_mean(name, known)
-    cure = f"{near} " if near else ""
-    cure += f"write the path of a .toml file, or one of {', '.join(known)}"
-    raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure, code="DEF110"))
+    near = meant_word(name, known)
+    raise InputError(
+        Problem(
+            name,
+            0,
+            Wording("DEF110", "nothing_shipped_but_near", near=near, known=tuple(known))
+            if near
+            else Wording("DEF110", "nothing_shipped", known=tuple(known)),
+        )
+    )
 
 
 def _plain_data(located: LocatedValue) -> Any:

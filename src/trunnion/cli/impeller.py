@@ -15,6 +15,7 @@ from trunnion.jobs.impeller.cut import CutStep, ImpellerCut
 from trunnion.jobs.impeller.cutting import cut_impeller
 from trunnion.jobs.impeller.models import load_impeller, model_impeller, write_impeller_step
 from trunnion.jobs.job import Given
+from trunnion.messages import Wording
 from trunnion.results import to_data
 from trunnion.simulation.meshes import STEP_ENDINGS, TriangleMesh, check_mesh_name, save_mesh
 from trunnion.wording import counted, format_duration
@@ -35,8 +36,9 @@ def run(given: Given) -> int:
     is_model = given.step == "model"
     wrong = [name for name in (_OF_CUT if is_model else _OF_MODEL) if getattr(given, name) not in (None, [])]
     if wrong:
-        what = f"is not for {given.step}"
-        raise InputError([argument_problem(name, what, "leave it out", code="ARG130") for name in wrong])
+        raise InputError(
+            [argument_problem(name, Wording("ARG130", "not_for_this_step", step=given.step)) for name in wrong]
+        )
     return model(given) if is_model else cut(given)
 
 
@@ -96,8 +98,14 @@ def cut(given: Given) -> int:
     """Machine an impeller; 0 if its program is proven, and what was simulated has no finding."""
     missing = [name for name in ("machine", "output") if getattr(given, name) is None]
     if missing:
-        cures = {"machine": "name the machine that runs the program", "output": "name a folder"}
-        raise InputError([argument_problem(name, "is missing", cures[name], code="ARG130") for name in missing])
+        raise InputError(
+            [
+                argument_problem(
+                    name, Wording("ARG130", "missing_machine_of_program" if name == "machine" else "missing_folder")
+                )
+                for name in missing
+            ]
+        )
     found = cut_impeller(given.file, **given.arguments("file", "tolerance"), observer=Terminal())
     show(given, lambda: found, _cut_lines(found))
     return 0 if found.passed else 1

@@ -11,6 +11,7 @@ from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
 from trunnion.machines import load_machine
 from trunnion.machines.loading import check_is_shipped, shipped_machines
+from trunnion.messages import Wording
 from trunnion.schemas import put_beside, schema_text
 from trunnion.wording import counted
 
@@ -20,15 +21,11 @@ def new(given: Given) -> int:
     check_is_shipped(given.like)
     file = Path(given.name if given.name.endswith(".toml") else f"{given.name}.toml")
     if not is_file_name(file.name):
-        what = "is no name for a file on every system"
-        raise InputError(Problem(given.name, 0, what, "write letters, digits and _, such as our_mill", code="FIL340"))
+        raise InputError(Problem(given.name, 0, Wording("FIL340", "not_on_every_system")))
     if file.stem in shipped_machines():
-        what = "is the name of a shipped machine, which --machine would go on taking"
-        raise InputError(Problem(given.name, 0, what, f"write another, such as our_{file.stem}", code="FIL340"))
+        raise InputError(Problem(given.name, 0, Wording("FIL340", "name_of_shipped_machine", stem=file.stem)))
     if file.exists() or file.is_symlink():
-        raise InputError(
-            Problem(str(file), 0, "is there already", "choose another name, or edit that file", code="FIL250")
-        )
+        raise InputError(Problem(str(file), 0, Wording("FIL250", "definition_exists")))
     text = definition_like(load_machine(given.like), file.stem)
     with atomic_file(file) as sink:
         sink.write(text.encode())

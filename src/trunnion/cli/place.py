@@ -16,6 +16,7 @@ from trunnion.jobs.place.bodies import BodiesInput
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
+from trunnion.messages import Wording
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, BodyDistance, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
@@ -44,11 +45,10 @@ def run(given: Given) -> int:
         (given.files, given.machine) if project is None else (project.files, given.machine or project.machine)
     )
     if machine_name is None:
-        raise InputError(argument_problem("machine", "is missing", "name the machine", code="ARG130"))
+        raise InputError(argument_problem("machine", Wording("ARG130", "missing_machine")))
     machine = load_machine(machine_name)
     if given.sheet is not None and given.apply is None:
-        what = "is that of the program of --apply, and there is none"
-        raise InputError(argument_problem("sheet", what, "give --apply too", code="ARG130"))
+        raise InputError(argument_problem("sheet", Wording("ARG130", "sheet_without_apply")))
     settings = {**({} if project is None else as_texts(project.settings)), **dict(given.settings)}
     length = given.tool_length or settings.get("tool_length")
     stated = BodiesInput() if project is None else project.bodies
@@ -109,10 +109,10 @@ def _project(given: Given) -> "PlacedSetup | None":
     projects = [file for file in given.files if file.endswith(".toml")]
     if not projects:
         if given.setup is not None:
-            raise InputError(argument_problem("setup", "is that of a project", "give one (.toml)", code="ARG130"))
+            raise InputError(argument_problem("setup", Wording("ARG130", "setup_without_project")))
         return None
     if len(given.files) > 1:
-        raise InputError(Problem(projects[0], 0, "is a project, and others are named", "give it alone", code="ARG130"))
+        raise InputError(Problem(projects[0], 0, Wording("ARG130", "project_among_files")))
     from trunnion.jobs.place.project import placed_setup
 
     return placed_setup(Path(projects[0]), given.setup)

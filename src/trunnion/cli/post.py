@@ -21,6 +21,7 @@ from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.result_output import PAPERS
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Toolpath
 from trunnion.options.groups import BODIES, CUTTING
 from trunnion.wording import counted
@@ -44,12 +45,12 @@ def post(
     papers = {name: getattr(given, name) for name in PAPERS if getattr(given, name) is not None}
     for name, file in papers.items():
         if len(targets) > 1:
-            what = f"one {PAPERS[name]} for {len(targets)} programs"
-            raise InputError(Problem(file, 0, what, f"post them one at a time, or leave --{name} out", code="ARG130"))
+            raise InputError(
+                Problem(file, 0, Wording("ARG130", "one_paper_for_several_programs", count=len(targets), name=name))
+            )
     read = list(files_read(given))
     if "-" in targets and given.json == "-":
-        what = "and the program go to stdout both"
-        raise InputError(argument_problem("json", what, "let one of them go to a file", code="ARG140"))
+        raise InputError(argument_problem("json", Wording("ARG140", "data_and_program_to_stdout")))
     written = [*targets, *papers.values(), *([] if given.json is None else [given.json])]
     check_outputs([file for file in written if file != "-"], read)
     if output_folder(given.output) is not None:
@@ -102,8 +103,7 @@ def simulation_of(given: Given) -> dict[str, object] | None:
     if given.simulate:
         return stated
     if stated:
-        what = "is only for a simulation, and none is asked for"
-        raise InputError(argument_problem(next(iter(stated)), what, "add --simulate, or leave it out", code="ARG130"))
+        raise InputError(argument_problem(next(iter(stated)), Wording("ARG130", "only_for_simulation")))
     return None
 
 
@@ -140,9 +140,7 @@ def files_by_target(given: Given, machine: Machine) -> dict[str, list[str]]:
     if place == "-":
         return {"-": files}
     if place is None and len(files) > 1:
-        raise InputError(
-            Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER", code="FIL270")
-        )
+        raise InputError(Problem("post", 0, Wording("FIL270", "several_files_without_output")))
     into = output_folder(place)
     if into is None:
         _check_joined(place, files, machine)
@@ -153,9 +151,7 @@ def files_by_target(given: Given, machine: Machine) -> dict[str, list[str]]:
         targets.setdefault(str(into / (result_stem(file) + extension)), []).append(file)
     twice = next((files for files in targets.values() if len(files) > 1), None)
     if twice:
-        raise InputError(
-            Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them", code="FIL240")
-        )
+        raise InputError(Problem(twice[1], 0, Wording("FIL240", "over_program_of_other", other=twice[0])))
     return targets
 
 
@@ -165,5 +161,4 @@ def _check_joined(place: str, files: Sequence[str], machine: Machine) -> None:
         return
     extension = load_control(machine.control).extension
     if extension:
-        cure = f"make it first for one program a CL file, or name one program of all, such as {place}{extension}"
-        raise InputError(Problem(place, 0, "there is no such folder", cure, code="FIL220"))
+        raise InputError(Problem(place, 0, Wording("FIL220", "no_folder_for_programs", program=place + extension)))

@@ -7,6 +7,7 @@ from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
+from trunnion.messages import Wording
 from trunnion.results import as_json, to_data
 from trunnion.wording import one_line, printable
 
@@ -38,8 +39,9 @@ def print_result(*lines: str, end: str = "\n") -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        what = f"cannot be written: {error.strerror or error}"
-        raise InputError(Problem("stdout", 0, what, "let it go elsewhere", code="FIL230")) from None
+        raise InputError(
+            Problem("stdout", 0, Wording("FIL230", "stdout_takes_no_more", reason=error.strerror or error))
+        ) from None
 
 
 def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:

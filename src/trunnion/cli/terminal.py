@@ -13,6 +13,7 @@ from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import InputError, Problem
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.observer import Observer
+from trunnion.messages import Wording
 from trunnion.model.motion import Plan
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 
@@ -116,9 +117,15 @@ def check_unnamed(target: str, *, alone: bool = True) -> None:
     earlier = EarlierJob(place.path)
     if earlier.wrote(place.path) or earlier.has_edited(place.path):  # of edited ones the job decides
         return
-    what = "exists, and is not as a command has written it: it is replaced only where it is named"
-    named = f"--output {target} replaces it, another name keeps it" if alone else "remove it, or choose another folder"
-    raise InputError(Problem(target, 0, what, named, code="FIL250"))
+    raise InputError(
+        Problem(
+            target,
+            0,
+            Wording("FIL250", "not_as_written", target=target)
+            if alone
+            else Wording("FIL250", "not_as_written_among_others"),
+        )
+    )
 
 
 def output_folder(output: str | None) -> Path | None:
@@ -134,7 +141,7 @@ def output_folder(output: str | None) -> Path | None:
     if output not in ("", "-") and Path(output).is_dir():
         return Path(output)
     if output.endswith(("/", os.sep)):
-        raise InputError(Problem(output, 0, "there is no such folder", "make it first, or name a file", code="FIL220"))
+        raise InputError(Problem(output, 0, Wording("FIL220", "no_folder_for_results")))
     return None
 
 

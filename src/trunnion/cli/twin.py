@@ -8,6 +8,7 @@ from trunnion.cli.results import print_result
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml
+from trunnion.messages import Wording
 
 if TYPE_CHECKING:
     from trunnion.twin.serving import TwinAddresses
@@ -21,12 +22,7 @@ def run(given: Given) -> int:
         return 0
     missing = [name for name, value in (("nc", given.nc), ("machine", given.machine)) if value is None]
     if missing:
-        raise InputError(
-            [
-                argument_problem(name, "is missing", "name the program and its machine", code="ARG130")
-                for name in missing
-            ]
-        )
+        raise InputError([argument_problem(name, Wording("ARG130", "missing_program_and_machine")) for name in missing])
     if given.device_xml is not None:
         setup = {name: given.values[name] for name in ("machine", "subprograms", "zero", "tool_length")}
         write_device_xml(given.nc, output=given.device_xml, **setup)
@@ -59,5 +55,5 @@ def _password() -> str:
         return sys.stdin.readline().rstrip("\r\n")
     password = getpass.getpass("Password: ")
     if getpass.getpass("Once more: ") != password:
-        raise InputError(Problem("password", 0, "is not the same both times", "start again", code="ARG180"))
+        raise InputError(Problem("password", 0, Wording("ARG180", "passwords_differ")))
     return password

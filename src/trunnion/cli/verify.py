@@ -13,6 +13,7 @@ from trunnion.jobs.job import Given
 from trunnion.jobs.post.papers.manifests import verify_manifest
 from trunnion.jobs.verify.reports import add_report, write_report
 from trunnion.jobs.verify.verifying import verify
+from trunnion.messages import Wording
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 from trunnion.wording import counted, one_line
 
@@ -28,9 +29,7 @@ def run(given: Given) -> int:
     if given.machine is None:
         if given.nc.lower().endswith(".json"):
             return _run_manifest(given)
-        raise InputError(
-            argument_problem("machine", "is missing", "name the machine that runs the program", code="ARG130")
-        )
+        raise InputError(argument_problem("machine", Wording("ARG130", "missing_machine_of_program")))
     verification = verify(
         **{**given.arguments(), "machine": load_machine(given.machine)},
         columns=given.report is not None or given.json is not None,
@@ -51,8 +50,7 @@ def _run_manifest(given: Given) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
     stated = (each for each in given.job.options if each.name not in _OF_MANIFESTS)
     if wrong := [each for each in stated if given.values[each.name] != each.empty]:
-        what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
-        raise InputError(argument_problem(wrong[0].name, what, cure, code="ARG130"))
+        raise InputError(argument_problem(wrong[0].name, Wording("ARG130", "not_for_manifest")))
     found = verify_manifest(given.nc, cl=given.cl)
     show(given, lambda: found, map(str, found.files))
     for name in found.not_compared:

@@ -16,6 +16,7 @@ from trunnion.jobs.job import Given
 from trunnion.jobs.twin.recording import machine_feed
 from trunnion.jobs.view.live import LiveMachine, machine_content
 from trunnion.jobs.view.viewing import prepare_view, write_view
+from trunnion.messages import Wording
 from trunnion.options.groups import LIVE
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.live import LiveView
@@ -31,9 +32,9 @@ _OF_MACHINE: Final = ("zero", "tool_length", "part", "fixtures", "tools", "tool_
 def run(given: Given) -> int:
     """Write the page, or serve it until the user ends it."""
     if given.live is None and not given.nc:
-        raise InputError(argument_problem("nc", "is missing", "name a program, CL files or a project", code="ARG130"))
+        raise InputError(argument_problem("nc", Wording("ARG130", "missing_what_is_viewed")))
     if given.live is not None and given.output is not None:
-        raise InputError(argument_problem("live", "is for a page that is served", "leave --output out", code="ARG130"))
+        raise InputError(argument_problem("live", Wording("ARG130", "live_is_served")))
     shown = given.arguments("output", "cl", *_LIVE) | {"cl": as_read(given, given.cl)}
     if given.strict:
         as_read(given, [file for file in given.nc if is_cl_file(Path(file))])
@@ -56,7 +57,7 @@ def run(given: Given) -> int:
 def _live(given: Given, shown: dict[str, Any]) -> tuple[ViewContent, LiveView]:
     """Return what is shown of a machine that moves, and the machine; its program is shown where one is named."""
     if given.machine is None:
-        raise InputError(argument_problem("machine", "is missing", "say which machine it is", code="ARG130"))
+        raise InputError(argument_problem("machine", Wording("ARG130", "missing_live_machine")))
     access = {name: given.values[name] for name in _LIVE}
     make = partial(machine_feed, given.live, password=machine_password(given.user), **access)
     LiveMachine(make, given.machine).check()

@@ -28,6 +28,7 @@ from trunnion.jobs.project.file import load_project
 from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Project
 from trunnion.jobs.simulate.posted import simulation_files
+from trunnion.messages import Wording
 from trunnion.wording import counted, one_line
 
 
@@ -96,7 +97,7 @@ class _Told:
             with output_group() as group:
                 may_run, written = self._work.post(group)
                 if not is_unchanged():
-                    raise _ChangedError(Problem(self._work.name, 0, "has changed while it was posted", code="PRJ160"))
+                    raise _ChangedError(Problem(self._work.name, 0, Wording("PRJ160", "changed_while_posted")))
         except (TrunnionError, OSError) as error:
             self._tell(_failure(error, is_unchanged()))
             self._warn_of_old_programs()

@@ -22,7 +22,7 @@ from trunnion.controls.vocabulary import (
     WRITER_FORMATS,
 )
 from trunnion.definitions import Table
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.errors import Problem, key_subject
 from trunnion.messages import Wording
 
@@ -57,7 +57,7 @@ def _report_brace(table: Table, template: Template, text: str) -> None:
 def _report_format(table: Table, template: Template, control: Control, name: str, number_format: str) -> None:
     """Report a format, or in a text a filter, that there is not."""
     filters = FILTERS if template.is_text else frozenset[str]()
-    near = did_you_mean(number_format, {*control.formats, *filters})
+    near = meant_word(number_format, {*control.formats, *filters})
     known = tuple(sorted({*control.formats, *filters}))
     line = next((k for k, fields in enumerate(template.fields_by_line()) if (name, number_format) in fields), 0)
     is_filter = template.is_text and not re.search(rf":{number_format}\}}", template.lines[line])
@@ -82,7 +82,7 @@ def _check_names(
     """Report values that there are not, at the line where a template asks for them."""
     known |= LISTS if template.is_text else frozenset()
     for name in sorted({name for name, _ in fields} - known):
-        near = did_you_mean(name, known)
+        near = meant_word(name, known)
         if near and template.is_text:
             wording = Wording("DEF510", "no_value_but_near", name=name, near=near)
         elif near:
@@ -105,7 +105,7 @@ def check_formats(entries: Sequence[Table], control: Control) -> None:
     for entry in entries:
         name = entry.text("name")
         if name not in used and "name" in entry:
-            near = did_you_mean(name, control.formats.keys() - {name})
+            near = meant_word(name, control.formats.keys() - {name})
             entry.add_problem(
                 "name",
                 Wording("DEF515", "format_nothing_prints", name=repr(name), near=near)

@@ -34,6 +34,7 @@ from trunnion.controls.vocabulary import (
     WITHOUT_TCP,
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat, Word
+from trunnion.messages import Wording, phrase
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.motion import MachiningMode
 
@@ -227,23 +228,23 @@ class Control:
         rules = self.method_defaults.get(setting, ())
         return next((value for part, value in rules if part.upper() in method.upper()), None)
 
-    def setting_cure(self, name: str, text: str) -> str | None:
-        """Return what to write instead of a text that a setting may not be; None if it may.
+    def allowed_instead(self, name: str, text: str) -> Wording | None:
+        """Return what to write instead of a text that a setting may not be, a phrase; None if it may.
 
         A number that a template prints must not print as 0 unless it is 0.
         """
         formats = [self.formats[number_format] for number_format in self._printing_formats(name)]
         rule = self.setting_rule(name)
         if not rule.allows(text):
-            return rule.cure()
+            return rule.allowed()
         if rule.kind is SettingKind.TOOL and tool_number(text or "0") is None:
             try:
                 self.family.tool_call(0, text.strip('"'), by_name=True)
             except UnsupportedFeatureError:
-                return rule.cure()
+                return rule.allowed()
         for number_format in (each for pair in formats if text for each in (pair.five_axis, pair.three_axis)):
             if float(text) and number_format.text(float(text)) == number_format.text(0.0):
-                return f"write at least {number_format.digit:.9g}: the program would say 0"
+                return phrase("at_least_a_digit", digit=number_format.digit)
         return None
 
     def setting_rule(self, name: str) -> SettingRule:

@@ -141,8 +141,10 @@ class FamilyWriter(Protocol):
         ``spindle_known`` tells whether a spindle speed is active from an earlier operation.
         """
 
-    def validate_settings(self, settings: Mapping[str, str]) -> list[tuple[str, str]]:
-        """Return the invalid settings, each with its cure; those of ``SETTING_CHOICES`` are checked elsewhere."""
+    def validate_settings(self, settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
+        """Return the invalid settings, each with the phrase of what to write; those of ``SETTING_CHOICES`` are checked
+        elsewhere.
+        """
 
     def cycle_call(
         self, cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats

@@ -30,7 +30,7 @@ from trunnion.definitions import LocatedValue, Table, definition_names, resolve_
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.errors import InputError
 from trunnion.families import FAMILIES, load_writer
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.axis_tolerance import AxisTolerance
 
 #: What may stand for 0: nothing, which is as other numbers, or a text that a control reads as 0.
@@ -138,7 +138,7 @@ def _read_format(entry: Table) -> FormatPair:
         "trailing_zeros": entry.flag("trailing_zeros", False),
         "plus": entry.flag("plus", False),
     }
-    zero = entry.text("zero", "", pattern=_ZERO, form='0 as the control has it, such as "0.0", in at most 8 characters')
+    zero = entry.text("zero", "", pattern=_ZERO, form=phrase("zero_of_control"))
     least, greatest = entry.number("least", -99999999.0), entry.number("greatest", 99999999.0)
     pair = [
         NumberFormat(n, zero=zero, least=least, greatest=greatest, **common) for n in (decimals, decimals_three_axis)
@@ -171,7 +171,7 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
     name = entry.text("name", one_of=words)
     rotary = name.startswith(("primary", "secondary"))
     letter = entry.text("letter", "") if rotary else entry.text("letter")
-    closing = entry.text("closing", "", pattern="[ -~]?", form="one character")
+    closing = entry.text("closing", "", pattern="[ -~]?", form=phrase("one_character"))
     most = 4 if rotary else 8
     if len(letter.encode()) > most:
         entry.add_problem("letter", Wording("DEF530", "is", letter=repr(letter), most=most))
@@ -298,16 +298,16 @@ def _check_settings(table: Table, by_method: Sequence[Table], control: Control) 
     for name, value in control.settings.items():
         if name == "preselect" and value == "on" and not control.family.tool_preselection("1"):
             table.add_problem(name, Wording("DEF520", "not_known_how"))
-        cure = control.setting_cure(name, value)
-        if cure and name in table:
-            table.add_problem(name, f"is {value!r}", cure, code="DEF520")
-    for name, cure in control.family.validate_settings(control.settings):
-        table.add_problem(name, f"is {control.settings[name]!r}", cure, code="DEF520")
+        allowed = control.allowed_instead(name, value)
+        if allowed is not None and name in table:
+            table.add_problem(name, Wording("DEF520", "not_allowed", value=repr(value), allowed=allowed))
+    for name, allowed in control.family.validate_settings(control.settings):
+        table.add_problem(name, Wording("DEF520", "not_allowed", value=repr(control.settings[name]), allowed=allowed))
     for entry in by_method:
         value = entry.text("value")
-        cure = control.setting_cure(entry.text("setting"), value)
-        if cure:
-            entry.add_problem("value", f"is {value!r}", cure, code="DEF520")
+        allowed = control.allowed_instead(entry.text("setting"), value)
+        if allowed is not None:
+            entry.add_problem("value", Wording("DEF520", "not_allowed", value=repr(value), allowed=allowed))
 
 
 def _read_method_defaults(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tuple[str, str], ...]]:

@@ -12,7 +12,8 @@ from enum import StrEnum
 from typing import Final
 
 from trunnion.definitions import Table
-from trunnion.messages import Wording
+from trunnion.definitions.messages import a_number, a_whole_number
+from trunnion.messages import Wording, phrase
 
 #: Controls read numbers without an exponent.
 _NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)")
@@ -54,20 +55,11 @@ class SettingKind(StrEnum):
 
 #: The texts of some kinds, and how to say what they are.
 _FORMS: Final = {
-    SettingKind.STRING: (re.compile(r'[^"]*'), "a text without quotation marks"),
-    SettingKind.QUOTED: (re.compile(r'"[^"]*"'), "a text in quotation marks"),
-    SettingKind.PATH: (
-        re.compile(r"[A-Za-z0-9_:./\\-]*[/\\]"),
-        "a folder with / or \\ at its end, of letters, digits and _ - . : / \\",
-    ),
-    SettingKind.G_CODE: (
-        re.compile(r"G(?!0*[0-4]$)[0-9]{1,3}(\.[1-9])?"),
-        "a G code, such as G43.4, and none of motion (G0 to G4)",
-    ),
-    SettingKind.M_CODE: (
-        re.compile(r"M(?!0*(?:[0-9]|30|98|99)$)[0-9]{1,4}"),
-        "an M code, such as M29, and none of those that are alike on all controls (M0 to M9, M30, M98, M99)",
-    ),
+    SettingKind.STRING: (re.compile(r'[^"]*'), phrase("text_without_quotation_marks")),
+    SettingKind.QUOTED: (re.compile(r'"[^"]*"'), phrase("text_in_quotation_marks")),
+    SettingKind.PATH: (re.compile(r"[A-Za-z0-9_:./\\-]*[/\\]"), phrase("folder_of_control")),
+    SettingKind.G_CODE: (re.compile(r"G(?!0*[0-4]$)[0-9]{1,3}(\.[1-9])?"), phrase("g_code")),
+    SettingKind.M_CODE: (re.compile(r"M(?!0*(?:[0-9]|30|98|99)$)[0-9]{1,4}"), phrase("m_code")),
 }
 
 
@@ -126,29 +118,28 @@ class SettingRule:
             and (self.at_most is None or value <= self.at_most)
         )
 
-    def cure(self) -> str:
-        """Return what to write, such as ``write a number above 0 and of at most 10, mm``."""
-        nothing = ", or nothing" if self.optional else ""
-        some = "" if self.optional else ", of at least one character"
+    def allowed(self) -> Wording:
+        """Return what to write, such as ``a number in mm above 0 and of at most 10``: a phrase."""
+        bounds = (self.above, self.at_least, self.at_most)
         match self.kind:
-            case SettingKind.NUMBER | SettingKind.WHOLE:
-                what = "a whole number" if self.kind is SettingKind.WHOLE else "a number"
-                unit = f", {self.unit}" if self.unit else ""
-                return f"write {what}{self._bounds()}{unit}{nothing}"
+            case SettingKind.NUMBER:
+                return self._or_nothing(a_number(self.unit, *bounds))
+            case SettingKind.WHOLE:
+                return self._or_nothing(a_whole_number(self.unit, *bounds))
             case SettingKind.CHOICE:
-                return f"write {' or '.join(self.one_of)}{nothing}"
+                return self._or_nothing(phrase("either_of", words=self.one_of))
+            case SettingKind.TOOL if self.at_most is None:
+                return phrase("number_of_tool")
             case SettingKind.TOOL:
-                most = "" if self.at_most is None else f" and at most {self.at_most:.10g}"
-                return f"write the tool's number, such as 5, without zeros before it{most}"
+                return phrase("number_of_tool_at_most", most=self.at_most)
             case SettingKind.TEXT:
-                return f"write a text of one line{some}"
+                return phrase("text_of_one_line") if self.optional else phrase("text_of_one_line_not_empty")
             case _:
-                return f"write {_FORMS[self.kind][1]}{nothing or some}"
+                form = _FORMS[self.kind][1]
+                return self._or_nothing(form) if self.optional else phrase("not_empty", form=form)
 
-    def _bounds(self) -> str:
-        parts = (("above", self.above), ("of at least", self.at_least), ("of at most", self.at_most))
-        text = " and ".join(f"{words} {value:.10g}" for words, value in parts if value is not None)
-        return f" {text}" if text else ""
+    def _or_nothing(self, allowed: Wording) -> Wording:
+        return phrase("or_nothing", allowed=allowed) if self.optional else allowed
 
 
 def is_one_line(text: str) -> bool:

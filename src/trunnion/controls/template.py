@@ -163,7 +163,8 @@ def number_text(name: str, number: float, number_format: NumberFormat) -> str:
     """
     if not number_format.least <= number <= number_format.greatest:
         limit = number_format.least if number < number_format.least else number_format.greatest
-        raise WordRangeError(f"{name.replace('_', ' ')} {number:g} is beyond {limit:g}")
+        shown = name.replace("_", " ")
+        raise WordRangeError(Wording("CTL110", "number_beyond_format", name=shown, value=number, limit=limit))
     return number_format.text(number)
 
 

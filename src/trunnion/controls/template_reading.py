@@ -17,6 +17,7 @@ from trunnion.controls.vocabulary import (
 )
 from trunnion.definitions import Table
 from trunnion.errors import Problem, key_subject
+from trunnion.messages import Wording
 
 #: What only a template with statements or expressions has in it.
 _TEXT_SIGNS: Final = ("{%", "{{", "{#")
@@ -70,7 +71,6 @@ def _read_text_template(table: Table, name: str, text: str) -> Template:
     if fault is not None:
         file, line = template.place_of(max(fault.line, 1) - 1)
         key = table.key_path(name)
-        table.problems.append(
-            Problem(file, line, f"{key} {fault.what}", fault.cure, subject=key_subject(key), code="DEF570")
-        )
+        wording = Wording("DEF570", "cannot_be_read", fault=fault.wording).of_key(key)
+        table.problems.append(Problem(file, line, wording, subject=key_subject(key)))
     return template

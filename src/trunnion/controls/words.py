@@ -11,6 +11,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.jit import kernel
+from trunnion.messages import Wording
 
 #: The count of a word that is not in the block.
 ABSENT = np.iinfo(np.int64).min
@@ -111,14 +112,13 @@ class Word:
 class WordRangeError(InputError):
     """A number beyond the limits of its format; ``row`` of a table that has it."""
 
-    def __init__(self, what: str, row: int = 0, file: str = "program", line: int = 0) -> None:
-        cure = "correct it in the CL file; the control's definition has the limits of the word's format"
-        super().__init__(Problem(file, line, what, cure, code="CTL110"))
-        self.what, self.row, self.line = what, row, line
+    def __init__(self, wording: Wording, row: int = 0, file: str = "program", line: int = 0) -> None:
+        super().__init__(Problem(file, line, wording))
+        self.wording, self.row, self.line = wording, row, line
 
     def at(self, file: str, line: int) -> "WordRangeError":
         """Return the error with the file and the line of the CL file to which it belongs, unless it has them."""
-        return self if self.line else WordRangeError(self.what, self.row, file, line)
+        return self if self.line else WordRangeError(self.wording, self.row, file, line)
 
 
 @kernel(writes="out")

@@ -23,8 +23,9 @@ _BEFORE_OTHERS, _AFTER_OTHERS = -1, 1 << 60
 #: The register of radius compensation, on controls that name one.
 _REGISTER = re.compile(r"(?<![A-Z])D0*(\d{1,4})(?![\d.])")
 
-#: Diagnostics of the reader that become events here.
-COMPENSATION_FINDINGS = ("G41:", "G42:", "RL:", "RR:")
+#: Words that become events here, and what a reader says of them.
+COMPENSATION_WORDS = ("G41", "G42", "RL", "RR")
+COMPENSATION_FINDINGS = ("radius_compensation", "not_simulated")
 
 
 class ProgramEvent(NamedTuple):

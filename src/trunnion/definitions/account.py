@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Final, Self
 
 from trunnion.definitions.expected import Expected, Form, Question
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
 from trunnion.errors import InputError, Problem, key_subject
@@ -165,7 +165,7 @@ class TableAccount:
             if similar and unit_of(key) != unit_of(similar):
                 self.add_problem(key, Wording("DEF325", "unit_does_not", similar=similar, unit_of=unit_of(similar)))
             else:
-                near = did_you_mean(key, self.read_keys)
+                near = meant_word(key, self.read_keys)
                 if near:
                     self.add_problem(key, Wording("DEF320", "unknown_but_near", near=near))
                 else:

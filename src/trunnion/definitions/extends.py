@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final, TypeAlias
 
 from trunnion.definitions.merging import merge
-from trunnion.definitions.messages import as_written, did_you_mean
+from trunnion.definitions.messages import as_written, meant_word
 from trunnion.definitions.source_lines import KeyPath, LocatedValue, layout, locate_values, texts_below
 from trunnion.definitions.table import Table
 from trunnion.definitions.toml_faults import toml_fault
@@ -128,7 +128,7 @@ def _syntax_problem(label: str, text: str, message: str) -> Problem:
         key = text.split("\n")[line - 1].partition("=")[0].strip()
         return Problem(label, line, Wording("DEF130", "not_toml_already", key=key))
     fault = toml_fault(text, line, what)
-    return Problem(label, fault.line, f"is not TOML: {fault.what}", fault.cure, code="DEF130")
+    return Problem(label, fault.line, fault.wording)
 
 
 def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> _DefinitionFile:
@@ -143,9 +143,14 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
         found = _shipped(name, library)
         if not _is_file(found.location):
             names = definition_names(library)
-            cure = did_you_mean(name, names) or "write one of " + ", ".join(names)
-            cure = cure if names else "write the path of a .toml file in the same folder or below it"
-            raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure, code="DEF210"))
+            near = meant_word(name, names)
+            if near:
+                wording = Wording("DEF210", "extends_nothing_shipped_but_near", name=name, near=near)
+            elif names:
+                wording = Wording("DEF210", "extends_nothing_shipped", name=name, names=tuple(names))
+            else:
+                wording = Wording("DEF210", "extends_no_name", name=name)
+            raise InputError(Problem(file, line, wording))
         return found
     cure = "write the name of a shipped definition, or the path of a .toml file in the same folder or below it"
     if name.casefold().endswith(".toml") and not name.endswith(".toml"):
@@ -282,7 +287,7 @@ def load_table(
                 raise InputError(
                     Problem(text, 0, Wording("DEF110", "file_not_found", with_article=_with_article(kind)))
                 )
-            near = did_you_mean(text, names)
+            near = meant_word(text, names)
             raise InputError(
                 Problem(
                     text,

@@ -4,7 +4,7 @@ Tables merge key by key. Arrays of tables with names merge by name: those that b
 ``remove = true`` takes one out. Any other value of the child replaces that of the parent.
 """
 
-from trunnion.definitions.messages import as_written, did_you_mean
+from trunnion.definitions.messages import as_written, meant_word
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.errors import Problem
 from trunnion.messages import Wording
@@ -61,8 +61,12 @@ def _merge_by_name(
             if keep_removals:
                 result = [old for old in result if _name_of(old) != name] + [item]
             elif at is None:
-                near = did_you_mean(name, map(str, map(_name_of, result)))
-                wording = Wording("DEF230", "nothing_to_remove", item=item_path, path=path, name=name, near=near)
+                near = meant_word(name, map(str, map(_name_of, result)))
+                wording = (
+                    Wording("DEF230", "nothing_to_remove_but_near", item=item_path, path=path, name=name, near=near)
+                    if near
+                    else Wording("DEF230", "nothing_to_remove", item=item_path, path=path, name=name)
+                )
                 problems.append(Problem(remove.file, remove.line, wording))
             else:
                 del result[at]

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Final
 
 from trunnion.definitions.source_lines import LocatedValue
-from trunnion.definitions.units import unit_of
+from trunnion.messages import Wording, phrase
 from trunnion.wording import nearest_word
 
 _MAX_SHOWN = 60
@@ -30,49 +30,53 @@ def as_written(value: object) -> str:
     return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."
 
 
-def did_you_mean(word: str, known: Iterable[str], other_names: Mapping[str, str] = _NO_NAMES) -> str:
-    """Return a question for the known word that resembles an unknown one, or has it as another name; empty if none
-    does.
+def meant_word(word: str, known: Iterable[str], other_names: Mapping[str, str] = _NO_NAMES) -> str:
+    """Return the known word that resembles an unknown one, or has it as another name; empty if none does.
 
     ``other_names`` are in small letters, and in letters alone.
     """
-    other = other_names.get("".join(filter(str.isalpha, word.lower())))
-    near = other or nearest_word(word, known)
-    return f'did you mean "{near}"?' if near else ""
+    return other_names.get("".join(filter(str.isalpha, word.lower()))) or nearest_word(word, known)
 
 
-def a_number(key: str) -> str:
-    """Return the words "a number", with the unit of the key."""
-    unit = unit_of(key)
-    return f"a number in {unit}" if unit else "a number"
+def a_number(
+    unit: str = "", above: float | None = None, at_least: float | None = None, at_most: float | None = None
+) -> Wording:
+    """Return what to write where a number is wanted: a phrase."""
+    bounds = _bounds(above, at_least, at_most)
+    if unit and bounds:
+        return phrase("number_in_unit_within", unit=unit, bounds=bounds)
+    if unit:
+        return phrase("number_in_unit", unit=unit)
+    return phrase("number_within", bounds=bounds) if bounds else phrase("number")
 
 
-def in_unit(key: str, separator: str) -> str:
-    """Return the words "in" and the unit of the key, after a separator; empty if it has none."""
-    unit = unit_of(key)
-    return f"{separator}in {unit}" if unit else ""
+def a_whole_number(
+    unit: str = "", above: float | None = None, at_least: float | None = None, at_most: float | None = None
+) -> Wording:
+    """Return what to write where a whole number is wanted: a phrase."""
+    bounds = _bounds(above, at_least, at_most)
+    if unit and bounds:
+        return phrase("whole_number_in_unit_within", unit=unit, bounds=bounds)
+    if unit:
+        return phrase("whole_number_in_unit", unit=unit)
+    return phrase("whole_number_within", bounds=bounds) if bounds else phrase("whole_number")
 
 
-def bounds(above: float | None, at_least: float | None, at_most: float | None) -> str:
-    """Return the bounds of a number in words, after a blank; empty if there are none."""
-    parts = [
-        f"above {above:g}" if above is not None else "",
-        f"of at least {at_least:g}" if at_least is not None else "",
-        f"of at most {at_most:g}" if at_most is not None else "",
-    ]
-    text = " and ".join(part for part in parts if part)
-    return f" {text}" if text else ""
+def _bounds(above: float | None, at_least: float | None, at_most: float | None) -> tuple[Wording, ...]:
+    return (
+        *(() if above is None else (phrase("bound_above", bound=above),)),
+        *(() if at_least is None else (phrase("bound_at_least", bound=at_least),)),
+        *(() if at_most is None else (phrase("bound_at_most", bound=at_most),)),
+    )
 
 
 def unquoted(key: str, value: object) -> str:
-    """Return a hint how to write a number that is in quotes, after a comma; empty if there is none in ``value``."""
+    """Return the line in which a number that is in quotes has none; empty if ``value`` is none."""
     found = _NUMBER.match(value.strip()) if isinstance(value, str) else None
-    return f", without quotes and unit: {key} = {found.group()}" if found else ""
+    return f"{key} = {found.group()}" if found else ""
 
 
 def in_quotes(key: str, value: object) -> str:
-    """Return a hint how to write as a text a number that is not in quotes, after a colon; empty if ``value``
-    is none.
-    """
+    """Return the line in which a number that is not in quotes is a text; empty if ``value`` is none."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return f': {key} = "{value}"' if is_number else ""
+    return f'{key} = "{value}"' if is_number else ""

@@ -2,16 +2,18 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, TypedDict, Unpack, overload
 
 from trunnion.definitions.account import TableAccount
 from trunnion.definitions.expected import GREATEST, Expected, Form
-from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_quotes, in_unit, unquoted
+from trunnion.definitions.messages import a_number, a_whole_number, as_written, in_quotes, meant_word, unquoted
+from trunnion.definitions.numbers import finite, finite_numbers, has_decimal_commas, is_too_large, within
 from trunnion.definitions.source_lines import LocatedValue
-from trunnion.messages import Wording
+from trunnion.definitions.units import unit_of
+from trunnion.messages import Wording, phrase
 
 
 class Required:
@@ -50,27 +52,39 @@ class Table(TableAccount):
     its type, so that reading goes on to the next mistake. ``raise_problems`` raises them all.
     """
 
-    def _get(self, key: str, expected: Expected, cure: str) -> object | None:
+    def _get(self, key: str, expected: Expected, allowed: Callable[[], Wording]) -> object | None:
+        """Return the value of a key; ``allowed`` makes the phrase of what may be written, which is seldom needed."""
         self.read_keys[key] = None
         self._note(key, expected)
         content = self._values.get(key)
         if content is None:
             if expected.required:
-                self.add_problem(key, "is missing", cure, code="DEF310")
+                self.add_problem(key, Wording("DEF310", "missing", allowed=allowed()))
             return None
         return content.value
+
+    def _refuse(self, key: str, value: object, allowed: Wording, numbers: int = 1) -> None:
+        """Note a value that cannot be, with a hint where it is a slip that people make."""
+        shown = as_written(value)
+        if is_too_large(value):
+            wording = Wording("DEF330", "too_large", value=shown, allowed=allowed, least=-GREATEST, greatest=GREATEST)
+        elif has_decimal_commas(value, numbers):
+            wording = Wording("DEF330", "decimal_commas", value=shown, allowed=allowed)
+        else:
+            wording = Wording("DEF330", "not_allowed", value=shown, allowed=allowed)
+        self.add_problem(key, wording)
 
     @overload
     def text(
         self, key: str, default: str | Required = ..., *,
         one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
-        pattern: str = ..., form: str = ...,
+        pattern: str = ..., form: Wording | None = ...,
     ) -> str: ...  # fmt: skip
     @overload
     def text(
         self, key: str, default: None, *,
         one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
-        pattern: str = ..., form: str = ...,
+        pattern: str = ..., form: Wording | None = ...,
     ) -> str | None: ...  # fmt: skip
     def text(
         self,
@@ -81,31 +95,38 @@ class Table(TableAccount):
         other_names: Mapping[str, str] = _NO_NAMES,
         example: str = "",
         pattern: str = "",
-        form: str = "",
+        form: Wording | None = None,
     ) -> str | None:
         """Return a text; with ``one_of``, one of these words, to which ``other_names`` lead in a message.
 
-        With ``pattern`` all of it matches this regular expression, and ``form`` says in words what to write. An empty
-        text, or one that does not match, is the default; a required one is returned as it is.
+        With ``pattern`` all of it matches this regular expression, and ``form`` is the phrase of what to write. An
+        empty text, or one that does not match, is the default; a required one is returned as it is.
         """
         fallback = "" if isinstance(default, Required) else default
-        words = ", ".join(f'"{word}"' for word in one_of)
-        such_as = f', such as "{example}"' if example else ""
-        cure = f"write one of {words}" if one_of else f"write a text in quotes{such_as}"
-        cure = f"write {form}" if form else cure
+
+        def allowed() -> Wording:
+            return form or _a_text(one_of, example)
+
         required = isinstance(default, Required)
         value = self._get(
-            key, Expected(Form.TEXT, required, _told(default), one_of=tuple(one_of), pattern=pattern), cure
+            key, Expected(Form.TEXT, required, _told(default), one_of=tuple(one_of), pattern=pattern), allowed
         )
         if value is None:
             return fallback
         if not isinstance(value, str) or (one_of and value not in one_of):
-            near = did_you_mean(value, one_of, other_names) if isinstance(value, str) else ""
+            near = meant_word(value, one_of, other_names) if isinstance(value, str) else ""
             quoted = "" if one_of or example else in_quotes(key, value)
-            self.add_problem(key, f"is {as_written(value)}", (near + " " + cure if near else cure) + quoted)
+            shown = as_written(value)
+            if near:
+                wording = Wording("DEF330", "not_allowed_but_near", value=shown, near=near, allowed=allowed())
+            elif quoted:
+                wording = Wording("DEF330", "not_in_quotes", value=shown, allowed=allowed(), line=quoted)
+            else:
+                wording = Wording("DEF330", "not_allowed", value=shown, allowed=allowed())
+            self.add_problem(key, wording)
             return fallback
         if pattern and not re.fullmatch(pattern, value):
-            self.add_problem(key, f"is {as_written(value)}", cure)
+            self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed()))
             return fallback
         return value
 
@@ -117,28 +138,23 @@ class Table(TableAccount):
         """Return a _finite number, in the unit that the key names."""
         fallback = 0.0 if isinstance(default, Required) else default
         above, at_least, at_most = limits.get("above"), limits.get("at_least"), limits.get("at_most")
-        cure = f"write {a_number(key)}{bounds(above, at_least, at_most)}"
+
+        def allowed() -> Wording:
+            return a_number(unit_of(key), above, at_least, at_most)
+
         expected = Expected(
             Form.NUMBER, isinstance(default, Required), _told(default), above=above, at_least=at_least, at_most=at_most
         )
-        value = self._get(key, expected, cure)
+        value = self._get(key, expected, allowed)
         if value is None:
             return fallback
-        number = _finite(value)
-        if number is None:
-            self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value) + _magnitude(value))
+        number = finite(value)
+        if line := unquoted(key, value):
+            wording = Wording("DEF330", "in_quotes", value=as_written(value), allowed=allowed(), line=line)
+            self.add_problem(key, wording)
             return fallback
-        if not _within(number, above, at_least, at_most):
-            self.add_problem(
-                key,
-                Wording(
-                    "DEF330",
-                    "is",
-                    value=as_written(value),
-                    a_number=a_number(key),
-                    bounds=bounds(above, at_least, at_most),
-                ),
-            )
+        if number is None or not within(number, above, at_least, at_most):
+            self._refuse(key, value, allowed())
             return fallback
         return number
 
@@ -151,29 +167,20 @@ class Table(TableAccount):
         fallback = 0 if isinstance(default, Required) else default
         at_least, at_most = limits.get("at_least"), limits.get("at_most")
         nothing = limits.get("nothing", "")
-        cure = f"write a whole number{bounds(None, at_least, at_most)}" + (f', or "{nothing}"' if nothing else "")
+
+        def allowed() -> Wording:
+            number = a_whole_number("", None, at_least, at_most)
+            return phrase("number_or_word", number=number, word=nothing) if nothing else number
+
         expected = Expected(
             Form.WHOLE, isinstance(default, Required), _told(default), at_least=at_least, at_most=at_most,
             nothing=nothing,
         )  # fmt: skip
-        value = self._get(key, expected, cure)
+        value = self._get(key, expected, allowed)
         if value is None or (nothing and value == nothing):
             return fallback
-        if not isinstance(value, int) or isinstance(value, bool) or not _within(value, None, at_least, at_most):
-            self.add_problem(
-                key,
-                Wording(
-                    "DEF330",
-                    "is_or_write",
-                    value=as_written(value),
-                    bounds=bounds(None, at_least, at_most),
-                    nothing=nothing,
-                )
-                if nothing
-                else Wording(
-                    "DEF330", "is_or_write_whole", value=as_written(value), bounds=bounds(None, at_least, at_most)
-                ),
-            )
+        if not isinstance(value, int) or isinstance(value, bool) or not within(value, None, at_least, at_most):
+            self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed()))
             return fallback
         return value
 
@@ -185,11 +192,11 @@ class Table(TableAccount):
         """Return true or false."""
         fallback = False if isinstance(default, Required) else default
         expected = Expected(Form.FLAG, isinstance(default, Required), _told(default))
-        value = self._get(key, expected, "write true or false")
+        value = self._get(key, expected, lambda: phrase("true_or_false"))
         if value is None:
             return fallback
         if not isinstance(value, bool):
-            self.add_problem(key, Wording("DEF330", "is_or_write_true", value=as_written(value)))
+            self.add_problem(key, Wording("DEF330", "no_flag", value=as_written(value)))
             return fallback
         return value
 
@@ -202,13 +209,13 @@ class Table(TableAccount):
     ) -> tuple[float, ...] | None:
         """Return n _finite numbers, in the unit that the key names."""
         fallback = (0.0,) * n if isinstance(default, Required) else None if default is None else tuple(default)
-        cure = f"write [{', '.join('abcdefgh'[:n])}] with {n} numbers{in_unit(key, ' ')}"
-        value = self._get(key, Expected(Form.VECTOR, isinstance(default, Required), _told(default), size=n), cure)
+        expected = Expected(Form.VECTOR, isinstance(default, Required), _told(default), size=n)
+        value = self._get(key, expected, lambda: _a_vector(n, unit_of(key)))
         if value is None:
             return fallback
-        numbers = _finite_numbers(value)
+        numbers = finite_numbers(value)
         if numbers is None or len(numbers) != n:
-            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value) + _decimals(value, n))
+            self._refuse(key, value, _a_vector(n, unit_of(key)), n)
             return fallback
         return numbers
 
@@ -221,18 +228,21 @@ class Table(TableAccount):
     ) -> tuple[float, float] | None:
         """Return [low, high] with low < high, in the unit that the key names."""
         fallback = (-math.inf, math.inf) if isinstance(default, Required) else default
-        cure = f"write [low, high] with low < high{in_unit(key, ', ')}"
-        value = self._get(key, Expected(Form.INTERVAL, isinstance(default, Required), _told(default), size=2), cure)
+        expected = Expected(Form.INTERVAL, isinstance(default, Required), _told(default), size=2)
+        value = self._get(key, expected, lambda: _an_interval(unit_of(key)))
         if value is None:
             return fallback
-        numbers = _finite_numbers(value)
+        numbers = finite_numbers(value)
         if numbers is None or len(numbers) != 2:
-            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value) + _decimals(value, 2))
+            self._refuse(key, value, _an_interval(unit_of(key)), 2)
             return fallback
         low, high = numbers
-        if low >= high:
-            swapped = f": [{high:g}, {low:g}]?" if low > high else ""
-            self.add_problem(key, f"is {as_written(value)}", cure + swapped)
+        if low > high:
+            shown, allowed = as_written(value), _an_interval(unit_of(key))
+            self.add_problem(key, Wording("DEF330", "swapped", value=shown, allowed=allowed, low=high, high=low))
+            return fallback
+        if low == high:
+            self._refuse(key, value, _an_interval(unit_of(key)), 2)
             return fallback
         return low, high
 
@@ -243,94 +253,71 @@ class Table(TableAccount):
     def texts(self, key: str, default: Sequence[str] | Required | None = REQUIRED) -> tuple[str, ...] | None:
         """Return a list of texts."""
         fallback = () if isinstance(default, Required) else None if default is None else tuple(default)
-        cure = 'write ["one", "two"]'
-        value = self._get(key, Expected(Form.TEXTS, isinstance(default, Required), _told(default)), cure)
+        expected = Expected(Form.TEXTS, isinstance(default, Required), _told(default))
+        value = self._get(key, expected, lambda: phrase("list_of_texts"))
         if value is None:
             return fallback
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            shown = as_written(value)
             self.add_problem(
                 key,
-                Wording("DEF330", "is_2", value=as_written(value))
+                Wording("DEF330", "text_for_list", value=shown)
                 if isinstance(value, str)
-                else Wording("DEF330", "is_or_write_one", value=as_written(value)),
+                else Wording("DEF330", "not_allowed", value=shown, allowed=phrase("list_of_texts")),
             )
             return fallback
         return tuple(str(item) for item in value)
 
     def table(self, key: str, *, required: bool = False) -> "Table":
         """Return the table under a key; an empty one if there is none."""
-        cure = f"write a table [{self.key_path(key)}]"
-        value = self._get(key, Expected(Form.TABLE, required), cure)
+
+        def allowed() -> Wording:
+            return phrase("table", key=self.key_path(key))
+
+        value = self._get(key, Expected(Form.TABLE, required), allowed)
         if isinstance(value, dict):
             child = self.other(self._values[key], self.problems, self.key_path(key))
         else:
             if value is not None:
-                self.add_problem(
-                    key, Wording("DEF330", "is_or_write_table", value=as_written(value), key_path=self.key_path(key))
-                )
+                self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed()))
             child = self.other(LocatedValue({}, self.file, self.line), self.problems, self.key_path(key))
         self.children.append(child)
         return child
 
     def tables(self, key: str, *, required: bool = False) -> "list[Table]":
         """Return the array of tables under a key; an empty list if there is none."""
-        cure = f"write tables [[{self.key_path(key)}]]"
-        value = self._get(key, Expected(Form.TABLES, required), cure)
+
+        def allowed() -> Wording:
+            return phrase("tables", key=self.key_path(key))
+
+        value = self._get(key, Expected(Form.TABLES, required), allowed)
         if value is None or value == []:
             return []
         if not isinstance(value, list) or not all(isinstance(item, LocatedValue) for item in value):
-            self.add_problem(
-                key, Wording("DEF330", "is_or_write_tables", value=as_written(value), key_path=self.key_path(key))
-            )
+            self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed()))
             return []
         children = [self.other(item, self.problems, f"{self.key_path(key)}[{i}]") for i, item in enumerate(value)]
         self.children.extend(children)
         return children
 
 
+def _a_text(one_of: Sequence[str], example: str) -> Wording:
+    if one_of:
+        return phrase("one_of", words=tuple(f'"{word}"' for word in one_of))
+    return phrase("text_such_as", example=example) if example else phrase("text")
+
+
+def _a_vector(n: int, unit: str) -> Wording:
+    letters = tuple("abcdefgh"[:n])
+    if unit:
+        return phrase("vector_in_unit", letters=letters, count=n, unit=unit)
+    return phrase("vector", letters=letters, count=n)
+
+
+def _an_interval(unit: str) -> Wording:
+    return phrase("interval_in_unit", unit=unit) if unit else phrase("interval")
+
+
 def _told(default: object) -> object:
     """Return a default as a file could state it; None where there is none."""
     return None if isinstance(default, Required) else list(default) if isinstance(default, tuple) else default
-
-
-def _finite(value: object) -> float | None:
-    """Return the number that a TOML value is, or None if it is too large or none; true and false are no
-    numbers here.
-    """
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        number = float(value)
-    except OverflowError:
-        return None
-    return number if abs(number) <= GREATEST else None
-
-
-def _magnitude(value: object) -> str:
-    """Return the bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
-    numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
-    return (
-        f", from {-GREATEST:g} to {GREATEST:g}" if any(GREATEST < abs(number) < math.inf for number in numbers) else ""
-    )
-
-
-def _decimals(value: object, n: int) -> str:
-    """Return what to write instead of decimal commas, which make more numbers of an array than it should have."""
-    if not isinstance(value, list) or len(value) <= n or any(not isinstance(each, int) for each in value[1:]):
-        return ""
-    return "; _decimals stand behind a point, such as 90.5"
-
-
-def _finite_numbers(value: object) -> tuple[float, ...] | None:
-    """Return the _finite numbers in a TOML array; None if it holds anything else, or is no array."""
-    numbers = [_finite(item) for item in value] if isinstance(value, list) else [None]
-    found = tuple(number for number in numbers if number is not None)
-    return found if len(found) == len(numbers) else None
-
-
-def _within(number: float, above: float | None, at_least: float | None, at_most: float | None) -> bool:
-    return (
-        (above is None or number > above)
-        and (at_least is None or number >= at_least)
-        and (at_most is None or number <= at_most)
-    )

@@ -70,22 +70,22 @@ class OutputFiles:
         self._papers: list[tuple[Path, BinaryIO, OutputPlace]] = []
         self._sync_thread: ThreadPoolExecutor | None = None
 
-    def add_file(self, name: str, other_name: str = "") -> BinaryIO:
+    def add_file(self, name: str, *, is_numbered: bool = False) -> BinaryIO:
         """Begin a further file in the same folder, and return its sink.
 
-        name        of the file
-        other_name  what gives it another name, for the cure where it has that of somebody else's file
+        name         of the file
+        is_numbered  its name is a number, for the cure where it has that of somebody else's file
 
         Raises ``InputError`` if there cannot be a file of this name beside the first, or if it is one that is read or
         written already, or one that exists and that no earlier job of this first file has written.
         """
-        place = self.check_file(name, other_name)
+        place = self.check_file(name, is_numbered=is_numbered)
         self._claims.write(place)
         path = self.path.parent / name
         self._subprograms[path] = _open(path, place.name), place
         return self._subprograms[path][0]
 
-    def check_file(self, name: str, other_name: str = "") -> OutputPlace:
+    def check_file(self, name: str, *, is_numbered: bool = False) -> OutputPlace:
         """Find out whether ``add_file`` can begin a file, and where it will be; errors are those of ``add_file``."""
         assert self._place is not None, "a stream is one file"
         place = resolve_output(Path(self._place.name).with_name(name))
@@ -95,18 +95,8 @@ class OutputFiles:
         if self._earlier is None or not place.path.exists() or self._earlier.wrote(place.path):
             return place
         if not self._earlier.has_edited(place.path):
-            raise InputError(
-                Problem(
-                    place.name,
-                    0,
-                    Wording(
-                        "FIL250",
-                        "would_replaced_although",
-                        path=Path(self._place.name).name,
-                        other_name=other_name and f", or {other_name}",
-                    ),
-                )
-            )
+            variant = "number_of_other_file" if is_numbered else "name_of_other_file"
+            raise InputError(Problem(place.name, 0, Wording("FIL250", variant, path=Path(self._place.name).name)))
         self._keep_edited(place)
         return place
 

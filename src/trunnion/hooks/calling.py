@@ -19,7 +19,7 @@ from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.hooks import Block, Context
 from trunnion.hooks.checks import fingerprint, operation_fault, value_fault
-from trunnion.hooks.files import HookFile, failure
+from trunnion.hooks.files import HookFile, function_failure
 from trunnion.messages import Wording
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines
@@ -202,7 +202,7 @@ class _Caller:
             with redirect_stdout(sys.stderr):  # the program may go to standard output
                 return self._file.functions[name](given, context)
         except (Exception, SystemExit) as error:
-            raise InputError(failure(self._file.path, error, f"{name} fails for operation {operation.name}")) from error
+            raise InputError(function_failure(self._file.path, error, name, operation.name)) from error
 
     def refuse(self, name: str, wording: Wording) -> InputError:
         """Return the error for what a function has returned."""

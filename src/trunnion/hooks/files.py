@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.messages import Wording
 
@@ -60,12 +60,12 @@ def _load(path: Path) -> HookFile:
         with redirect_stdout(sys.stderr):
             exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
     except (Exception, SystemExit) as error:
-        raise InputError(failure(path, error, "the file of hooks fails")) from error
+        raise InputError(failure(path, error, Wording("HOK120", "file_fails", error=_said(error)))) from error
     named = {name: value for name, value in vars(module).items() if name.startswith("on_") and callable(value)}
     for name, function in named.items():
         if name not in _FUNCTIONS:
             line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
-            near = did_you_mean(name, _FUNCTIONS)
+            near = meant_word(name, _FUNCTIONS)
             wording = (
                 Wording("HOK110", "no_hook_but_near", name=name, near=near)
                 if near
@@ -92,7 +92,7 @@ def _check_signature(path: Path, name: str, function: Callable[..., object]) -> 
         ) from None
 
 
-def failure(path: Path, error: BaseException, what: str) -> Problem:
+def failure(path: Path, error: BaseException, wording: Wording) -> Problem:
     """Return the problem that an exception is, at the line of the file where it came about."""
     line, trace = 0, error.__traceback__
     while trace is not None:
@@ -101,8 +101,16 @@ def failure(path: Path, error: BaseException, what: str) -> Problem:
         trace = trace.tb_next
     if isinstance(error, SyntaxError) and error.filename == str(path):
         line = error.lineno or 0
+    return Problem(str(path), line, wording)
+
+
+def _said(error: BaseException) -> str:
+    """Return what an exception says, in a line."""
     text = str(error).splitlines()
-    said = f": {text[0]}" if text else ""
-    return Problem(
-        str(path), line, f"{what}: {type(error).__name__}{said}", "mend it there, or leave the hooks out", code="HOK120"
-    )
+    return f"{type(error).__name__}: {text[0]}" if text else type(error).__name__
+
+
+def function_failure(path: Path, error: BaseException, name: str, operation: str) -> Problem:
+    """Return the problem that an exception of a function for an operation is, as ``failure``."""
+    wording = Wording("HOK120", "function_fails", name=name, operation=operation, error=_said(error))
+    return failure(path, error, wording)

@@ -20,6 +20,7 @@ from trunnion.jobs.job import STDIN, Given
 from trunnion.jobs.project.file import load_project
 from trunnion.jobs.project.named_files import library_files, project_files, project_inputs
 from trunnion.jobs.result_output import check_output_name
+from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, FileOut
 from trunnion.options.option import Option, outputs
 from trunnion.simulation.meshes import check_mesh_name
@@ -42,8 +43,7 @@ def guard(given: Given) -> list[FilePath]:
     written = [(option, file) for option, file in named if file is not None and not _takes_folder(option, file)]
     streams = [option for option, file in written if file == _STDOUT]
     if len(streams) > 1:
-        what = f"and {streams[1].name} go to stdout both"
-        raise InputError(argument_problem(streams[0].name, what, "let one of them go to a file", code="ARG140"))
+        raise InputError(argument_problem(streams[0].name, Wording("ARG140", "two_to_stdout", other=streams[1].name)))
     files = [(option, file) for option, file in written if file != _STDOUT]
     if not files:
         return []

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, BinaryIO, Final
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn
 from trunnion.options.option import Group, Option, flat
 
@@ -109,7 +110,7 @@ def streams(files: Iterable[str]) -> list[str | BinaryIO]:
     """
     named = list(files)
     if named.count(STDIN) > 1:
-        raise InputError(Problem("stdin", 0, "is named twice", f"write {STDIN} once", code="ARG130"))
+        raise InputError(Problem("stdin", 0, Wording("ARG130", "stdin_twice", stdin=STDIN)))
     return [sys.stdin.buffer if file == STDIN else file for file in named]
 
 

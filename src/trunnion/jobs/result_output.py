@@ -13,6 +13,7 @@ from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output,
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.registry import JOBS
+from trunnion.messages import Wording
 from trunnion.options.kinds import FileOut
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
@@ -185,7 +186,6 @@ def paper_files(
         place = declared_output("post", "manifest", manifest)
         program = Path(output) if isinstance(output, str | os.PathLike) else None
         if program is None or program.parent.resolve() != Path(manifest).parent.resolve():
-            cure = "name a file in the folder of the program, and write the program to a file"
-            raise InputError(Problem(place.name, 0, "a manifest tells of the files beside it", cure, code="FIL320"))
+            raise InputError(Problem(place.name, 0, Wording("FIL320", "manifest_elsewhere")))
     places = (None if each is None else Path(each) for each in (report, sheet, listing, manifest))
     return PaperFiles(*places)

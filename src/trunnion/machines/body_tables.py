@@ -9,7 +9,7 @@ from typing import Final
 from trunnion.definitions import Table
 from trunnion.machines.bodies import PLAIN_COLOUR, BodyBox, BodyCylinder, BodyFile, MachineBody, Vector
 from trunnion.machines.links import FIXED_LINKS
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: More bodies make no machine clearer, and the pairs of them grow with their square.
 MAX_BODIES: Final = 64
@@ -51,7 +51,7 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
     if name != name.strip() or any(not letter.isprintable() for letter in name):
         entry.add_problem("name", Wording("DEF430", "begins_ends_blanks"))
     link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
-    colour = entry.text("colour", PLAIN_COLOUR, pattern=_COLOUR, form='"#rrggbb", such as "#9aa0a6"')
+    colour = entry.text("colour", PLAIN_COLOUR, pattern=_COLOUR, form=phrase("colour"))
     shape = entry.text("shape", one_of=SHAPES)
     made = _solid(entry, shape)
     entry.report_unread_keys()
@@ -73,7 +73,7 @@ def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
         centre, direction = entry.vector("centre_mm", 3), entry.vector("direction", 3, None)
         return BodyCylinder(diameter or 1.0, length or 1.0, _vector(centre), _unit_vector(entry, direction))
     if shape == "file":
-        file = entry.text("file", form="the name of a mesh file")
+        file = entry.text("file", form=phrase("name_of_mesh_file"))
         unit = entry.text("unit", None, one_of=("mm", "inch", "m"))
         _check_file(entry, file)
         origin, turn = entry.vector("origin_mm", 3, None), entry.vector("turn_deg", 3, None)

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 from trunnion.definitions import Table, definition_names, load_table
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.definitions.marked_values import marked_in
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.definitions.value_marks import ASSUMED, MARKS
 from trunnion.errors import InputError, Problem
 from trunnion.machines.body_tables import read_bodies
@@ -30,7 +30,7 @@ from trunnion.machines.machine import (
     PreferredSign,
     Vector,
 )
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: Version of the schema of machine definitions; a new one makes changes to old files necessary.
 SCHEMA: Final = 1
@@ -74,7 +74,7 @@ def check_is_shipped(name: str) -> None:
     """Raise ``InputError`` for a name that is not that of a shipped machine."""
     names = shipped_machines()
     if name not in names:
-        near = did_you_mean(name, names)
+        near = meant_word(name, names)
         raise InputError(
             Problem(
                 name,
@@ -165,7 +165,7 @@ def _demands(proof: Table) -> tuple[str, ...]:
 
 
 def _axis(entry: Table) -> Axis:
-    name = entry.text("name", pattern=_AXIS_NAME, form="a letter, then up to seven letters and digits")
+    name = entry.text("name", pattern=_AXIS_NAME, form=phrase("name_of_axis"))
     word = entry.text("kind", one_of=tuple(AxisKind))
     mount = Mount(entry.text("carries", one_of=tuple(Mount)) or Mount.PART)
     direction = _direction(entry, "direction", None)

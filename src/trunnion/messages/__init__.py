@@ -3,7 +3,7 @@
 The files of ``en`` hold for each code the variants of its message: ``VARIANT.what`` is the fault, ``VARIANT.cure`` how
 to correct it. Another language is another folder. A text is a template:
 
-    {name}, {name:.3f}           a parameter, with a format
+    {name}, {name:.3f}           a parameter, with a format; of a wording its fault, and its cure by {name:cure}
     {count:# line|# lines}       a number with what it counts: its forms for one and for more
     {setting:tool=5}             what a user may set, in the words of who asks (``Words``);
     {argument:trust=X}           so are arguments, and arguments that are switched on
@@ -112,6 +112,14 @@ class Wording:
         """Return the same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
         return self._changed(self.parameters, (*self.around, (sentence, _plain(parameters))))
 
+    def parameter(self, name: str) -> object:
+        """Return a parameter; None if there is none of the name."""
+        return dict(self.parameters).get(name)
+
+    def bare(self) -> Self:
+        """Return the same without sentences around it."""
+        return self._changed(self.parameters, ())
+
     def of_key(self, path: str) -> Self:
         """Return the same of a key of a definition; of the whole definition if the path is empty."""
         return self.within("of_key", key=path) if path else self.within("of_definition")
@@ -216,9 +224,9 @@ def _field(field: str, spec: str, words: Words, parameters: Mapping[str, object]
         return words.switch(filled_in(spec, words, parameters))
     value = parameters[field]
     if isinstance(value, Wording):
-        return value.text("what", words)
+        return value.text("cure" if spec == "cure" else "what", words)
     if isinstance(value, tuple):
-        return spec.join(value)
+        return spec.join(each.text("what", words) if isinstance(each, Wording) else each for each in value)
     if "|" in spec:
         one, more = spec.split("|")
         return (one if value == 1 else more).replace("#", str(value))

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import Clamping, number
 
 #: How the comments begin.
@@ -48,13 +49,13 @@ class HeadNotices:
     clamping     None: nothing, or what cannot be believed
     zero         on the machine, with all axes at zero, (3,) mm; None: it is not stated
     tool_length  for which the zero holds, mm; None: it is not stated
-    faults       what is damaged or contradicts itself, each with its line
+    faults       what is damaged or contradicts itself, each with its line: phrases
     """
 
     clamping: Clamping | None = None
     zero: tuple[float, float, float] | None = None
     tool_length: float | None = None
-    faults: tuple[tuple[int, str], ...] = ()
+    faults: tuple[tuple[int, Wording], ...] = ()
 
 
 def clamped_notices(clamping: Clamping) -> Iterator[str]:
@@ -114,7 +115,7 @@ class _Reader:
     """Collects what notices state, and what of it cannot be believed."""
 
     def __init__(self) -> None:
-        self._faults: list[tuple[int, str]] = []
+        self._faults: list[tuple[int, Wording]] = []
         self._values: dict[str, tuple[float, ...] | None] = {}
         self._lines: dict[str, int] = {}
 
@@ -124,23 +125,24 @@ class _Reader:
                 if found := pattern.fullmatch(whole):
                     self._take(line, pattern, found)
                     return
-        self._damaged(line, text, "is not as it was written")
+        self._damaged(line, text, phrase("notice_not_as_written", notice=text[:100]))
 
     def _take(self, line: int, pattern: re.Pattern[str], found: re.Match[str]) -> None:
         name = {_TILTED: "tilt", _TURNED: "turn", _DRAWN: "drawn", _ZERO: "zero", _LENGTH: "length"}[pattern]
         values = tuple(float(text) for text in found.groups() if text and text not in ("UP", "DOWN"))
         if name in ("tilt", "turn") and abs(values[0]) > 360.0:
-            self._damaged(line, found[0], "has an angle of more than 360 degrees")
+            self._damaged(line, found[0], phrase("notice_with_large_angle", notice=found[0][:100]))
         elif name == "tilt" and (found[2] == "UP") is not (values[0] > 0.0):
-            self._damaged(line, found[0], "has the side for another sign")
+            self._damaged(line, found[0], phrase("notice_of_other_side", notice=found[0][:100]))
         elif name in self._values and self._values[name] not in (None, values):
-            self._damaged(line, found[0], f"contradicts line {self._lines[name]}")
+            fault = phrase("notice_contradicts", notice=found[0][:100], line=self._lines[name])
+            self._damaged(line, found[0], fault)
         else:
             self._values.setdefault(name, values)
             self._lines.setdefault(name, line)
 
-    def _damaged(self, line: int, text: str, why: str) -> None:
-        self._faults.append((line, f'the notice "{text[:100]}" {why}'))
+    def _damaged(self, line: int, text: str, fault: Wording) -> None:
+        self._faults.append((line, fault))
         name = "zero" if text.startswith("WORKPIECE") else "length" if text.startswith("ZERO") else "turn"
         self._values[name] = None
         self._lines.setdefault(name, line)
@@ -149,9 +151,9 @@ class _Reader:
         values, turn = self._values, self._values.get("turn")
         if "drawn" in values and ("turn" in values or "tilt" in values):
             line = self._lines["drawn"]
-            self._faults.append((line, "one notice says that the part is clamped as drawn, and another that it is not"))
+            self._faults.append((line, phrase("notices_contradict")))
         elif "tilt" in values and "turn" not in values:
-            self._faults.append((self._lines["tilt"], "a notice tells the tilt of the part, and none its turn"))
+            self._faults.append((self._lines["tilt"], phrase("notice_of_tilt_alone")))
         elif "drawn" in values or turn is not None:
             tilt = values.get("tilt") or (0.0,)
             return self._stated(Clamping(0.0 if turn is None else turn[0], tilt[0]))
@@ -163,5 +165,5 @@ class _Reader:
             clamping,
             (zero[0], zero[1], zero[2]) if zero else None,
             length[0] if length else None,
-            tuple(sorted(self._faults)),
+            tuple(sorted(self._faults, key=lambda fault: (fault[0], fault[1].what))),
         )

@@ -11,7 +11,7 @@ from typing import Final
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import SAME, Clamping, are_one_angle, number
 from trunnion.model.clamping_notices import HeadNotices, clamped_notices, head_comments, read_place, zero_notices
 
@@ -43,8 +43,10 @@ def stated_place(program: Path) -> HeadNotices:
 
 def damaged_notices(program: Path, stated: HeadNotices) -> list[Problem]:
     """Warnings of notices that are not as they were written, or that contradict each other."""
-    cure = "compare it with the setup sheet or post it again: how the part is clamped, or where, is not known"
-    return [Problem(str(program), line, what, cure, Severity.WARNING, code="PLC250") for line, what in stated.faults]
+    return [
+        Problem(str(program), line, Wording("PLC250", "damaged_in_program", fault=fault), severity=Severity.WARNING)
+        for line, fault in stated.faults
+    ]
 
 
 def unlike_cl_files(
@@ -60,25 +62,30 @@ def unlike_cl_files(
     stated = stated_place(program)
     found = _unlike_zero(program, stated, machine)
     if stated.clamping is not None and not stated.clamping.is_like(clamped):
-        told = "" if of_cl is None else f"; the CL file states that it is {of_cl}"
-        cure = _cure_of_comparison(stated.clamping, of_cl or Clamping())
-        what = f"its head says that the part is {stated.clamping}{told}"
-        if of_cl is not None and not (are_one_angle(given.turn, 0.0) and are_one_angle(given.tilt, 0.0)):
-            what += f", and what is given makes that {clamped}"
-        found.insert(0, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC220"))
+        remedy = _remedy_of_comparison(stated.clamping, of_cl or Clamping())
+        own = stated.clamping
+        if of_cl is None:
+            wording = Wording("PLC220", "clamped_otherwise", own=own, remedy=remedy)
+        elif are_one_angle(given.turn, 0.0) and are_one_angle(given.tilt, 0.0):
+            wording = Wording("PLC220", "clamped_otherwise_than_cl_file", own=own, of_cl=of_cl, remedy=remedy)
+        else:
+            wording = Wording(
+                "PLC220", "clamped_otherwise_than_given", own=own, of_cl=of_cl, given=clamped, remedy=remedy
+            )
+        found.insert(0, Problem(str(program), 0, wording, severity=Severity.WARNING))
     return found
 
 
-def _cure_of_comparison(stated: Clamping, of_cl: Clamping) -> str:
-    """Which angles bring the CL files to how the part is clamped, if any do."""
+def _remedy_of_comparison(stated: Clamping, of_cl: Clamping) -> Wording:
+    """Which angles bring the CL files to how the part is clamped, if any do: a phrase."""
     turn, tilt = (stated.turn - of_cl.turn) % 360.0, stated.tilt - of_cl.tilt
     reached = of_cl.then(turn, tilt)
     if reached is None or not reached.is_like(stated):
         turn = stated.turn
         reached = of_cl.then(turn, tilt)
     if reached is None or not reached.is_like(stated):
-        return "no turn and tilt lead from one to the other: compare with the CL files that it was made from"
-    return f"give {_told(turn, tilt)}, so that the CL files are turned before they are compared"
+        return phrase("no_angles_between")
+    return phrase("give_angles", angles=_told(turn, tilt))
 
 
 def unlike_bodies(program: Path, given: Clamping, machine: Machine) -> list[Problem]:
@@ -126,9 +133,10 @@ def _unlike_zero(program: Path, stated: HeadNotices, machine: Machine) -> list[P
     ]
 
 
-def _told(turn: float, tilt: float) -> str:
-    """Return the angles, as somebody is told to give them."""
+def _told(turn: float, tilt: float) -> Wording:
+    """Return the angles, as somebody is told to give them: a phrase."""
     if are_one_angle(turn, 0.0) and are_one_angle(tilt, 0.0):
-        return "no turn and no tilt"
-    tilted = "" if are_one_angle(tilt, 0.0) else f" and the tilt {number(tilt)}"
-    return f"the turn {number(turn % 360.0)}{tilted}"
+        return phrase("no_turn_and_no_tilt")
+    if are_one_angle(tilt, 0.0):
+        return phrase("turn_alone", turn=number(turn % 360.0))
+    return phrase("turn_and_tilt", turn=number(turn % 360.0), tilt=number(tilt))

@@ -61,18 +61,18 @@ class PreparedSetup:
 
 
 def _program_of(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> SimulatedProgram:
-    end, why = len(run), ""
+    end, why = len(run), None
     errors = sorted(run.errors, key=lambda each: each.line)
     if errors:
         first = errors[0]
         number = run.files.index(first.file) if first.file in run.files else 0
         later = np.flatnonzero((run.file == number) & (run.line >= first.line))
         end = int(later[0]) if len(later) else len(run)
-        why = f"line {first.line}: {first.text}; it is cut up to there"
+        why = Wording("SIM142", "cut_up_to_fault", line=first.line, fault=first.wording)
     if until is not None:
         row = _row_of_block(run, until)
         if row < end:
-            end, why = row, ""
+            end, why = row, None
     return SimulatedProgram(run, shapes, end, why)
 
 

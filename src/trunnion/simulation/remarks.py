@@ -152,28 +152,21 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
 
 def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
     """Motions near the stock whose way is not known: across the tool axis to machine positions, and swivels."""
-    across = "goes to a machine position across the tool axis, and the tool is no higher than the stock"
-    first = (
-        "retract along the tool axis first, or give the workpiece zero and the tool length, so that the way is known"
-    )
-    swivel = "turns rotary axes without TCP beside the stock, and nobody knows about which place"
-    known = "retract to a machine position first, or give the workpiece zero and the tool length"
+    across, swivel = Wording("SIM144", "crosses_tool_axis"), Wording("SIM144", "swivels_beside_stock")
     found = []
     for run in runs:
-        for rows, what, cure in (
-            (sideways_exits(run, stock.low, stock.high), across, first),
-            (unknown_swivels(run, stock.low, stock.high), swivel, known),
+        for rows, wording in (
+            (sideways_exits(run, stock.low, stock.high), across),
+            (unknown_swivels(run, stock.low, stock.high), swivel),
         ):
-            found += [
-                Problem(file_of_row(run, row), int(run.line[row]), what, cure, code="SIM144") for row in rows.tolist()
-            ]
+            found += [Problem(file_of_row(run, row), int(run.line[row]), wording) for row in rows.tolist()]
     return list(merge_repeated(found))
 
 
 def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """Return what was taken for granted, and what is not simulated."""
     found = [
-        Problem(f"tool {name}", 0, remark, severity=Severity.WARNING, code="SIM155")
+        Problem(f"tool {name}", 0, remark, severity=Severity.WARNING)
         for name, shape in shapes.items()
         for remark in shape.remarks
     ]
@@ -181,7 +174,7 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
         found += merge_repeated(
             Problem(each.file, each.line, each.wording, severity=Severity.WARNING)
             for each in run.diagnostics
-            if each.severity is Severity.WARNING and not is_told_of_length(run, each.line, each.text)
+            if each.severity is Severity.WARNING and not is_told_of_length(run, each.line, each.wording)
         )
         compensated = run.state.compensation.rows_with(1), run.state.compensation.rows_with(-1)
         rows = np.concatenate(compensated)
@@ -246,11 +239,8 @@ def part_remarks(model: CuttingModel, lacking: Excess | None, slack: float, *, i
     """
     if model.part is None:
         return []
-    before = "this set-up cuts anything" if is_later else "anything is cut"
-    cure = "check the size of the stock, and the zero of part and stock"
     beyond = max(float((model.stock.low - model.part.low).max()), float((model.part.high - model.stock.high).max()))
     if beyond > model.tolerance + slack:
-        what = f"reaches {beyond:.3f} mm beyond the stock: it cannot come out, and what is outside is not compared"
         return [
             Problem(
                 "part",
@@ -261,10 +251,9 @@ def part_remarks(model: CuttingModel, lacking: Excess | None, slack: float, *, i
             )
         ]
     if lacking is not None and lacking.largest > model.limit + slack:
-        what = f"is missing {lacking.largest:.3f} mm deep at {position(lacking.places[0].at)} before {before}"
-        if is_later:
-            cure = "check what the earlier set-ups took there, the pose, and the zero of the part"
-        return [Problem("part", 0, what, cure, code="SIM132")]
+        variant = "missing_before_this_setup" if is_later else "missing_before_anything_is_cut"
+        wording = Wording("SIM132", variant, depth=lacking.largest, position=position(lacking.places[0].at))
+        return [Problem("part", 0, wording)]
     return []
 
 

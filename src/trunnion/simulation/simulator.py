@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.measurements import Chunk, RowsCut, rows_cut
 from trunnion.simulation.cutting.removal import measure
@@ -59,7 +60,7 @@ class SimulatedProgram:
     run: Run
     tools: Mapping[str, ToolShape]
     end: int
-    broken_off: str = ""
+    broken_off: Wording | None = None
 
 
 @dataclass(slots=True, eq=False)

@@ -120,9 +120,9 @@ class SetupSteps:
         remarks += simulation_remarks(model, runs, own.tools)
         remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
         remarks += [
-            Problem(program.run.files[0], 0, program.broken_off, code="SIM142")
+            Problem(program.run.files[0], 0, program.broken_off)
             for program in programs
-            if program.broken_off
+            if program.broken_off is not None
         ]
         self._watcher.problems(of_setup(remarks, name))
         told = len(remarks)

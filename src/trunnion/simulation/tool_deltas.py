@@ -52,14 +52,15 @@ def as_the_tool_goes(run: Run) -> tuple[Run, list[Problem]]:
     return _lengthened(run, added), list(_refused(run, deltas))
 
 
-def is_told_of_length(run: Run, line: int, text: str) -> bool:
+def is_told_of_length(run: Run, line: int, wording: Wording) -> bool:
     """Whether a reader's warning tells of a length that is simulated here, or of sizes that are compared."""
-    told = [
+    told = {
         str(event.value[0]) for event in run.events
         if event.kind == "delta" and event.line == line and isinstance(event.value, tuple)
-    ]  # fmt: skip
-    lengths = any(name in _LENGTHS and text.startswith(f"{name} adds ") for name in told)
-    return lengths or any(name in SIZES and text.startswith("TOOL DEF gives ") for name in told)
+    }  # fmt: skip
+    if wording.variant == "tool_delta":
+        return wording.parameter("word") in told.intersection(_LENGTHS)
+    return wording.variant == "tool_def_size" and not told.isdisjoint(SIZES)
 
 
 def _deltas(run: Run) -> Iterator[_Delta]:

@@ -28,7 +28,7 @@ def printing(unit: float = 1.0, budget: Budget | None = None) -> Printing:
 
 def lines(text: str, unit: float = 1.0) -> list[str]:
     template, fault = text_template("program_end", text, "ours.toml", 7)
-    assert fault is None, fault.what
+    assert fault is None, fault.wording.what
     return template.expand(VALUES, printing(unit))
 
 
@@ -36,7 +36,7 @@ def refused(text: str) -> str:
     """What is said of a template, when it is read or when it is written."""
     template, fault = text_template("program_end", text, "ours.toml", 7)
     if fault is not None:
-        return fault.what
+        return fault.wording.what
     with pytest.raises(InputError) as caught:
         template.expand(VALUES, printing())
     (problem,) = caught.value.problems
@@ -188,7 +188,7 @@ def test_a_fault_is_told_at_its_line() -> None:
     assert caught.value.problems[0].line == 9
     _, fault = text_template("program_end", ";A\n;B\n{{ title.upper }}", "a.toml", 7)
     assert isinstance(fault, Fault)
-    assert (fault.line, fault.what) == (3, "asks for .upper, which nothing has")
+    assert (fault.line, fault.wording.what) == (3, "asks for .upper, which nothing has")
 
 
 PIECES = (
@@ -209,7 +209,7 @@ def test_whatever_is_written_prints_plain_lines_or_is_refused(text: str, tagged:
     template, fault = text_template("program_end", f"{{{{ {text} }}}}" if tagged else text, "ours.toml", 7)
     template.fields(), template.plain_lines(), template.pattern_lines(), template.unread_fields()
     if fault is not None:
-        assert fault.what
+        assert fault.wording.what
         return
     try:
         found = template.expand(VALUES, printing())

@@ -89,8 +89,11 @@ def fault_of(text: str) -> Fault:
 )  # fmt: skip
 def test_a_slip_is_told_with_its_line_and_its_cure(text: str, line: int, what: str, cure: str) -> None:
     fault = fault_of(text)
-    assert (fault.line, what in fault.what, cure in fault.cure) == (line, True, True), (fault.what, fault.cure)
-    assert not RAW.search(fault.what + fault.cure)
+    assert (fault.line, what in fault.wording.what, cure in fault.wording.cure) == (line, True, True), (
+        fault.wording.what,
+        fault.wording.cure,
+    )
+    assert not RAW.search(fault.wording.what + fault.wording.cure)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +132,7 @@ def test_whatever_stands_in_a_template_no_word_of_the_parser_is_told(text: str) 
         return
     assert template.code is None
     assert 0 <= fault.line <= text.count("\n") + 1
-    assert not RAW.search(fault.what + fault.cure), (text, fault.what)
+    assert not RAW.search(fault.wording.what + fault.wording.cure), (text, fault.wording.what)
 
 
 @pytest.mark.parametrize("text", [
@@ -137,4 +140,4 @@ def test_whatever_stands_in_a_template_no_word_of_the_parser_is_told(text: str) 
     "{{ a = 1 }}" * 5000, "{{ " + "a." * 30_000 + " }}", "{% x %}" * 9000,
 ])  # fmt: skip
 def test_a_long_template_is_judged_as_well(text: str) -> None:
-    assert len(fault_of(text).what) < 300
+    assert len(fault_of(text).wording.what) < 300

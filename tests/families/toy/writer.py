@@ -9,7 +9,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT, round_to_counts
-from trunnion.messages import foreign
+from trunnion.messages import Wording, foreign
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Kind, Message, Operation, Sense, SpindleOn, Stop
 from trunnion.planning.holes.cycles import Cycle, SpindleState, UnsupportedCycleError
@@ -79,7 +79,7 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     return [(int(moves.line[row]), why) for row in per_rev[:1]]
 
 
-def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     return []
 
 

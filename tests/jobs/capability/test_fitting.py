@@ -187,7 +187,7 @@ def test_a_tool_without_a_known_length_leaves_it_open(tmp_path: Path, capfd: Cap
     assert main(["fit", str(file), "--machines", "dmu65", "--turns", "360"]) == 0
     out, err = capfd.readouterr()
     assert "places depend on its length (Z); give its length" in out
-    assert "--tool-length: warning: the tool counts as 0 mm long where slides depend on it" in err
+    assert "--tool-length: warning: the tool counts as 0 mm long where linear axes depend on its length" in err
     assert "[PLC210]" in err
     assert main(["fit", str(file), "--machines", "dmu65", "--turns", "360", "--tool-length", "80"]) == 0
     out, err = capfd.readouterr()

@@ -162,7 +162,7 @@ def test_the_command_names_its_option(tmp_path: Path, capsys: pytest.CaptureFixt
     output = str(tmp_path / "p.mpf")
     assert main(["post", str(CL), "--machine", "yl569", "--set", "tolerance=abc", "--output", output]) == 2
     said = capsys.readouterr().err
-    assert said.startswith("--set: error: tolerance is 'abc'; write a number above 0 and of at most 10, mm")
+    assert said.startswith("--set: error: tolerance is 'abc'; write a number in mm above 0 and of at most 10")
 
 
 def test_a_program_whose_settings_another_control_cannot_have_is_converted_without_them(tmp_path: Path) -> None:

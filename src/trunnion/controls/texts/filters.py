@@ -59,9 +59,9 @@ def _format(context: Context, value: object, name: str) -> str | None:
     printing, number = rendering_of(context).printing, as_number(value)
     number_format = printing.formats[name]
     if isinstance(value, Length) and printing.unit != 1.0 and number_format.unit == 1.0:
-        raise Fault(f"prints a length by the format {name}, which is in mm", "write inch = { decimals = … } into it")
+        raise Fault("length_in_format_of_mm", name=name)
     if number is None:
-        raise Fault(f"prints {shown(value)} by the format {name}, and it is no number")
+        raise Fault("no_number_for_format", value=shown(value), name=name)
     return number_text("value", number, number_format)
 
 
@@ -71,7 +71,7 @@ def _each(context: Context, items: object, steps: int) -> tuple[object, ...]:
     if items is None:
         return ()
     if not isinstance(items, tuple | list | range):
-        raise Fault(f"goes through {shown(items)}, which is no list")
+        raise Fault("goes_through_no_list", value=shown(items))
     rendering_of(context).charge(steps * len(items))
     return tuple(items)
 
@@ -80,9 +80,9 @@ def _range(first: object, *others: object) -> range:
     """Whole numbers, as Python's range has them."""
     numbers = [each for each in (first, *others) if isinstance(each, int) and not isinstance(each, bool)]
     if len(numbers) != len(others) + 1 or len(numbers) > 3 or (len(numbers) == 3 and numbers[2] == 0):
-        raise Fault("has a range that is not of whole numbers", "write range(3), or range(1, 4)")
+        raise Fault("range_of_no_whole_numbers")
     if max(map(abs, numbers)) > _FARTHEST or len(found := range(*numbers)) > _LONGEST_RANGE:
-        raise Fault(f"has a range of more than {_LONGEST_RANGE} numbers")
+        raise Fault("too_long_range", most=_LONGEST_RANGE)
     return found
 
 
@@ -110,7 +110,7 @@ def _plain(value: object, what: str) -> str:
         return str.__str__(value)
     if isinstance(value, int | float) and not isinstance(value, bool):
         return text_of(value)
-    raise Fault(f"has {shown(value)} where | {what} wants a text")
+    raise Fault("text_wanted", value=shown(value), filter=what)
 
 
 def _ascii(text: str) -> str:
@@ -125,20 +125,20 @@ def _cut(text: str, most: object = 80) -> str:
 
 def _pad(text: str, width: object = 0, sign: object = "0") -> str:
     if not isinstance(sign, str) or len(sign) != 1:
-        raise Fault("pads with what is not one letter")
+        raise Fault("pads_with_no_letter")
     return text.rjust(_whole(width, "pad", _WIDEST), sign)
 
 
 def _replace(text: str, old: object = "", new: object = "") -> str:
     old, new = _plain(old, "replace"), _plain(new, "replace")
     if not old or len(text) + text.count(old) * len(new) > LONGEST_TEXT:
-        raise Fault("replaces an empty text, or makes one that is too long")
+        raise Fault("replaces_empty_text")
     return text.replace(old, new)
 
 
 def _whole(value: object, what: str, most: int) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= most:
-        raise Fault(f"has {shown(value)} in | {what}", f"write a whole number up to {most}")
+        raise Fault("whole_number_wanted", value=shown(value), filter=what, most=most)
     return value
 
 
@@ -164,7 +164,7 @@ def _absolute(value: object) -> float | None:
 def _list(value: object, what: str) -> tuple[object, ...]:
     if isinstance(value, tuple | list | range):
         return tuple(value)
-    raise Fault(f"has {shown(value)} where | {what} wants a list")
+    raise Fault("list_wanted", value=shown(value), filter=what)
 
 
 @pass_context
@@ -172,7 +172,7 @@ def _join(context: Context, value: object, between: object = "") -> str:
     items, unit, sign = _list(value, "join"), rendering_of(context).printing.unit, _plain(between, "join")
     rendering_of(context).charge(len(items))
     if len(sign) * len(items) > LONGEST_TEXT:
-        raise Fault(f"makes a text of more than {LONGEST_TEXT} letters")
+        raise Fault("makes_too_long_text", most=LONGEST_TEXT)
     return bounded_text(sign.join(text_of(item, unit) for item in items if item is not None))
 
 
@@ -232,8 +232,7 @@ def _priced(name: str, change: Callable[..., Any]) -> Callable[..., Any]:
         rendering = rendering_of(context)
         printed_only = any(isinstance(each, PrintedText) for each in arguments)
         if printed_only and name not in _PRINTING:
-            what = f"has a machining time where {name} wants a value"
-            raise Fault(what, "print it as it is: times are known when the program is proven")
+            raise Fault("machining_time_for_value", name=name)
         rendering.charge(sum(len(each) for each in arguments if isinstance(each, str)) // a_step)
         changed = change(context, *arguments) if takes_context else change(*arguments)
         if isinstance(changed, str):

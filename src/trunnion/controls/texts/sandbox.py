@@ -8,7 +8,7 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from trunnion.controls.texts import filters
 from trunnion.controls.texts.values import Fault, Later, Length, Record, calculated, number_of, shown
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 
 #: What a loop tells of itself.
 LOOP_VALUES: Final = frozenset({"index", "index0", "first", "last", "length"})
@@ -47,16 +47,18 @@ class Sandbox(ImmutableSandboxedEnvironment):
         if isinstance(obj, LoopContext) and attribute in LOOP_VALUES:
             return getattr(obj, attribute)
         if not isinstance(obj, Record):
-            raise Fault(f"asks for .{attribute} of {shown(obj)}, which is no tool and no operation")
+            raise Fault("attribute_of_other_thing", attribute=attribute, value=shown(obj))
         if attribute not in obj.values:
-            raise Fault(f"asks for .{attribute}, which {obj} does not have", did_you_mean(attribute, obj.values))
+            if near := meant_word(attribute, obj.values):
+                raise Fault("attribute_not_there_but_near", attribute=attribute, owner=str(obj), near=near)
+            raise Fault("attribute_not_there", attribute=attribute, owner=str(obj))
         value = obj.values[attribute]
         return value.value() if isinstance(value, Later) else value
 
     def getitem(self, obj: Any, argument: Any) -> Any:
         """Return one of a list, counted from 0; None beyond its ends."""
         if not isinstance(obj, tuple) or not isinstance(argument, int):
-            raise Fault("asks for [ ] of what is no list", "write a whole number behind a list, such as words[0]")
+            raise Fault("index_of_no_list")
         return obj[argument] if -len(obj) <= argument < len(obj) else None
 
     def is_safe_attribute(self, obj: Any, attr: str, value: Any) -> bool:

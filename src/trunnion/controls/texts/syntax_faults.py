@@ -14,9 +14,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.controls.texts.values import Fault
-from trunnion.definitions.messages import did_you_mean
-
-_LANGUAGE: Final = "docs/templates.md has the language"
+from trunnion.definitions.messages import meant_word
 
 #: What tags begin and end with.
 _ENDS: Final = {"{%": "%}", "{{": "}}", "{#": "#}"}
@@ -82,8 +80,9 @@ def syntax_fault(text: str, line: int) -> Fault:
         if fault is not None:
             return fault
     where = next((tag for tag in near if tag.opening != "{#"), None)
-    what = "is not understood" if where is None else f"has {where}, which is not understood"
-    return Fault(f"{what}: a word, a sign or a value too many or too few", _LANGUAGE, line)
+    if where is None:
+        return Fault("not_understood", line)
+    return Fault("tag_not_understood", line, tag=str(where))
 
 
 # Where tags end
@@ -123,10 +122,8 @@ def _end(text: str, at: int, closing: str, *, plain: bool) -> int | str:
 def _unended(opening: str, quote: str, line: int, text: str, at: int) -> Fault:
     shown = _rest(text, at)[:_SHOWN].rstrip()
     if quote:
-        what = f"has {shown} with a text that begins with {quote} and does not end"
-        return Fault(what, f"write {quote} behind it", line)
-    closing = _ENDS[opening]
-    return Fault(f"has {shown}, which does not end with {closing}", f"write {closing} behind it", line)
+        return Fault("text_does_not_end", line, tag=shown, quote=quote)
+    return Fault("tag_does_not_end", line, tag=shown, closing=_ENDS[opening])
 
 
 def _rest(text: str, at: int) -> str:
@@ -147,16 +144,16 @@ def _nesting(tags: list[_Tag]) -> Fault | None:
         elif name in _END_OF.values():
             begin = name.removeprefix("end")
             if not open_:
-                return Fault(f"has {tag} without its {{% {begin} … %}}", "take it out, or write what it ends", tag.line)
+                return Fault("end_without_beginning", tag.line, tag=str(tag), beginning=begin)
             last = open_.pop()
             if last.statement != begin:
-                what = f"has {tag} where the {last} of line {last.line} of the template must end first"
-                return Fault(what, f"write {{% {_END_OF[last.statement]} %}} before it", tag.line)
+                end = _END_OF[last.statement]
+                return Fault("other_must_end_first", tag.line, tag=str(tag), other=str(last), line=last.line, end=end)
         elif name in _WITHIN and (not open_ or open_[-1].statement not in _WITHIN[name]):
-            return Fault(f"has {tag} without its {{% if … %}}", "take it out, or write the condition", tag.line)
+            return Fault("branch_without_if", tag.line, tag=str(tag))
     if open_:
-        end = _END_OF[open_[-1].statement]
-        return Fault(f"has {open_[-1]} without its {{% {end} %}}", f"write {{% {end} %}} where it ends", open_[-1].line)
+        last = open_[-1]
+        return Fault("beginning_without_end", last.line, tag=str(last), end=_END_OF[last.statement])
     return None
 
 
@@ -171,13 +168,11 @@ def _slip(tag: _Tag) -> Fault | None:
     unseen = next((sign for sign in _TEXT.sub("", tag.body) if _is_invisible(sign)), "")
     if unseen:
         name = unicodedata.name(unseen, "").lower()
-        what = f"has {tag} with a sign that nobody sees, {_code_of(unseen)}{name and f' ({name})'}"
-        return Fault(what, "delete it, and write the part anew", tag.line)
-    for slip in (_statement_slip, _sign_slip, _comparison_slip, _bracket_slip, _missing_slip):
-        found = slip(tag, bare)
-        if found is not None:
-            return Fault(found[0], found[1], tag.line)
-    return None
+        if name:
+            return Fault("unseen_sign_by_name", tag.line, tag=str(tag), sign=_code_of(unseen), name=name)
+        return Fault("unseen_sign", tag.line, tag=str(tag), sign=_code_of(unseen))
+    slips = (_statement_slip, _sign_slip, _comparison_slip, _bracket_slip, _missing_slip)
+    return next((found for slip in slips if (found := slip(tag, bare)) is not None), None)
 
 
 def _is_invisible(sign: str) -> bool:
@@ -188,81 +183,89 @@ def _code_of(sign: str) -> str:
     return f"U+{ord(sign):04X}"
 
 
-def _statement_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
+def _statement_slip(tag: _Tag, bare: str) -> Fault | None:
     """Return a statement that there is not, or one with words that do not belong to it."""
-    name = tag.statement
+    name, line, shown = tag.statement, tag.line, str(tag)
     if tag.opening == "{{":
         return None
     if name not in _STATEMENTS:
-        if not name:
-            return f"has {tag} without a statement", f"write one of {', '.join(_STATEMENTS)}"
-        if name == "end":
-            following = _WORD.match(bare)
-            if following is None:
-                return f"has {tag}, which is no statement", "write {% endif %} or {% endfor %}"
-            return f"has {tag}, which is no statement", f"write {{% end{following[0].lower()} %}} in one word"
-        meant = _OTHER_NAMES.get(name.lower()) or (name.lower() if name.lower() in _STATEMENTS else "")
-        cure = f"write {meant}" if meant else did_you_mean(name, _STATEMENTS)
-        return f"has {tag}, which is no statement", cure or f"write one of {', '.join(_STATEMENTS)}"
+        return _no_statement(tag, bare)
     if name == "else" and bare:
-        cure = "write {% elif … %}" if bare.startswith("if") else "write {% else %}"
-        return f"has {tag} with something behind else", cure
+        return Fault("if_behind_else" if bare.startswith("if") else "something_behind_else", line, tag=shown)
     if name in _END_OF.values() and bare:
-        return f"has {tag} with something behind {name}", f"write {{% {name} %}}"
+        return Fault("something_behind_end", line, tag=shown, end=name)
     if name == "for" and not re.match(r"[A-Za-z_]\w*\s+in\s+\S", bare):
-        return f"has {tag}, which is no loop", "write {% for one in list %}"
+        return Fault("no_loop", line, tag=shown)
     if name == "set" and not re.match(r"[A-Za-z_]\w*\s*=(?!=)\s*\S", bare):
-        return f"has {tag}, which sets nothing", "write {% set name = value %}"
+        return Fault("sets_nothing", line, tag=shown)
     if name in ("if", "elif") and re.search(r"(\bthen|:)$", bare):
-        return f"has {tag} with {bare.split()[-1].lstrip(':') or ':'} behind the condition", "leave it out"
+        return Fault("behind_condition", line, tag=shown, sign=bare.split()[-1].lstrip(":") or ":")
     return None
 
 
-#: Signs of other languages, and what to write.
+def _no_statement(tag: _Tag, bare: str) -> Fault:
+    """Return a word that is no statement, or that none is there."""
+    name, line, shown = tag.statement, tag.line, str(tag)
+    if not name:
+        return Fault("without_statement", line, tag=shown, known=_STATEMENTS)
+    if name == "end":
+        following = _WORD.match(bare)
+        if following is None:
+            return Fault("end_alone", line, tag=shown)
+        return Fault("end_in_two_words", line, tag=shown, statement=following[0].lower())
+    meant = _OTHER_NAMES.get(name.lower()) or (name.lower() if name.lower() in _STATEMENTS else "")
+    if meant:
+        return Fault("statement_of_other_language", line, tag=shown, meant=meant)
+    if near := meant_word(name, _STATEMENTS):
+        return Fault("no_statement_but_near", line, tag=shown, near=near)
+    return Fault("no_statement", line, tag=shown, known=_STATEMENTS)
+
+
+#: Signs of other languages, and the message about each.
 _SIGNS: Final[tuple[tuple[str, str], ...]] = (
-    (r"&&?", "write and"), (r"\|\|", "write or"), (r"!(?!=)", "write not"), (r"<>", "write != for unequal"),
-    (r"=>", "write >= for at least"), (r"=<", "write <= for at most"), (r"\?", "write a if b else c"),
-    (r";", "leave it out"), (r"\$", "leave it out"), (r"\^", "powers are not there: multiply"),
-    ("[\u00d7\u00b7\u22c5\u2219\u2715\u2716]", "write * to multiply"), ("[\u00f7\u2215\u2044]", "write / to divide"),
-    ("[\u2212\u2010-\u2015]", "write the minus sign of the keyboard: -"), ("\u2264", "write <= for at most"),
-    ("\u2265", "write >= for at least"), ("\u2260", "write != for unequal"), ("\u00b0", "write numbers without units"),
-    ("[\u00b2\u00b3]", "powers are not there: multiply"), ("[\u00bc-\u00be]", "write a decimal number"),
-    ("\u221a", "roots are not there"),
+    (r"&&?", "sign_for_and"), (r"\|\|", "sign_for_or"), (r"!(?!=)", "sign_for_not"), (r"<>", "sign_for_unequal"),
+    (r"=>", "sign_for_at_least"), (r"=<", "sign_for_at_most"), (r"\?", "sign_for_choice"),
+    (r";", "needless_sign"), (r"\$", "needless_sign"), (r"\^", "sign_for_power"),
+    ("[\u00d7\u00b7\u22c5\u2219\u2715\u2716]", "sign_for_times"), ("[\u00f7\u2215\u2044]", "sign_for_divided"),
+    ("[\u2212\u2010-\u2015]", "sign_for_minus"), ("\u2264", "sign_for_at_most"),
+    ("\u2265", "sign_for_at_least"), ("\u2260", "sign_for_unequal"), ("\u00b0", "sign_of_unit"),
+    ("[\u00b2\u00b3]", "sign_for_power"), ("[\u00bc-\u00be]", "sign_for_fraction"),
+    ("\u221a", "sign_for_root"),
 )  # fmt: skip
 
 
-def _sign_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
+def _sign_slip(tag: _Tag, bare: str) -> Fault | None:
     found = _TYPOGRAPHIC.search(bare)
     if found is not None:
-        return f"has {tag} with the quotation mark {found[0]}", "write \" or '"
-    for pattern, cure in _SIGNS:
+        return Fault("typographic_quotation_mark", tag.line, tag=str(tag), mark=found[0])
+    for pattern, variant in _SIGNS:
         match = re.search(pattern, bare)
         if match is not None:
-            return f"has {tag} with {match[0]}, which is no sign of the language", cure
+            return Fault(variant, tag.line, tag=str(tag), sign=match[0])
     return None
 
 
-def _comparison_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
+def _comparison_slip(tag: _Tag, bare: str) -> Fault | None:
     """Return a single equals sign where something is compared."""
     value = bare.partition("=")[2] if tag.statement == "set" else bare
     if re.search(r"(?<![=!<>])=(?!=)", value):
-        return f"has {tag} with =, which compares nothing", "write == to compare"
+        return Fault("single_equals", tag.line, tag=str(tag))
     return None
 
 
 _CLOSING: Final = {"(": ")", "[": "]", "{": "}"}
 
 
-def _bracket_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
+def _bracket_slip(tag: _Tag, bare: str) -> Fault | None:
     """Brackets that do not match."""
     open_: list[str] = []
     for sign in bare:
         if sign in _CLOSING:
             open_.append(sign)
         elif sign in _CLOSING.values() and (not open_ or _CLOSING[open_.pop()] != sign):
-            return f"has {tag} with {sign}, which closes no bracket", "take it out, or write what it closes"
+            return Fault("closes_no_bracket", tag.line, tag=str(tag), sign=sign)
     if open_:
-        return f"has {tag} with {open_[-1]}, which is not closed", f"write {_CLOSING[open_[-1]]} where it ends"
+        return Fault("bracket_not_closed", tag.line, tag=str(tag), sign=open_[-1], closing=_CLOSING[open_[-1]])
     return None
 
 
@@ -270,19 +273,20 @@ def _bracket_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
 _OPEN_ENDED: Final = re.compile(r"(?:[-+*/%~.,|]|==|!=|<=?|>=?|\b(?:and|or|not|in|is|if|else))$")
 
 
-def _missing_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
+def _missing_slip(tag: _Tag, bare: str) -> Fault | None:
     """Values that are missing, or that stand side by side."""
+    line, shown = tag.line, str(tag)
     if not bare and tag.statement not in ("else", *_END_OF.values()):
-        return f"has {tag} with nothing in it", "write a value or a condition"
+        return Fault("nothing_in_it", line, tag=shown)
     ends = _OPEN_ENDED.search(bare)
     if ends is not None:
-        return f"has {tag} with nothing behind {ends[0]}", "write a value behind it"
+        return Fault("nothing_behind", line, tag=shown, sign=ends[0])
     unit = re.search(r"(?<![\w.])(\d+(?:\.\d+)?)([A-Za-z]\w*)", bare)
     if unit is not None:
-        return f"has {tag} with {unit[2]} right behind a number", "write numbers without units"
+        return Fault("unit_behind_number", line, tag=shown, unit=unit[2])
     beside = re.search(_SIDE_BY_SIDE, bare)
     if beside is not None:
-        return f"has {tag} with {beside[1]} and {beside[2]} side by side", 'join texts by ~, and write texts in "…"'
+        return Fault("side_by_side", line, tag=shown, first=beside[1], second=beside[2])
     return None
 
 

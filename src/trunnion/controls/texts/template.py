@@ -15,6 +15,7 @@ from trunnion.controls.texts.syntax_faults import syntax_fault
 from trunnion.controls.texts.values import ABSENT, MOST_CHARACTERS, Fault, Length, Rendering, as_number
 from trunnion.controls.words import WordRangeError
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording, phrase
 
 #: What Python says of an expression whose values do not fit.
 _FAULTS: Final = (jinja2.TemplateError, TypeError, ValueError, ArithmeticError, RecursionError, LookupError)
@@ -24,19 +25,17 @@ _TAG: Final = re.compile(r"\{%.*?%\}|\{#.*?#\}|\{\{.*?\}\}", re.DOTALL)
 _STATEMENT_LINE: Final = re.compile(r"\{[%#]")
 _PRINTED: Final = re.compile(r"\{\{-?\s*([A-Za-z_]\w*)\s*(?:\|\s*([A-Za-z_]\w*)\s*)?-?\}\}")
 
-_NOT_UNDERSTOOD: Final = "docs/templates.md has the language"
-
 #: Types of values, as people call them.
 _KINDS: Final = {
-    "str": "a text",
-    "int": "a number",
-    "float": "a number",
-    "Length": "a number",
-    "bool": "a condition",
-    "NoneType": "an absent value",
-    "tuple": "a list",
-    "list": "a list",
-    "Record": "a tool or an operation",
+    "str": "a_text",
+    "int": "number",
+    "float": "number",
+    "Length": "number",
+    "bool": "a_condition",
+    "NoneType": "an_absent_value",
+    "tuple": "a_list",
+    "list": "a_list",
+    "Record": "a_tool_or_an_operation",
 }
 
 _COMPARED: Final = re.compile(r"'([<>]=?)' not supported between instances of '(\w+)' and '(\w+)'")
@@ -132,7 +131,7 @@ class TextTemplate(Template):
                 pieces.append(piece)
                 left -= len(piece)
                 if left < 0:
-                    raise Fault("writes too much", f"write at most {MOST_CHARACTERS} letters")
+                    raise Fault("writes_too_much", most=MOST_CHARACTERS)
         except (Fault, WordRangeError, *_FAULTS) as error:
             self._refuse(error)
         text = "".join(pieces)
@@ -148,10 +147,10 @@ class TextTemplate(Template):
         file, at = self.place_of(max(line, 1) - 1)
         fault = error if isinstance(error, Fault) else _value_fault(error)
         if isinstance(error, WordRangeError):
-            fault = Fault(
-                f"prints a {error.what}", "correct the value; the control's definition has the limits of formats"
-            )
-        raise InputError(Problem(file, at, f"template {self.name} {fault.what}", fault.cure, code="DEF580")) from None
+            fault = Fault("prints_beyond_format", fault=error.wording)
+        raise InputError(
+            Problem(file, at, Wording("DEF580", "template_fails", template=self.name, fault=fault.wording))
+        ) from None
 
 
 def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTemplate, Fault | None]:
@@ -169,8 +168,7 @@ def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTempl
     except jinja2.TemplateSyntaxError as error:
         return TextTemplate(name, lines, file, line), syntax_fault("\n".join(lines), error.lineno)
     except (RecursionError, SyntaxError, ValueError, ArithmeticError, MemoryError):
-        what = "has too much within each other, or a number that is none"
-        return TextTemplate(name, lines, file, line), Fault(what, _NOT_UNDERSTOOD)
+        return TextTemplate(name, lines, file, line), Fault("not_compiled")
     return TextTemplate(name, lines, file, line, found, attributes, code, cost), None
 
 
@@ -213,14 +211,13 @@ def _complete_lines(text: str) -> list[str]:
 def _value_fault(error: Exception) -> Fault:
     """Return what an expression did that its values do not allow."""
     if (found := _COMPARED.match(str(error))) is not None:
-        what = f"compares {_kind(found[2])} with {_kind(found[3])} by {found[1]}"
-        return Fault(what, "compare numbers: | number makes one of a text, | default(0) one of an absent value")
+        return Fault("compares_other_kinds", left=_kind(found[2]), right=_kind(found[3]), operator=found[1])
     if (found := _SEARCHED.match(str(error))) is not None:
-        return Fault(f"looks by in for something within {_kind(found[1])}", "look within a list or a text")
+        return Fault("looks_within_other_kind", value=_kind(found[1]))
     if isinstance(error, RecursionError):
-        return Fault("has too much within each other", "write it in smaller parts, with {% set … %}")
-    return Fault("does something that its values do not allow", "see whether they are numbers, texts or lists")
+        return Fault("too_deep")
+    return Fault("not_allowed_by_values")
 
 
-def _kind(name: str) -> str:
-    return _KINDS.get(name, "another thing")
+def _kind(name: str) -> Wording:
+    return phrase(_KINDS.get(name, "another_thing"))

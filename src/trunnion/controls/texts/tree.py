@@ -15,7 +15,7 @@ from trunnion.controls.texts import filters
 from trunnion.controls.texts.sandbox import LOOP_VALUES, SANDBOX
 from trunnion.controls.texts.values import Fault
 from trunnion.controls.vocabulary import RECORD_VALUES
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 
 #: Letters of a template; statements and expressions within each other, as Jinja's compiler recurses.
 LONGEST_SOURCE: Final = 65_536
@@ -47,8 +47,6 @@ _REFUSED: Final[dict[type[nodes.Node], str]] = {
     nodes.ScopedEvalContextModifier: "autoescape", nodes.Continue: "continue", nodes.MarkSafe: "safe",
 }  # fmt: skip
 
-_LANGUAGE: Final = "docs/templates.md has what templates may do"
-
 
 def parsed(text: str) -> nodes.Template:
     """Return the checked tree of a template.
@@ -60,7 +58,7 @@ def parsed(text: str) -> nodes.Template:
     Raises ``RecursionError`` if it is too deep for Jinja's parser.
     """
     if len(text) > LONGEST_SOURCE:
-        raise Fault(f"has more than {LONGEST_SOURCE} letters", "write it shorter, with loops")
+        raise Fault("too_many_letters", most=LONGEST_SOURCE)
     tree = SANDBOX.parse(text)
     _check_depth(tree)
     for node in (tree, *tree.find_all(nodes.Node)):
@@ -135,9 +133,9 @@ def _check_depth(tree: nodes.Template) -> None:
         statements += isinstance(node, nodes.For | nodes.If)
         count += 1
         if count > _MOST_NODES:
-            raise Fault(f"has more than {_MOST_NODES} parts", "write it shorter, with loops", node.lineno or 0)
+            raise Fault("too_many_parts", node.lineno or 0, most=_MOST_NODES)
         if depth > _DEEPEST or statements > _DEEPEST_STATEMENTS:
-            raise Fault("has too much within each other", "write it in smaller parts, with {% set … %}", node.lineno)
+            raise Fault("too_deep", node.lineno)
         # An elif is a statement behind the others, not within them.
         waiting += [(child, depth + 1, statements) for child in node.iter_child_nodes(exclude=("elif_",))]
         if isinstance(node, nodes.If):
@@ -149,26 +147,26 @@ def _check(node: nodes.Node) -> None:
     if isinstance(node, nodes.Call) and _is_range(node):
         return
     if not isinstance(node, _ALLOWED):
-        what = _REFUSED.get(type(node), type(node).__name__.lower())
-        raise Fault(f"has {what}, which templates do not have", _LANGUAGE, line)
+        raise Fault("no_part_of_templates", line, part=_REFUSED.get(type(node), type(node).__name__.lower()))
     if isinstance(node, nodes.Name) and node.name.startswith("_"):
-        raise Fault(f"has the name {node.name}, and names do not begin so", "", line)
+        raise Fault("no_name", line, name=node.name)
     if isinstance(node, nodes.Name) and node.name == "self":
-        raise Fault("has self, which templates do not have", "write a value by its own name, such as title", line)
+        raise Fault("self_is_no_part", line)
     if isinstance(node, nodes.Getattr) and node.attr not in RECORD_VALUES | LOOP_VALUES:
-        cure = did_you_mean(node.attr, RECORD_VALUES | LOOP_VALUES) or _LANGUAGE
-        raise Fault(f"asks for .{node.attr}, which nothing has", cure, line)
+        if near := meant_word(node.attr, RECORD_VALUES | LOOP_VALUES):
+            raise Fault("attribute_of_nothing_but_near", line, attribute=node.attr, near=near)
+        raise Fault("attribute_of_nothing", line, attribute=node.attr)
     if isinstance(node, nodes.Const):
         _check_constant(node)
     elif isinstance(node, nodes.For):
         if node.recursive or not isinstance(node.target, nodes.Name):
-            raise Fault("has a loop of another kind than {% for one in list %}", _LANGUAGE, line)
+            raise Fault("loop_of_other_kind", line)
     elif isinstance(node, nodes.Assign):
         if not isinstance(node.target, nodes.Name):
-            raise Fault("sets another thing than one name", "write {% set name = value %}", line)
+            raise Fault("sets_other_thing", line)
     elif isinstance(node, nodes.List | nodes.Tuple):
         if not all(isinstance(item, nodes.Const) for item in node.items):
-            raise Fault("has a list of other things than numbers and texts", 'write such as ["TOP", "SIDE"]', line)
+            raise Fault("list_of_other_things", line)
     elif isinstance(node, nodes.Filter | nodes.Test):
         _check_arguments(node)
 
@@ -176,21 +174,21 @@ def _check(node: nodes.Node) -> None:
 def _check_constant(node: nodes.Const) -> None:
     value = node.value
     if isinstance(value, int | float) and not (math.isfinite(value) and abs(value) <= 1e12):
-        raise Fault("has a number that is too large", "", node.lineno)
+        raise Fault("too_large_number", node.lineno)
 
 
 def _check_arguments(node: nodes.Filter | nodes.Test) -> None:
     named = node.kwargs or node.dyn_args or node.dyn_kwargs
     if isinstance(node, nodes.Filter) and node.name not in filters.ALL and (node.args or named):
-        cure = did_you_mean(node.name, filters.MOST_ARGUMENTS) or "leave them out: a number format has its decimals"
-        raise Fault(f"gives {node.name} values in brackets, and it takes none", cure, node.lineno)
+        if near := meant_word(node.name, filters.MOST_ARGUMENTS):
+            raise Fault("format_takes_no_values_but_near", node.lineno, name=node.name, near=near)
+        raise Fault("format_takes_no_values", node.lineno, name=node.name)
     if named or (isinstance(node, nodes.Filter) and len(node.args) > filters.MOST_ARGUMENTS.get(node.name, 0)):
-        raise Fault(f"gives {node.name} what it does not take", _LANGUAGE, node.lineno)
+        raise Fault("not_taken_by_filter", node.lineno, name=node.name)
     if isinstance(node, nodes.Test) and (node.name not in filters.TESTS or node.args):
-        cure = f"write one of {', '.join(sorted(filters.TESTS))}, or compare by =="
-        raise Fault(f"asks whether something is {node.name}, which is not known", cure, node.lineno)
+        raise Fault("no_such_test", node.lineno, name=node.name, known=tuple(sorted(filters.TESTS)))
     if isinstance(node, nodes.Filter) and node.node is None:
-        raise Fault("has filter, which templates do not have", _LANGUAGE, node.lineno)
+        raise Fault("no_part_of_templates", node.lineno, part="filter")
 
 
 def _is_range(node: nodes.Call) -> bool:

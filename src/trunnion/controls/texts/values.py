@@ -11,6 +11,7 @@ from functools import cache
 from typing import Final
 
 from trunnion.controls.template import Printing
+from trunnion.messages import Wording, phrase
 
 #: Stands in a printed line for an absent value.
 ABSENT: Final = "\0"
@@ -28,11 +29,14 @@ _NUMBER: Final = re.compile(r"[-+]?(?:\d{1,15}\.?\d{0,15}|\.\d{1,15})", re.ASCII
 
 
 class Fault(Exception):  # noqa: N818 - it is the template's
-    """What a template does that it cannot: ``what`` it is, the ``cure``, and its line if that is known, else 0."""
+    """What a template does that it cannot, while it is read or while it is written; its line if that is known, else 0.
 
-    def __init__(self, what: str, cure: str = "", line: int = 0) -> None:
-        super().__init__(what)
-        self.what, self.cure, self.line = what, cure, line
+    ``variant`` and parameters are those of a wording of the code DEF580.
+    """
+
+    def __init__(self, variant: str, line: int = 0, /, **parameters: object) -> None:
+        super().__init__(variant)
+        self.wording, self.line = Wording("DEF580", variant, **parameters), line
 
 
 class Length(float):
@@ -77,23 +81,22 @@ class Rendering:
         self.steps -= steps
         budget.steps -= steps
         if min(self.steps, budget.steps) < 0:
-            raise Fault("goes on for too long", "write fewer loops within each other")
+            raise Fault("goes_on_too_long")
 
 
-def shown(value: object) -> str:
+def shown(value: object) -> Wording | str:
     """Return a value in a message, cut short."""
     if isinstance(value, str):
         return repr(value[:40])
     if isinstance(value, tuple | list | range):
-        return "a list"
-    return str(value) if isinstance(value, bool | int | float) else "a name that has no value here"
+        return phrase("a_list")
+    return str(value) if isinstance(value, bool | int | float) else phrase("name_without_value")
 
 
 def number_of(value: object, what: str) -> float:
     """Return a value that must be a number."""
     if isinstance(value, bool) or not isinstance(value, int | float):
-        cure = "join texts by ~, and make a number of a text by | number"
-        raise Fault(f"has {shown(value)} where {what} wants a number", cure)
+        raise Fault("number_wanted", value=shown(value), operator=what)
     return value
 
 
@@ -112,14 +115,14 @@ def as_number(value: object) -> float | None:
 def bounded(number: float) -> float:
     """Return a calculated number, if it is not too large."""
     if not (math.isfinite(number) and abs(number) <= _GREATEST):
-        raise Fault("calculates a number that is too large")
+        raise Fault("calculates_too_large_number")
     return number
 
 
 def bounded_text(text: str) -> str:
     """Return a text that was made, if it is not too long."""
     if len(text) > LONGEST_TEXT:
-        raise Fault(f"makes a text of more than {LONGEST_TEXT} letters")
+        raise Fault("makes_too_long_text", most=LONGEST_TEXT)
     return text
 
 
@@ -130,8 +133,7 @@ def text_of(value: object, unit: float = 1.0) -> str:
     if isinstance(value, str):
         return str.__str__(value).translate(_CONTROL_CHARACTERS)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        cure = "go through a list by {% for … %}, or join it by | join"
-        raise Fault(f"prints {shown(value)}, which is neither a text nor a number", cure)
+        raise Fault("prints_neither_text_nor_number", value=shown(value))
     number = float(value) / unit if isinstance(value, Length) else value
     text = f"{number:.6f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
@@ -146,7 +148,7 @@ def calculated(operator: str, left: object, right: object) -> float | None:
         return None
     a, b = number_of(left, operator), number_of(right, operator)
     if operator in ("/", "//", "%") and b == 0:
-        raise Fault("divides by 0", "ask before whether the number is 0")
+        raise Fault("divides_by_0")
     match operator:
         case "+":
             result = a + b

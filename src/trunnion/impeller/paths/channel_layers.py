@@ -18,6 +18,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.channel import Channel, Extent, turned
 from trunnion.impeller.paths.channel_sheets import Ball, Sheet, problem, sheets_of
 from trunnion.impeller.progress import Progress, silent
+from trunnion.messages import Wording
 
 #: How often the ball's way in before an edge is laid, and moved off the blade where it is too near.
 _SWINGS: Final = 3
@@ -80,8 +81,8 @@ def layers_of(channel: Channel, ball: Ball, step_down: float | None, progress: P
     impeller = channel.impeller
     fillet = impeller.definition.fillet
     if ball.radius + min(ball.blade_allowance, ball.hub_allowance) < fillet:
-        what = f"a ball of {2.0 * ball.radius:g} mm is smaller than the fillet of {fillet:g} mm, and would cut into it"
-        raise InputError(problem(impeller, what, "take a larger ball, or leave more on blades and hub", code="IMP320"))
+        wording = Wording("IMP320", "ball_smaller_than_fillet", diameter=2.0 * ball.radius, fillet=fillet)
+        raise InputError(problem(impeller, wording))
     sheets = sheets_of(impeller, ball, step_down)
     laid = []
     # Kernels run beside each other.
@@ -151,7 +152,8 @@ def _throat(u: Floats, place: Floats, extent: Extent) -> _Throat:
 
 def _too_narrow(channel: Channel, ball: Ball, step_down: float | None, throat: _Throat) -> Problem:
     """Return a channel that is too narrow for a ball."""
-    what = f"a ball of {2.0 * ball.radius:g} mm does not fit between two blades at {_named(channel.impeller, throat)}"
+    w, z, r = _named(channel.impeller, throat)
+    where: dict[str, object] = {"diameter": 2.0 * ball.radius, "w": w, "z": z, "r": r}
     allowance = ball.blade_allowance
     radius = throat.room - allowance
     for _ in range(_TRIALS):  # a smaller ball goes deeper, where there is less room or more
@@ -163,15 +165,13 @@ def _too_narrow(channel: Channel, ball: Ball, step_down: float | None, throat: _
         radius = min(radius, float(channel.extent(places, radius + allowance).room.min()) - allowance)
     largest = math.floor(200.0 * radius) / 100.0
     if largest <= 0.0:
-        return problem(channel.impeller, f"{what}, nor does any other", "leave less on the blades", code="IMP320")
-    return problem(
-        channel.impeller, f"{what}; the largest that fits has {largest:.2f} mm", "take a smaller ball", code="IMP320"
-    )
+        return problem(channel.impeller, Wording("IMP320", "no_ball_fits", **where))
+    return problem(channel.impeller, Wording("IMP320", "ball_does_not_fit", largest=largest, **where))
 
 
-def _named(impeller: Impeller, throat: _Throat) -> str:
+def _named(impeller: Impeller, throat: _Throat) -> tuple[float, float, float]:
     """Return a place by w, height and radius."""
     x, y, z = throat.point
     middle = float(impeller.blade.edges[0].mean()), float(impeller.blade.edges[1].mean())
     w = (throat.u - middle[0]) / (middle[1] - middle[0])
-    return f"w = {w:.3f}, z = {z:.2f} mm, r = {math.hypot(x, y):.2f} mm"
+    return w, z, math.hypot(x, y)

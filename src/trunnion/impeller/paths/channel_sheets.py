@@ -18,6 +18,7 @@ from trunnion.arrays import Flags, Floats
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.impeller import Impeller
+from trunnion.messages import Wording
 
 #: How far a ball is off shroud and stock where its passes begin and end, mm.
 CLEAR: Final = 0.5
@@ -121,16 +122,13 @@ def sheets_of(impeller: Impeller, ball: Ball, step_down: float | None) -> list[S
             break
         before, behind = np.flatnonzero(clear[: cut[0]]), np.flatnonzero(clear[cut[-1] :])
         if not len(before) or not len(behind):
-            end = "inlet" if not len(before) else "outlet"
-            what = f"a ball of {2.0 * ball.radius:g} mm between two blades does not get out of the stock at the {end}"
-            raise InputError(problem(impeller, what, "let the blade's curves lead out of the stock", code="IMP327"))
+            variant = "no_way_out_at_inlet" if not len(before) else "no_way_out_at_outlet"
+            raise InputError(problem(impeller, Wording("IMP327", variant, diameter=2.0 * ball.radius)))
         first, last = float(every[before[-1]]), float(every[cut[-1] + behind[0]])
         found.append(Sheet(impeller, sheet.height, sheet.to_hub, first, last))
         v = _raised(impeller, inside, v, step_down or 0.0)
     if not found:
-        raise InputError(
-            problem(impeller, "there is no stock between its blades", "check stock, hub and shroud", code="IMP327")
-        )
+        raise InputError(problem(impeller, Wording("IMP327", "no_stock_between_blades")))
     return found
 
 
@@ -175,6 +173,6 @@ def _speed(impeller: Impeller, u: Floats, v: Floats) -> Floats:
     return np.asarray(np.maximum(np.hypot(outward, slope[:, 2]), 0.1 * np.linalg.norm(slope, axis=1)))
 
 
-def problem(impeller: Impeller, what: str, cure: str, *, code: str) -> Problem:
+def problem(impeller: Impeller, wording: Wording) -> Problem:
     """Something wrong with an impeller."""
-    return Problem(impeller.definition.file, 0, what, cure, code=code)
+    return Problem(impeller.definition.file, 0, wording)

@@ -26,6 +26,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine, shipped_machines
 from trunnion.machines.loading import is_example, machine_library
 from trunnion.machines.machine import Vector
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
 from trunnion.results import Figure
@@ -156,13 +157,8 @@ def fit(
             found.append(_fit(each, toolpaths, tool_length, stated))
             advance(1)
     if tool_length is None and any(_LENGTH in reason for each in found for reason in each.reasons):
-        cure = "give tool_length of the longest tool"
         observer.problems(
-            (
-                argument_problem(
-                    "tool_length", f"{_LENGTH} where slides depend on it", cure, Severity.WARNING, code="PLC210"
-                ),
-            )
+            (argument_problem("tool_length", Wording("PLC210", "fits_depend_on_length"), severity=Severity.WARNING),)
         )
     return tuple(sorted(found, key=_rank))
 
@@ -210,8 +206,7 @@ def _toolpaths(
     if stated["machine"] is not None:
         given = [files] if isinstance(files, str | os.PathLike) else list(files) if isinstance(files, Iterable) else []
         if len(given) != 1 or not isinstance(given[0], str | os.PathLike):
-            cure = "give one, or leave machine out for CL files"
-            raise InputError(argument_problem("files", "machine is for one NC program", cure, code="ARG130"))
+            raise InputError(argument_problem("files", Wording("ARG130", "machine_of_one_program")))
         converted = convert(
             given[0], machine=stated["machine"], to_cl=True, subprograms=subprograms, zero=zero,
             tool_length=stated["tool_length"], observer=observer,
@@ -219,13 +214,10 @@ def _toolpaths(
         return [converted.toolpath]
     if subprograms or zero is not None:
         name = "subprograms" if subprograms else "zero"
-        cure = "name its machine with argument machine=NAME, or leave it out"
-        raise InputError(argument_problem(name, "is for an NC program", cure, code="ARG130"))
+        raise InputError(argument_problem(name, Wording("ARG130", "only_for_programs")))
     toolpaths = as_toolpaths(files, None, False, observer)
     if not any(len(operation.moves) for path in toolpaths for operation in path.operations):
-        raise InputError(
-            argument_problem("files", "there is no motion in them", "give CL files that cut", code="ARG130")
-        )
+        raise InputError(argument_problem("files", Wording("ARG130", "no_motion_in_files")))
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths

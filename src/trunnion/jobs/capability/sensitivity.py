@@ -15,8 +15,8 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_r
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Run
-from trunnion.wording import counted
 
 #: How far numbers are off unless it is said, mm and seconds of arc.
 DEFAULT_LENGTH: Final = 0.01
@@ -95,8 +95,8 @@ def _without_cuts(run: Run) -> Problem:
     """Why there is nothing to judge: no cut, or a CL file in place of a program."""
     name = run.files[0] if run.files else "nc"
     if run.errors and _is_cl_file(name):
-        return Problem(name, 0, "is a CL file, and no NC program", "post it, and give the program", code="RCH115")
-    return Problem(name, 0, "has no motion at feed", "give a program that cuts", code="RCH110")
+        return Problem(name, 0, Wording("RCH115", "cl_file_judged"))
+    return Problem(name, 0, Wording("RCH110", "nothing_cut"))
 
 
 def _is_cl_file(name: str) -> bool:
@@ -119,20 +119,13 @@ def _remarks(run: Run) -> list[Problem]:
     machine, file = run.machine, run.files[0] if run.files else "nc"
     found = []
     if run.errors:
-        what = f"{counted(len(run.errors), 'place')} not understood, so motions may be wrong"
-        found.append(Problem(file, run.errors[0].line, what, "verify the program first", code="RCH120"))
+        found.append(
+            Problem(file, run.errors[0].line, Wording("RCH120", "places_not_understood", count=len(run.errors)))
+        )
     if machine.workpiece_zero is None:
-        what = "the workpiece zero is not known and counts as the zero of the machine"
-        found.append(
-            Problem(file, 0, what, "give argument zero=X,Y,Z: errors of directions depend on it", code="RCH130")
-        )
+        found.append(Problem(file, 0, Wording("RCH130", "zero_taken")))
     if machine.tool_length is None:
-        what = "the tool length is not known and counts as 0"
-        found.append(
-            Problem(
-                file, 0, what, "give argument tool_length=MM: the longer the tool, the larger its errors", code="RCH140"
-            )
-        )
+        found.append(Problem(file, 0, Wording("RCH140", "length_taken")))
     return [replace(each, severity=Severity.WARNING) for each in found]
 
 

@@ -7,12 +7,13 @@ from typing import BinaryIO, Final
 from trunnion.cl import DIALECTS
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.writers import WRITERS
-from trunnion.errors import InputError, Problem, RefusedError, argument_problem, merge_repeated
+from trunnion.errors import InputError, Problem, RefusedError, argument_problem, merge_repeated, setting_problem
 from trunnion.jobs.arguments import ConvertArguments
 from trunnion.jobs.inputs.reading import read_cl
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.result_output import Target
+from trunnion.messages import Wording
 from trunnion.model.clamping_notices import clamped_notices
 from trunnion.model.toolpath import Toolpath
 
@@ -24,6 +25,9 @@ _SETTINGS: Final[Mapping[str, tuple[str, ...]]] = {
 }
 
 _INCH: Final = 25.4
+
+#: What is said of a file whose statements nobody knows.
+_NO_CL_FILE: Final = "not_cl_file"
 
 
 def write_and_prove(
@@ -55,11 +59,9 @@ def convert_cl(
     try:
         toolpath = read_cl(path, units=units, dialect=read_in, strict=given["strict"], observer=observer)
     except InputError as error:
-        if "not a CL file" not in error.problems[0].what:
+        if error.problems[0].wording.variant != _NO_CL_FILE:
             raise
-        hint = argument_problem(
-            "machine", "is missing, so that the file is read as a CL file", "give it for an NC program", code="CNV110"
-        )
+        hint = argument_problem("machine", Wording("CNV110", "read_as_cl_file"))
         raise InputError((*error.problems, hint)) from None
     observer.problems(toolpath.remarks)
     inch = texts["units"] == "inch" if "units" in texts else toolpath.unit == _INCH
@@ -73,16 +75,22 @@ def _checked(settings: Settings | None) -> dict[str, str]:
     """Return the settings as texts."""
     texts = as_texts(settings)
     problems = [
-        argument_problem(
-            "settings", f"{key} has no meaning between two CL files", f"leave it out, or write {allowed}", code="CNV111"
-        )
-        for allowed in [" or ".join(_SETTINGS)]
+        setting_problem(key, Wording("CNV111", "no_meaning_between_cl_files", allowed=tuple(_SETTINGS)))
         for key in texts.keys() - _SETTINGS.keys()
     ]
     for key, choices in _SETTINGS.items():
         if texts.get(key, choices[0]) not in choices:
-            cure = f"write {' or '.join(f'{key}={choice}' for choice in choices)}"
-            problems.append(argument_problem("settings", f"{key} is {texts[key]!r}", cure, code="CNV111"))
+            problems.append(
+                setting_problem(
+                    key,
+                    Wording(
+                        "CNV111",
+                        "unknown_choice",
+                        value=repr(texts[key]),
+                        choices=tuple(f"{key}={choice}" for choice in choices),
+                    ),
+                )
+            )
     if problems:
         raise InputError(problems)
     return texts

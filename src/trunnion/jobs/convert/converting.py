@@ -14,8 +14,8 @@ from trunnion.cl.writers import WRITERS
 from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import INCH
 from trunnion.conversion import Conversion
-from trunnion.conversion.program_events import COMPENSATION_FINDINGS
-from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem
+from trunnion.conversion.program_events import COMPENSATION_FINDINGS, COMPENSATION_WORDS
+from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, setting_problem
 from trunnion.files import OutputGroup
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
@@ -31,6 +31,7 @@ from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.result_output import open_target, written_text
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
@@ -159,15 +160,15 @@ def _checked(given: ConvertArguments) -> ConvertArguments:
     """Return the arguments, of which those go together that are about the result."""
     check_paths("subprograms", given["subprograms"])
     if (given["to_machine"] is None) is not given["to_cl"]:
-        what, cure = "is given with to_cl" if given["to_cl"] else "is missing", "give either to_machine or to_cl=True"
-        raise InputError(argument_problem("to_machine", what, cure, code="CNV110"))
+        raise InputError(
+            argument_problem("to_machine", Wording("CNV110", "two_targets" if given["to_cl"] else "no_target"))
+        )
     if given["to_dialect"] is None and given["dialect"] is not None and given["to_cl"]:
         what = "dialect is what a CL file is read in; to say what it is written in, to_dialect does"
         warnings.warn(what, FutureWarning, stacklevel=4)
         given = {**given, "to_dialect": given["dialect"], "dialect": None}
     if given["to_dialect"] is not None and not given["to_cl"]:
-        what, cure = "is given, and no CL file is written", "leave it out, or give to_cl=True"
-        raise InputError(argument_problem("to_dialect", what, cure, code="CNV110"))
+        raise InputError(argument_problem("to_dialect", Wording("CNV110", "dialect_without_cl_file")))
     dialect = given["to_dialect"] or "clsf"
     check_choice("to_dialect", dialect, tuple(WRITERS))
     return {**given, "to_dialect": dialect}
@@ -192,9 +193,7 @@ def _converted_program(
     """Return an NC program as a CL file, or as that of another machine."""
     for name in ("units", "dialect"):
         if given.get(name) is not None:
-            raise InputError(
-                argument_problem(name, "is of CL files, and a program is read", "leave it out", code="ARG130")
-            )
+            raise InputError(argument_problem(name, Wording("ARG130", "only_for_cl_files")))
     to_cl, others = given["to_cl"], given["subprograms"]
     machine, to_machine = given["machine"], given["to_machine"]
     assert machine is not None
@@ -237,14 +236,19 @@ def _converted_program(
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
 
 
+def _is_carried_over(found: Problem) -> bool:
+    """Whether the conversion itself carries over, or says, what a reader has noted."""
+    wording = found.wording
+    is_compensation = wording.variant in COMPENSATION_FINDINGS and wording.parameter("word") in COMPENSATION_WORDS
+    return is_compensation or found.code == _OF_BUILDER
+
+
 def _refuse_for_cl(**given: object) -> None:
     """Refuse arguments that are about NC programs."""
     if given["to_machine"] is not None:
-        what, cure = "is missing", "give the machine that the NC program is for; post writes the program of a CL file"
-        raise InputError(argument_problem("machine", what, cure, code="CNV110"))
+        raise InputError(argument_problem("machine", Wording("CNV110", "missing_source_machine")))
     if name := next((name for name, value in given.items() if value), ""):
-        what, cure = "has no meaning for a CL file", "leave it out, or give the machine that the NC program is for"
-        raise InputError(argument_problem(name, what, cure, code="CNV110"))
+        raise InputError(argument_problem(name, Wording("CNV110", "no_meaning_for_cl_files")))
 
 
 def _with_settings(job: PostJob, carried: Mapping[str, str]) -> PostJob:
@@ -272,9 +276,9 @@ def _with_own(settings: Mapping[str, str], job: PostJob) -> dict[str, str]:
     return found
 
 
-def _setting_faults(settings: Mapping[str, str], job: PostJob) -> dict[str, str]:
+def _setting_faults(settings: Mapping[str, str], job: PostJob) -> dict[str, Wording]:
     """Return the settings that the job's control cannot have for all operations or for one of them, each with
-    its cure.
+    what to do.
     """
     by_operation = _by_operation(settings, job.control)
     faults = [
@@ -282,25 +286,19 @@ def _setting_faults(settings: Mapping[str, str], job: PostJob) -> dict[str, str]
         for own in by_operation.values()
         for fault in control_setting_faults({**by_operation[""], **own}, job.control, job.machine)
     ]
-    return {key: cure for key, cure in faults if key in settings}
+    return {key: remedy for key, remedy in faults if key in settings}
 
 
 def check_conversion_settings(job: PostJob, to_cl: bool) -> None:
     """Raise ``InputError`` for settings that have no meaning in a conversion."""
     if "dialect" in job.settings:
-        what, cure = "dialect has no meaning here", "an NC program is no CL file: leave it out"
-        raise InputError(argument_problem("settings", what, cure, code="CNV111"))
+        raise InputError(setting_problem("dialect", Wording("CNV111", "no_dialect_of_programs")))
     if "cl_units" in job.settings:
-        what, cure = "cl_units has no meaning here", "an NC program says its unit itself"
-        raise InputError(argument_problem("settings", what, cure, code="CNV111"))
+        raise InputError(setting_problem("cl_units", Wording("CNV111", "program_states_unit")))
     if "units" in job.settings and to_cl:
-        raise InputError(
-            argument_problem("settings", "units has no meaning here", "a CL file is written in mm", code="CNV111")
-        )
+        raise InputError(setting_problem("units", Wording("CNV111", "cl_file_in_mm")))
     if "zero" in job.settings and to_cl:
-        raise InputError(
-            argument_problem("settings", "zero has no meaning in a CL file", "give it to trunnion post", code="CNV111")
-        )
+        raise InputError(setting_problem("zero", Wording("CNV111", "no_zero_in_cl_files")))
 
 
 class _ProgramConverter:
@@ -319,14 +317,13 @@ class _ProgramConverter:
         """Return the toolpath of a run for another machine, None for a CL file; one that was not understood is
         refused.
         """
-        found = [Problem(one.file, one.line, one.text, "", one.severity, code=one.code) for one in run.diagnostics]
+        found = [Problem(one.file, one.line, one.wording, severity=one.severity) for one in run.diagnostics]
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
-            what = f"{counted(len(errors), 'place')} not understood, and nothing is written"
-            cure = "force=True converts what was understood"
-            raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure, code="CNV120")))
-        told = [each for each in found if not each.what.startswith(COMPENSATION_FINDINGS) and each.code != _OF_BUILDER]
-        self.report(told)
+            raise RefusedError(
+                (*errors[:_MOST_NAMED], Problem(self._file, 0, Wording("CNV120", "not_understood", count=len(errors))))
+            )
+        self.report([each for each in found if not _is_carried_over(each)])
         converted = conversion.convert(run, control)
         toolpath, of_builder = conversion.carry_machine_words(converted.toolpath, run.machine, target)
         converted = replace(converted, toolpath=toolpath)
@@ -334,24 +331,22 @@ class _ProgramConverter:
         self._refuse(lost)
         self.report([problem for problem in of_builder if problem.severity is Severity.WARNING])
         if not converted.toolpath.operations:
-            what = "there is no motion at the part in it"
-            raise InputError(Problem(self._file, 0, what, "give a program that cuts", code="CNV121"))
+            raise InputError(Problem(self._file, 0, Wording("CNV121", "no_motion_at_part")))
         self.report(converted.warnings)
         return converted
 
     def _refuse(self, lost: Sequence[Problem]) -> None:
         """Refuse what must not be lost, unless it is forced."""
         if lost and not self._force:
-            what = f"{counted(len(lost), 'place')} cannot be converted, and nothing is written"
-            cure = "force=True converts the rest without them"
-            raise RefusedError((*lost[:_MOST_NAMED], Problem(self._file, 0, what, cure, code="CNV130")))
+            raise RefusedError(
+                (*lost[:_MOST_NAMED], Problem(self._file, 0, Wording("CNV130", "cannot_be_converted", count=len(lost))))
+            )
         self.report(lost)
 
     def warn_of_one_program(self, files: int) -> None:
         """Warn that a program with subprograms becomes one without."""
-        cure = "setting programs=operations writes several"
         self.report(
-            [Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING, code="CNV162")]
+            [Problem(self._file, 0, Wording("CNV162", "becomes_one_program", files=files), severity=Severity.WARNING)]
         )
 
     def warn_of_new_offset(self, run: Run, job: PostJob) -> None:
@@ -360,11 +355,16 @@ class _ProgramConverter:
         rows = np.flatnonzero((run.work_offset == 0) & ~run.machine_frame & (run.kind != Kind.RAPID))
         if not offset or not len(rows):
             return
-        what = f"selects no work offset before it cuts; the new program selects work_offset={offset}"
-        cure = "put the zero that held before into it, or give the setting work_offset"
         row = int(rows[0])
         self.report(
-            [Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure, Severity.WARNING, code="CNV144")]
+            [
+                Problem(
+                    run.files[int(run.file[row])],
+                    int(run.line[row]),
+                    Wording("CNV144", "selects_offset_of_its_own", offset=offset),
+                    severity=Severity.WARNING,
+                )
+            ]
         )
 
     def carry(self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine) -> dict[str, str]:
@@ -382,12 +382,24 @@ class _ProgramConverter:
         if carried.keys() & target.method_defaults.keys():
             lost -= control.method_defaults.keys()  # the modes of both follow from the machining method
         for key in sorted(lost):
-            known = key in target.settings
-            cure = f"say it as {target.name} does" if known else f"{target.name} has no such setting"
-            what = f"{key} is {stated[key]!r}, which is not carried over"
-            self.report([Problem(self._file, 0, what, cure, Severity.WARNING, code="CNV140")])
-        for key, cure in _setting_faults(carried, job).items():
-            self._not_carried(key, carried.pop(key), f"which {target.name} cannot have", cure, key in given)
+            self.report(
+                [
+                    Problem(
+                        self._file,
+                        0,
+                        Wording(
+                            "CNV140",
+                            "setting_not_carried_over" if key in target.settings else "setting_unknown_there",
+                            setting_name=key,
+                            value=repr(stated[key]),
+                            target=target.name,
+                        ),
+                        severity=Severity.WARNING,
+                    )
+                ]
+            )
+        for key, remedy in _setting_faults(carried, job).items():
+            self._not_carried(key, carried.pop(key), target.name, remedy, key in given)
         carried = _with_own(carried | job.printed, job)
         if "tool" in job.printed and "tool_call" not in job.printed:
             carried.pop("tool_call", None)
@@ -404,31 +416,54 @@ class _ProgramConverter:
             return {}
         default = target.settings.get("work_offset", "")
         text = stated.get("work_offset", control.settings["work_offset"])
-        found, words = None, ""
+        found, form = None, ""
         if "work_offset" in target.settings and readers.can_read(job.machine):
             own, others = readers.reader_of(source).work_offsets, readers.reader_of(job.machine).work_offsets
             found = conversion.carry_work_offset(text, own, others, control.family is target.family)
-            words = f": it has {others.form}"
+            form = others.form
         if found is not None:
             return {} if found == default and "work_offset" not in stated else {"work_offset": found}
         if "work_offset" in stated:
-            what = f"the work offset is {text}, which {target.name} does not have{words}"
-            self._refuse(
-                [Problem(self._file, 0, what, "setting work_offset=… says it as the other control does", code="CNV141")]
-            )
-        return {}
-
-    def _not_carried(self, key: str, text: str, why: str, cure: str, is_given: bool) -> None:
-        """Warn of a setting that is not carried over; refuse if it is work offsets that no given setting replaces."""
-        if key == "work_offset" and ":" in text and not is_given:
-            what = f"operations have different work offsets ({text}), {why}"
             self._refuse(
                 [
                     Problem(
-                        self._file, 0, what, "setting work_offset=… says them as the other control does", code="CNV143"
+                        self._file,
+                        0,
+                        Wording("CNV141", "no_such_offset_but", offset=text, target=target.name, form=form)
+                        if form
+                        else Wording("CNV141", "no_such_offset", offset=text, target=target.name),
+                    )
+                ]
+            )
+        return {}
+
+    def _not_carried(self, key: str, text: str, target: str, remedy: Wording, is_given: bool) -> None:
+        """Warn of a setting that is not carried over; refuse if it is work offsets that no given setting replaces."""
+        if key == "work_offset" and ":" in text and not is_given:
+            self._refuse(
+                [
+                    Problem(
+                        self._file,
+                        0,
+                        Wording("CNV143", "offsets_of_operations_impossible", offsets=text, target=target),
                     )
                 ]
             )
             return
-        what = f"{key} is {text!r}, {why}: it is not carried over"
-        self.report([Problem(self._file, 0, what, cure, Severity.WARNING, code="CNV140")])
+        self.report(
+            [
+                Problem(
+                    self._file,
+                    0,
+                    Wording(
+                        "CNV140",
+                        "setting_impossible_there",
+                        setting_name=key,
+                        value=repr(text),
+                        target=target,
+                        remedy=remedy,
+                    ),
+                    severity=Severity.WARNING,
+                )
+            ]
+        )

@@ -10,6 +10,7 @@ from trunnion.cl import DIALECTS, other_system, unknown_statements
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.messages import Wording
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import (
@@ -236,7 +237,7 @@ def describe_cl(
     """
     toolpaths = read_toolpaths(cl, units, strict, observer, dialect)
     if not toolpaths:
-        raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
+        raise InputError(argument_problem("cl", Wording("ARG130", "no_cl_file")))
     files = tuple(map(_file, toolpaths))
     pairs = [(toolpath.file, operation) for toolpath in toolpaths for operation in toolpath.operations]
     first = next((operation.frame for _, operation in pairs if len(operation.moves)), Frame())

@@ -1,8 +1,9 @@
 """What a code of a message or a check means: the front door to the explanations."""
 
-from trunnion.definitions.messages import did_you_mean
+from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, argument_problem
 from trunnion.explanations import Explanation, explanations
+from trunnion.messages import Wording
 
 
 def explain(code: str) -> Explanation:
@@ -34,9 +35,15 @@ def explain(code: str) -> Explanation:
     found = known.get(wanted) or known.get(wanted.upper()) or known.get(wanted.lower())
     if found is not None:
         return found
-    near = did_you_mean(wanted.upper() if any(letter.isdigit() for letter in wanted) else wanted, list(known))
-    cure = f"{near + ' ' if near else ''}write a code as messages end with it, or the name of a check"
-    raise InputError(argument_problem("code", f"there is no code {wanted!r}", cure, code="ARG110"))
+    near = meant_word(wanted.upper() if any(letter.isdigit() for letter in wanted) else wanted, list(known))
+    raise InputError(
+        argument_problem(
+            "code",
+            Wording("ARG110", "no_such_code_but_near", code=repr(wanted), near=near)
+            if near
+            else Wording("ARG110", "no_such_code", code=repr(wanted)),
+        )
+    )
 
 
 def all_explanations() -> tuple[Explanation, ...]:

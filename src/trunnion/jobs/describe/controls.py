@@ -236,11 +236,11 @@ def _template_rank(name: str) -> int:
 
 def _control_setting(control: Control, name: str) -> SettingDescription:
     rule = control.setting_rule(name)
-    own_cures = dict(control.family.validate_settings({**control.settings, name: _IMPOSSIBLE}))
-    allowed = own_cures.get(name, rule.cure()).removeprefix("write ")
+    of_family = dict(control.family.validate_settings({**control.settings, name: _IMPOSSIBLE}))
+    allowed = of_family.get(name, rule.allowed()).what
     if name == "work_offset" and FAMILIES[control.family_name].reader:
         allowed = load_reader(control.family_name).work_offsets.form
-    elif rule.kind is SettingKind.TOOL and control.setting_cure(name, "NAME") is None:
+    elif rule.kind is SettingKind.TOOL and control.allowed_instead(name, "NAME") is None:
         allowed = "the number of a tool, such as 5, or its name"
     default = control.settings[name] or _method_default(control, name) or "none"
     return SettingDescription(

@@ -42,6 +42,7 @@ from trunnion.jobs.simulate.simulating import simulate
 from trunnion.machines import Machine
 from trunnion.machines.inverse import inverse
 from trunnion.machines.spindle_range import spindle_speed_fault
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Operation, Tool, Toolpath
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.simulation.meshes import picture
@@ -154,7 +155,7 @@ def _cut(cutting: _Cutting, job: PostJob, observer: Observer) -> ImpellerCut:
     """As ``cut_impeller``: all files appear when it ends."""
     found, chosen, machine, files, inputs, cell = cutting
     definition = found.definition
-    job = replace(job, papers=PaperFiles(report=files.report), forcing="")
+    job = replace(job, papers=PaperFiles(report=files.report), can_force=False)
     with open_target(files.program, papers={"report": files.report}, inputs=inputs) as target:
         naming = job.control.subprograms if job.subprograms(target.files, target.path) is not None else None
         steps = [step for step in definition.steps if step.name in chosen]
@@ -202,14 +203,17 @@ def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
     """
     known = [step.name for step in impeller.definition.steps]
     if not known:
-        what, cure = "has no operations", "write tables [[operation]] and [[tool]] in the definition"
-        raise InputError(argument_problem("impeller", what, cure, code="IMP310"))
+        raise InputError(argument_problem("impeller", Wording("IMP310", "no_operations")))
     if isinstance(names, str) or not all(isinstance(name, str) for name in names):
         raise wrong_argument("operations", names, "give a list of names")
     if unknown := [name for name in names if name not in known]:
-        cure = f"the definition has {', '.join(known)}"
         raise InputError(
-            [argument_problem("operations", f"has {name!r}, which is none", cure, code="IMP310") for name in unknown]
+            [
+                argument_problem(
+                    "operations", Wording("IMP310", "no_such_operation", operation=repr(name), known=tuple(known))
+                )
+                for name in unknown
+            ]
         )
     return [name for name in known if name in names or not names]
 
@@ -218,9 +222,8 @@ def _check_speeds(impeller: Impeller, chosen: Sequence[str], machine: Machine) -
     """Raise ``InputError`` for spindle speeds that the machine does not have, before minutes go into paths."""
     definition = impeller.definition
     faults = [(step.name, spindle_speed_fault(machine, step.rpm)) for step in definition.steps if step.name in chosen]
-    cure = "give it an rpm that the machine has"
     if problems := [
-        Problem(definition.file, 0, f"operation {name}: {fault}", cure, code="IMP311")
+        Problem(definition.file, 0, Wording("IMP311", "spindle_speed_impossible", operation=name, fault=fault))
         for name, fault in faults
         if fault
     ]:
@@ -308,10 +311,19 @@ def _steps(
 def _shared(file: str, paths: StepPaths) -> Problem:
     """Return the warning about a step that keeps only a share of its clearances."""
     cutter, shank, holder, _ = paths.step.clearance
-    wanted = f"{cutter:g}, {shank:g} and {holder:g} mm are wanted of cutter, shank and holder"
-    what = f"{paths.step.name}: keeps only {paths.share:.0%} of its clearances: {wanted}"
     return Problem(
-        file, paths.step.line, what, "choose a thinner or longer tool, or want less", Severity.WARNING, code="IMP330"
+        file,
+        paths.step.line,
+        Wording(
+            "IMP330",
+            "clearances_kept_in_part",
+            step=paths.step.name,
+            share=paths.share,
+            cutter=cutter,
+            shank=shank,
+            holder=holder,
+        ),
+        severity=Severity.WARNING,
     )
 
 
@@ -325,9 +337,11 @@ def _one_layer(file: str, paths: StepPaths) -> Iterator[Problem]:
         and step.step_down > paths.radius
         and not any(one.layer for one in passes)
     ):
-        what = f"{step.name}: step_down_mm = {step.step_down:g} cuts the whole depth of a channel in one layer"
         yield Problem(
-            file, step.line, what, "give a step_down_mm that the tool can cut", Severity.WARNING, code="IMP331"
+            file,
+            step.line,
+            Wording("IMP331", "whole_depth_in_one_layer", step=step.name, step_down=step.step_down),
+            severity=Severity.WARNING,
         )
 
 

@@ -17,6 +17,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import operation_names
 from trunnion.impeller.steps import MachiningStep, file_stem
 from trunnion.jobs.inputs.arguments import check_path
+from trunnion.messages import Wording
 from trunnion.output.subprograms import SubprogramNames
 
 
@@ -58,10 +59,7 @@ class ImpellerFiles:
         for file in (self.program, self.report):
             place = resolve_output(file)
             if place.path.exists() and not EarlierJob(place.path).wrote(place.path):
-                what = "would be replaced, although no earlier cut has written it as it is"
-                problems.append(
-                    Problem(place.name, 0, what, "choose another folder, or remove the file", code="IMP410")
-                )
+                problems.append(Problem(place.name, 0, Wording("IMP410", "not_as_written_by_cut")))
         if problems:
             raise InputError(problems)
 
@@ -109,11 +107,7 @@ def output_folder(output: object) -> Iterator[Path]:
     """
     folder = check_path("output", output)
     if str(folder) == "-":
-        raise InputError(
-            argument_problem(
-                "output", "is -, and several files have no place in a stream", "name a folder", code="IMP410"
-            )
-        )
+        raise InputError(argument_problem("output", Wording("IMP410", "several_files_to_stdout")))
     made = list(_missing([folder, *folder.parents]))
     try:
         folder.mkdir(parents=True, exist_ok=True)

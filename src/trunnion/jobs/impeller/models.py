@@ -11,6 +11,7 @@ from trunnion.impeller.model import ImpellerModel, impeller_model
 from trunnion.impeller.solid.making import ImpellerSolid, impeller_solid
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.messages import Wording
 from trunnion.simulation.meshes import STEP_ENDINGS
 
 
@@ -103,9 +104,7 @@ def write_impeller_step(impeller: Impeller | FilePath, output: FilePath, *, tole
     """
     path = check_path("output", output)
     if path.suffix.lower() not in STEP_ENDINGS:
-        raise InputError(
-            Problem(str(path), 0, "is not the name of a STEP file", "end it in .stp or .step", code="IMP411")
-        )
+        raise InputError(Problem(str(path), 0, Wording("IMP411", "no_name_of_step_file")))
     wanted = _checked(tolerance)
     found = _loaded(impeller)
     definition = found.definition

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 from trunnion.errors import Problem, Severity
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Message
 from trunnion.planning.rotary_positions import wound_turns
-from trunnion.wording import counted
 
 
 def winding_problems(file: str, step: MachiningStep, motions: Sequence[Motion], machine: Machine) -> Iterator[Problem]:
@@ -26,9 +26,14 @@ def winding_problems(file: str, step: MachiningStep, motions: Sequence[Motion], 
     events = [event for motion in motions for event in motion.operation.events]
     rewinds = sum(isinstance(event, Message) and event.text.startswith("Rewind: ") for event in events)
     wound = max((turns for motion in motions for _, turns in wound_turns(machine, motion.rotary)), default=0.0)
-    costs = [f"{counted(rewinds, 'rewind')} in the cut"] if rewinds else []
-    costs += [f"{wound:.0f} turns back home"] if wound else []
-    if costs:
-        what = f"{step.name}: tilt_deg = {step.tilt:g} turns a rotary axis with every turn of the helix, and costs "
-        cure = "tilt_deg = 0 costs none of it"
-        yield Problem(file, step.line, what + " and ".join(costs), cure, Severity.WARNING, code="IMP334")
+    if rewinds and wound:
+        wording = Wording(
+            "IMP334", "rewinds_and_turns_back_home", step=step.name, tilt=step.tilt, rewinds=rewinds, turns=wound
+        )
+    elif rewinds:
+        wording = Wording("IMP334", "rewinds", step=step.name, tilt=step.tilt, rewinds=rewinds)
+    elif wound:
+        wording = Wording("IMP334", "turns_back_home", step=step.name, tilt=step.tilt, turns=wound)
+    else:
+        return
+    yield Problem(file, step.line, wording, severity=Severity.WARNING)

@@ -25,6 +25,7 @@ from trunnion.controls.vocabulary import EVENT_PLACE
 from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Event, Insert, Operation, Toolpath, UnknownStatement
 
 #: Statements by their parts: the major word, what is behind it, and the events in their place.
@@ -52,27 +53,22 @@ def check_statements(machine: Machine) -> None:
     InputError
         With each entry of ``[control.statements]`` and ``[cl.words]`` whose statement is always read.
     """
-    what, cure = "is a statement that is read: the entry would never count", "leave it out"
     table = resolve_extends(machine.control.unread_copy(), control_library()).table("statements")
     for name in [name for name in list(table.keys()) if not can_be_unknown(name)]:
-        table.add_problem(name, what, cure, code="DEF550")
+        table.add_problem(name, Wording("DEF550", "statement_always_read"))
     templates = resolve_extends(machine.control.unread_copy(), control_library()).table("templates")
     for name in [name for name in list(templates.keys()) if name.startswith(EVENT_PLACE)]:
         word = name.removeprefix(EVENT_PLACE)
         if word not in _TEXT_STATEMENTS and not can_be_unknown(word):
-            templates.add_problem(
-                name, what, f"write a template for {_OR.join(_TEXT_STATEMENTS)} or a word of a shop", code="DEF590"
-            )
+            templates.add_problem(name, Wording("DEF590", "template_never_used", statements=_TEXT_STATEMENTS))
         elif word != word.upper():
-            templates.add_problem(
-                name, "is not in capitals, as words of CL files are", f"write {name.upper()}", code="DEF590"
-            )
+            templates.add_problem(name, Wording("DEF590", "template_not_in_capitals", capitals=name.upper()))
     file = machine.files[-1] if machine.files else machine.key
     words = [word for word in machine.cl_words if not can_be_unknown(word)]
     problems = [
         *table.problems,
         *templates.problems,
-        *(Problem(file, 0, f"cl.words.{word} {what}", cure, code="DEF550") for word in words),
+        *(Problem(file, 0, Wording("DEF550", "statement_always_read").of_key(f"cl.words.{word}")) for word in words),
     ]
     if problems:
         raise InputError(problems)
@@ -100,7 +96,9 @@ def replace_unknown_statements(
     found = [(toolpath, _replaced(toolpath, entries, words)) for toolpath in toolpaths]
     problems = [problem for _, new in found for problem in unknown_statement_errors(new, _CURE)]
     if len(problems) > _MOST_LISTED:
-        more = Problem(problems[0].file, 0, f"and {len(problems) - _MOST_LISTED} more", code="CL180")
+        more = Problem(
+            problems[0].file, 0, Wording("CL180", "more_unknown_statements", count=len(problems) - _MOST_LISTED)
+        )
         problems = [*problems[:_MOST_LISTED], more]
     if problems:
         raise InputError(problems)

@@ -24,6 +24,7 @@ from trunnion.jobs.inputs.arguments import (
 from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 
@@ -161,8 +162,7 @@ def load_machine(machine: FilePath) -> Machine:
     except InputError:
         if not (path.endswith(".toml") and is_control_file(Path(path))):
             raise
-        cure = "give a machine whose [control] extends it"
-        raise InputError(Problem(path, 0, "defines a control, not a machine", cure, code="DEF140")) from None
+        raise InputError(Problem(path, 0, Wording("DEF140", "control_for_machine"))) from None
 
 
 def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[FilePath] = ()) -> Run:
@@ -223,19 +223,15 @@ def as_run(
     if not isinstance(nc, Run):
         return read_program(check_path(names[0], nc), machine=machine, subprograms=others)
     if subprograms:
-        raise InputError(
-            Problem(nc.files[0], 0, "has already been read", "give the subprograms to read_program", code="ARG170")
-        )
+        raise InputError(Problem(nc.files[0], 0, Wording("ARG170", "subprograms_after_reading")))
     own = nc.machine
     if not _are_defined_alike(own, machine):
-        what = f"was read for {own.key}, whose definition differs from that of {machine.key} here"
         raise InputError(
-            Problem(nc.files[0], 0, what, "give the path of the program, or the machine that ran it", code="ARG170")
+            Problem(nc.files[0], 0, Wording("ARG170", "read_for_other_machine", machine=own.key, asked=machine.key))
         )
     given = ((machine.workpiece_zero, own.workpiece_zero), (machine.tool_length, own.tool_length))
     if any(new is not None and new != old for new, old in given):
-        what = "has already been read with another workpiece zero or tool length"
-        raise InputError(Problem(nc.files[0], 0, what, "give the path of the program", code="ARG170"))
+        raise InputError(Problem(nc.files[0], 0, Wording("ARG170", "read_with_other_setup")))
     return nc
 
 

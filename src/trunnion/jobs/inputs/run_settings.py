@@ -9,6 +9,7 @@ from typing import Final
 
 from trunnion.cl import DIALECTS
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, PROGRAM_MEANINGS
+from trunnion.messages import Wording
 from trunnion.model.motion import PoleStrategy
 from trunnion.options.groups import POSTING
 from trunnion.options.kinds import Choice, Number
@@ -53,11 +54,29 @@ class RunSetting:
         limits = f"{low:g} to {high:g}" if high < _UNLIMITED else f"at least {low:g}"
         return f"{self.form}, {limits}, such as {self.example}"
 
-    def cure(self, key: str) -> str:
-        """Return what to write instead of a value that cannot be."""
+    def fault(self, key: str, value: object) -> Wording:
+        """Return the message about a value that cannot be; ``written`` says where it is no setting but an argument."""
+        shown, meaning, written = repr(value), self.meaning, f"{key}={self.form}"
         if self.choices:
-            return f"write {' or '.join(f'{key}={choice}' for choice in self.choices)}. {self.meaning}"
-        return f"write {key}={self.allowed}. {self.meaning}"
+            choices = tuple(f"{key}={choice}" for choice in self.choices)
+            return Wording("ARG220", "no_choice", value=shown, choices=choices, meaning=meaning)
+        if self.bounds is None:
+            return Wording("ARG220", "not_of_form", value=shown, written=written, example=self.example, meaning=meaning)
+        low, high = self.bounds
+        if high < _UNLIMITED:
+            return Wording(
+                "ARG220",
+                "out_of_range",
+                value=shown,
+                written=written,
+                low=low,
+                high=high,
+                example=self.example,
+                meaning=meaning,
+            )
+        return Wording(
+            "ARG220", "too_small", value=shown, written=written, low=low, example=self.example, meaning=meaning
+        )
 
 
 def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:

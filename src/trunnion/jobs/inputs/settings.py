@@ -16,10 +16,11 @@ from trunnion import readers
 from trunnion.controls import Control
 from trunnion.controls.setting_rules import is_one_line
 from trunnion.controls.vocabulary import TCP_SETTINGS
-from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.definitions.messages import meant_word
+from trunnion.errors import InputError, Problem, argument_problem, setting_problem
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.machines import Machine
+from trunnion.messages import Wording, phrase
 
 #: A setting as text, as a number, as several numbers (``zero``), on or off, or None: it is not set.
 SettingValue: TypeAlias = str | float | bool | datetime.date | Iterable[float] | None
@@ -48,18 +49,19 @@ def as_texts(settings: Settings | None) -> dict[str, str]:
     if settings is None:
         return {}
     if not isinstance(settings, Mapping):
-        what, cure = f"is a {type(settings).__name__}", 'give a mapping, such as {"title": "BLADE", "tolerance": 0.01}'
-        raise InputError(argument_problem("settings", what, cure, code="ARG140"))
+        raise InputError(argument_problem("settings", Wording("ARG140", "no_mapping", type=type(settings).__name__)))
     problems = [
-        argument_problem(
-            "settings", f"the key {key!r} is a {type(key).__name__}", "write the name of a setting", code="ARG140"
-        )
+        argument_problem("settings", Wording("ARG140", "no_name_of_setting", key=repr(key), type=type(key).__name__))
         for key in settings
         if not isinstance(key, str)
     ]
     texts = {key: _as_text(key, value) for key, value in settings.items() if value is not None}
     wrong = [key for key, text in texts.items() if text is None]
-    problems += [_problem(key, settings[key], "write a text or a number") for key in wrong if isinstance(key, str)]
+    problems += [
+        setting_problem(key, Wording("ARG220", "neither_text_nor_number", value=repr(settings[key])))
+        for key in wrong
+        if isinstance(key, str)
+    ]
     if problems:
         raise InputError(problems)
     return {key: text for key, text in texts.items() if text is not None}
@@ -83,54 +85,57 @@ def _as_text(key: str, value: object) -> str | None:
     return ",".join(str(float(part)) for part in numbers) if len(numbers) == len(parts) else None
 
 
-def _problem(key: str, value: object, cure: str) -> Problem:
-    return argument_problem("settings", f"{key} is {value!r}", cure, code="ARG220")
-
-
 def check_settings(settings: Mapping[str, str], control: Control, machine: Machine) -> None:
     """Raise ``InputError`` for all settings that the control does not have or that it cannot have."""
     problems = [_unknown_setting(key, control) for key in settings if key not in {*control.settings, *RUN_SETTINGS}]
     problems += [
-        _problem(key, value, "write one line without control characters")
+        setting_problem(key, Wording("ARG220", "no_single_line", value=repr(value)))
         for key, value in settings.items()
         if key not in control.settings and not is_one_line(value)
     ]
     problems += [
-        _problem(key, settings[key], setting.cure(key))
+        setting_problem(key, setting.fault(key, settings[key]))
         for key, setting in RUN_SETTINGS.items()
         if key in settings and setting.choices and settings[key] not in setting.choices
     ]
     if settings.get("preselect") == "on" and not control.family.tool_preselection("1"):
-        cure = f"leave it out: it is not known how {control.name} selects a tool before it is called"
-        problems.append(_problem("preselect", "on", cure))
+        problems.append(setting_problem("preselect", Wording("ARG220", "never_preselected", control=control.name)))
     known = {**control.settings, **settings}
     problems += [
-        _problem(key, known[key], f"{cure}{_meaning(key, control)}")
-        for key, cure in control_setting_faults(settings, control, machine)
+        setting_problem(key, _of_control(known[key], remedy, control.setting_meanings.get(key, "")))
+        for key, remedy in control_setting_faults(settings, control, machine)
     ]
     if problems:
         raise InputError(problems)
 
 
-def _meaning(key: str, control: Control) -> str:
-    meaning = control.setting_meanings.get(key)
-    return f". {meaning}" if meaning else ""
+def _of_control(value: str, remedy: Wording, meaning: str) -> Wording:
+    if meaning:
+        return Wording("ARG220", "not_of_control_with_meaning", value=repr(value), remedy=remedy, meaning=meaning)
+    return Wording("ARG220", "not_of_control", value=repr(value), remedy=remedy)
 
 
-def control_setting_faults(settings: Mapping[str, str], control: Control, machine: Machine) -> list[tuple[str, str]]:
-    """Return the settings of a control that cannot be as they are, each with its cure."""
-    judged = {key: control.setting_cure(key, value) for key, value in settings.items() if key in control.settings}
-    faults = [(key, cure) for key, cure in judged.items() if cure]
+def control_setting_faults(
+    settings: Mapping[str, str], control: Control, machine: Machine
+) -> list[tuple[str, Wording]]:
+    """Return the settings of a control that cannot be as they are, each with what to do: a phrase."""
+    judged = {key: control.allowed_instead(key, value) for key, value in settings.items() if key in control.settings}
+    faults = [(key, phrase("write", allowed=allowed)) for key, allowed in judged.items() if allowed is not None]
     faults += [(key, _no_effect(key, control)) for key in judged if _is_idle(key, settings[key], control)]
     if "work_offset" in judged and readers.can_read(machine):
         offsets = readers.reader_of(machine).work_offsets
-        faults += [] if offsets.value_of(settings["work_offset"]) else [("work_offset", f"write {offsets.form}")]
+        if not offsets.value_of(settings["work_offset"]):
+            faults.append(("work_offset", phrase("write", allowed=offsets.form)))
     effective = {**control.settings, **{key: value for key, value in settings.items() if value}}
     own = [key for key in judged if settings[key] not in ("", control.settings[key])]
     beside = {key: control.missing_beside(key, effective) for key in own}
-    faults += [(key, f"write {name} too: without it no line has it") for key, name in beside.items() if name]
+    faults += [(key, phrase("write_too", name=name)) for key, name in beside.items() if name]
     found = dict(faults)
-    return faults + [(key, cure) for key, cure in control.family.validate_settings(effective) if key not in found]
+    return faults + [
+        (key, phrase("write", allowed=allowed))
+        for key, allowed in control.family.validate_settings(effective)
+        if key not in found
+    ]
 
 
 def _is_idle(key: str, text: str, control: Control) -> bool:
@@ -138,16 +143,18 @@ def _is_idle(key: str, text: str, control: Control) -> bool:
     return bool(text) and text != control.settings[key] and not control.has_effect(key)
 
 
-def _no_effect(key: str, control: Control) -> str:
-    fields = " or ".join(f"{{{name}}}" for name in control.family.SETTING_FIELDS.get(key, (key,)))
-    where = "it has no TCP" if key in TCP_SETTINGS else f"no template of its definition has {fields}"
-    return f"leave it out: it has no effect on {control.name}, for {where}"
+def _no_effect(key: str, control: Control) -> Wording:
+    if key in TCP_SETTINGS:
+        return phrase("no_effect_without_tcp", control=control.name)
+    fields = tuple(f"{{{name}}}" for name in control.family.SETTING_FIELDS.get(key, (key,)))
+    return phrase("no_effect_without_field", control=control.name, fields=fields)
 
 
 def _unknown_setting(key: str, control: Control) -> Problem:
-    known = (*control.settings, *RUN_SETTINGS)
-    cure = did_you_mean(key, known) or f"{control.name} has {', '.join(sorted(known))}"
-    return argument_problem("settings", f"{key} is not a setting of {control.name}", cure, code="ARG210")
+    known = tuple(sorted((*control.settings, *RUN_SETTINGS)))
+    if near := meant_word(key, known):
+        return setting_problem(key, Wording("ARG210", "unknown_but_near", control=control.name, near=near))
+    return setting_problem(key, Wording("ARG210", "unknown", control=control.name, known=known))
 
 
 def split_by_operation(
@@ -166,17 +173,13 @@ def split_by_operation(
     for key, text in settings.items():
         for name, value in control.values_by_operation(key, text):
             if name and key in own.get(name, ()):
-                what = f"{key} has two values for operation {name}: {text!r}"
-                problems.append(argument_problem("settings", what, f"write {key}={name}:VALUE once", code="ARG230"))
+                twice = Wording("ARG230", "two_values_of_operation", name=key, operation=name, value=repr(text))
+                problems.append(setting_problem(key, twice))
             elif name:
                 own.setdefault(name, {})[key] = value
             elif key in program:
-                cure = f"write {key}=VALUE,OPERATION:VALUE: a text can have no comma beside a colon"
-                problems.append(
-                    argument_problem(
-                        "settings", f"{key} has two values for all operations: {text!r}", cure, code="ARG230"
-                    )
-                )
+                twice = Wording("ARG230", "two_values_of_all_operations", name=key, value=repr(text))
+                problems.append(setting_problem(key, twice))
             else:
                 program[key] = value
     if problems:
@@ -190,20 +193,15 @@ def check_operation_names(
     own: Mapping[str, Mapping[str, str]], settings: Mapping[str, str], names: Iterable[str]
 ) -> None:
     """Raise ``InputError`` for settings of operations not among ``names``, or where ``settings`` cannot differ."""
-    known = list(dict.fromkeys(names))
-    cure = f"write one of {', '.join(known)}; in a setting that can differ by operation, a colon follows its name"
+    known = tuple(dict.fromkeys(names))
     problems = [
-        argument_problem(
-            "settings", f"{key} is set for operation {name}, and the program has none of that name", cure, code="ARG230"
-        )
+        setting_problem(key, Wording("ARG230", "no_operation_before_colon", name=name, known=known))
         for name, values in own.items()
         if name not in known
         for key in values
     ]
     problems += [
-        argument_problem(
-            "settings", f"{key} is {text!r}, and it cannot differ by operation", f"write {key}=VALUE", code="ARG230"
-        )
+        setting_problem(key, Wording("ARG230", "cannot_differ", name=key, value=repr(text)))
         for key, text in settings.items()
         if key != "mode" and any(entry.rpartition(":")[0] in known for entry in text.split(",") if ":" in entry)
     ]
@@ -230,7 +228,7 @@ def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     except ValueError:
         value = math.nan
     if not low <= value <= high:
-        raise InputError(_problem(key, text, setting.cure(key)))
+        raise InputError(setting_problem(key, setting.fault(key, text)))
     return value
 
 
@@ -258,8 +256,8 @@ def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
     ]
     lost = [axis.name for axis in axes if not axis.low < axis.high]
     if lost:
-        what = f"limit_margin is {margin:g}, and axis {lost[0]} has no travel left"
-        raise InputError(argument_problem("settings", what, "write a smaller number", code="ARG220"))
+        wording = Wording("ARG220", "no_travel_left", margin=margin, axis=lost[0])
+        raise InputError(setting_problem("limit_margin", wording))
     return replace(machine, axes=tuple(axes))
 
 
@@ -280,9 +278,9 @@ def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_le
 
 
 def _of_argument(problem: Problem, name: str) -> Problem:
-    """Return a problem with a setting as one with the argument of its name."""
-    what, cure = problem.what.removeprefix(f"{name} "), problem.cure.replace(f"write {name}=", "write ", 1)
-    return argument_problem(name, what, cure, problem.severity, code=problem.code)
+    """Return a problem with a setting as one with the argument of its name, whose value stands alone."""
+    wording = problem.wording.bare().with_parameters(written=RUN_SETTINGS[name].form)
+    return argument_problem(name, wording, severity=problem.severity)
 
 
 def check_tolerance(argument: str, value: object, *, optional: bool = False) -> None:
@@ -294,9 +292,7 @@ def check_tolerance(argument: str, value: object, *, optional: bool = False) -> 
     else:
         is_tolerance = False
     if not is_tolerance:
-        raise InputError(
-            argument_problem(argument, f"is {value!r}", "give a number above 0, such as 0.001", code="ARG140")
-        )
+        raise InputError(argument_problem(argument, Wording("ARG140", "no_tolerance", value=repr(value))))
 
 
 def m_code(text: str) -> int | None:
@@ -319,7 +315,8 @@ def work_offset_setting(text: str, machine: Machine) -> int | None:
     offsets = readers.reader_of(machine).work_offsets
     value = offsets.value_of(" ".join(text.upper().split()))
     if value is None:
-        raise InputError(argument_problem("work_offset", f"is {text!r}", f"write {offsets.form}", code="ARG220"))
+        wording = Wording("ARG220", "no_work_offset", value=repr(text), form=offsets.form)
+        raise InputError(argument_problem("work_offset", wording))
     return value
 
 
@@ -330,5 +327,5 @@ def _point_setting(text: str) -> tuple[float, float, float]:
     except ValueError:
         x = y = z = math.nan
     if not max(abs(x), abs(y), abs(z)) <= _FARTHEST_ZERO or math.isnan(x + y + z):
-        raise InputError(_problem("zero", text, RUN_SETTINGS["zero"].cure("zero")))
+        raise InputError(setting_problem("zero", RUN_SETTINGS["zero"].fault("zero", text)))
     return x, y, z

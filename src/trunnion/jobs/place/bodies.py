@@ -9,6 +9,7 @@ from trunnion.jobs.inputs.bodies import MeshLike, fixture_meshes, known_tools, r
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.place.inputs import PlacedInput
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.placing.collisions.best_clearance import Guard
 from trunnion.placing.collisions.guarded_pairs import (
     Changes,
@@ -79,9 +80,7 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is
             raise InputError(problems[-1])
     guard = Guard(pairs.kept if could_meet else (), placed.tool, lengths, pairs.left_out)
     if could_meet and not guard.is_changed:
-        what = "no place and no turn changes how far the tool is from what is clamped with the part"
-        cure = "state the bodies of the machine ([[body]]) to have them kept apart"
-        problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC270"))
+        problems.append(argument_problem("goal", Wording("PLC270", "bodies_always_alike"), severity=Severity.WARNING))
     problems += _other_lengths(placed, lengths, machine)
     if machine.tool_length is None and lengths:
         machine = replace(machine, tool_length=max(lengths.values()))
@@ -91,16 +90,12 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is
 def _none_could_meet(machine: Machine, *, is_needed: bool) -> Problem:
     """Return what is missing where there are no two bodies to be kept apart."""
     name, severity = ("goal", Severity.ERROR) if is_needed else ("tools", Severity.WARNING)
-    if machine.bodies and not machine.spindle_point_is_stated:
-        what = (
-            f"{machine.key} has no spindle.gauge_point_mm, so that its spindle and tools are not kept apart from the"
-            " rest of the machine, and nothing else could meet"
-        )
-        cure = "enter where the spindle nose stands with the slides at zero, or give tools, fixtures and part"
-    else:
-        what = f"{machine.key} and the arguments have no two bodies that could meet"
-        cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
-    return argument_problem(name, what, cure, severity, code="PLC190")
+    is_without_point = bool(machine.bodies) and not machine.spindle_point_is_stated
+    return argument_problem(
+        name,
+        Wording("PLC190", "no_gauge_point" if is_without_point else "no_two_bodies", machine=machine.key),
+        severity=severity,
+    )
 
 
 def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
@@ -139,8 +134,14 @@ def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> 
             if placed.tools[number] and (known.stated or known.libraries):
                 raise
             first = error.problems[0]
-            what = f"tool {called} is not kept apart from anything: {first.what}"
-            problems.append(Problem(first.file, first.line, what, first.cure, Severity.WARNING, code="PLC280"))
+            problems.append(
+                Problem(
+                    first.file,
+                    first.line,
+                    Wording("PLC280", "tool_not_kept_apart", tool=called, reason=first.wording),
+                    severity=Severity.WARNING,
+                )
+            )
     return found
 
 
@@ -154,9 +155,11 @@ def _lengths(
         if length:
             lengths[number] = length
         elif is_asked:
-            what = f"the length of tool {placed.tools[number] or NO_CALL} is not known, from its tip to the gauge point"
-            cure = "give it: the bodies of the machine stand so far above the part"
-            raise InputError(argument_problem("tool_length", what, cure, code="SIM310"))
+            raise InputError(
+                argument_problem(
+                    "tool_length", Wording("SIM310", "length_of_tool_unknown", tool=placed.tools[number] or NO_CALL)
+                )
+            )
     return lengths
 
 
@@ -182,7 +185,7 @@ def _other_lengths(placed: PlacedInput, lengths: Mapping[int, float], machine: M
     stated = machine.tool_length
     other = {} if stated is None else {k: own for k, own in lengths.items() if abs(own - stated) > _LIKE_LENGTH}
     if other:
-        tools = ", ".join(f"{placed.tools[k] or NO_CALL} of {own:g} mm" for k, own in other.items())
-        what = f"says {stated:g} mm, and places are sought with the lengths of the tools: {tools}"
-        cure = "post and check with each tool's own length: with another one slides stand elsewhere"
-        yield argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC290")
+        tools = tuple(f"{placed.tools[k] or NO_CALL} of {own:g} mm" for k, own in other.items())
+        yield argument_problem(
+            "tool_length", Wording("PLC290", "lengths_differ", stated=stated, tools=tools), severity=Severity.WARNING
+        )

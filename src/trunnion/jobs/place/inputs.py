@@ -20,6 +20,7 @@ from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.planning import plan
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
 from trunnion.model.rotations import about_x
@@ -30,7 +31,6 @@ from trunnion.placing.plan_rows import rows_of_plan
 from trunnion.placing.program_heads import damaged_notices, stated_place
 from trunnion.placing.program_rows import _rows_at_workpiece, rows_of_run
 from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
-from trunnion.wording import counted
 
 #: Places that are not understood which an error names one by one.
 _MOST_NAMED = 20
@@ -86,7 +86,7 @@ def read_input(
     given = cast("list[ToolpathLike]", list(files))
     subprograms, hooks = check_paths("subprograms", stated["subprograms"]), check_paths("hooks", stated["hooks"])
     if not given:
-        raise InputError(Problem("files", 0, "there is no file", "give at least one", code="ARG130"))
+        raise InputError(Problem("files", 0, Wording("ARG130", "no_file")))
     texts = as_texts(settings)
     toolpaths: list[Toolpath] = []
     programs: list[Path] = []
@@ -96,8 +96,9 @@ def read_input(
         if found is None and isinstance(each, str | os.PathLike):
             programs.append(Path(each))
     if programs and len(programs) < len(given):
-        what = f"is an NC program, and {counted(len(given) - len(programs), 'other file')} is not"
-        raise InputError(Problem(str(programs[0]), 0, what, "give CL files or NC programs, not both", code="PLC110"))
+        raise InputError(
+            Problem(str(programs[0]), 0, Wording("PLC110", "programs_and_others", count=len(given) - len(programs)))
+        )
     if programs and hooks:
         raise no_cl_files()
     if programs:
@@ -116,10 +117,15 @@ def _clamping_of_programs(programs: Sequence[Path]) -> tuple[Clamping | None, tu
     first = next((own.clamping for own in stated if own.clamping is not None), None)
     for program, own in zip(programs, stated, strict=True):
         if first is not None and not (own.clamping or Clamping()).is_like(first):
-            says = "says nothing of its part" if own.clamping is None else f"says that its part is {own.clamping}"
-            what = f"its head {says}, and that of another one that it is {first}"
-            cure = "place programs of one clamping together"
-            raise InputError(Problem(str(program), 0, what, cure, code="PLC310"))
+            raise InputError(
+                Problem(
+                    str(program),
+                    0,
+                    Wording("PLC310", "clamping_not_stated", first=first)
+                    if own.clamping is None
+                    else Wording("PLC310", "clamped_otherwise", own=own.clamping, first=first),
+                )
+            )
     return first, tuple(problems)
 
 
@@ -144,8 +150,7 @@ def toolpaths_to_post(
 
 def nc_program_stays(file: str) -> Problem:
     """Return the error of an NC program that is to be posted where it was placed."""
-    what, cure = "an NC program stays as it is", "set its work offset to the place, or give the CL files"
-    return Problem(file, 0, what, cure, code="PLC140")
+    return Problem(file, 0, Wording("PLC140", "program_stays"))
 
 
 def _toolpaths_of(
@@ -169,9 +174,10 @@ def _toolpaths_of(
 def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run:
     run = readers.run_program(program, machine, subprograms=subprograms)
     if run.errors:
-        found = [Problem(each.file, each.line, each.text, code=each.code) for each in run.errors[:_MOST_NAMED]]
-        what = f"{counted(len(run.errors), 'place')} not understood: where it goes is not known"
-        raise RefusedError((*found, Problem(str(program), 0, what, code="PLC120")))
+        found = [Problem(each.file, each.line, each.wording) for each in run.errors[:_MOST_NAMED]]
+        raise RefusedError(
+            (*found, Problem(str(program), 0, Wording("PLC120", "not_understood", count=len(run.errors))))
+        )
     if beyond := tuple(_beyond_travel(run)):
         raise RefusedError(beyond)
     return run
@@ -200,10 +206,18 @@ def _planned_tilted(
 def _beyond_travel(run: Run) -> Iterator[Problem]:
     """Positions in machine coordinates that no place of the part brings into the travel."""
     for found in positions_beyond_travel(run):
-        name, file = run.machine.names[found.column], run.files[run.state.file[found.row]]
-        what = f"{name} goes to {found.value:.3f} in machine coordinates, its limit is {found.limit:g} mm"
-        cure = "correct the block: no place of the part changes it"
-        yield Problem(file, run.lines[found.row], what, cure, code="PLC180")
+        file = run.files[run.state.file[found.row]]
+        yield Problem(
+            file,
+            run.lines[found.row],
+            Wording(
+                "PLC180",
+                "beyond_travel_of_machine",
+                axis=run.machine.names[found.column],
+                value=found.value,
+                limit=found.limit,
+            ),
+        )
 
 
 def _planned(

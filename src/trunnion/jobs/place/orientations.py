@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.arguments import wrong_argument
+from trunnion.messages import Wording
 from trunnion.placing.best_turn import Grid
 
 #: Orientations are at most as many.
@@ -37,8 +38,7 @@ def orientations(turns: float | Sequence[float] | None, tilts: float | Sequence[
     turn_angles, refines_turns = _angles("turns", turns, cure, 0.0, 360.0)
     count = len(turn_angles) * len(tilt_angles)
     if count > _MOST:
-        what = f"and tilts are {count} together, and {_MOST} are the most"
-        raise InputError(argument_problem("turns", what, "give wider steps", code="ARG140"))
+        raise InputError(argument_problem("turns", Wording("ARG140", "too_many_orientations", count=count, most=_MOST)))
     return Grid(turn_angles, tilt_angles, refines_turns, refines_tilts)
 
 

@@ -17,6 +17,7 @@ from trunnion.jobs.place.inputs import read_input
 from trunnion.jobs.place.orientations import orientations
 from trunnion.jobs.place.table import standing_on
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import clamped_after
 from trunnion.placing.body_distances import touch_warnings
 from trunnion.placing.collisions.path_samples import lengths_of
@@ -111,8 +112,7 @@ def place(
     tool_length = texts.get("tool_length") if stated["tool_length"] is None else stated["tool_length"]
     loaded = set_up_machine(as_machine(machine), zero, tool_length)
     if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
-        what = f"no slide of {loaded.key} has limits: the part may sit anywhere"
-        raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
+        raise InputError(argument_problem("machine", Wording("PLC130", "no_limits", machine=loaded.key)))
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
     remarks: list[Problem] = []
     among = BodiesInput(
@@ -145,11 +145,11 @@ def place(
 
 def unknown_length(machine: Machine) -> list[Problem]:
     """Return a warning where places depend on a tool length that nobody has stated."""
-    if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
+    axes = tuple(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
+    if machine.tool_length is not None or not axes:
         return []
-    names = ", ".join(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
-    what, cure = (
-        f"the tool counts as 0 mm long, and places depend on its length ({names})",
-        "give the length of the tool",
-    )
-    return [argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC210")]
+    return [
+        argument_problem(
+            "tool_length", Wording("PLC210", "places_depend_on_length", axes=axes), severity=Severity.WARNING
+        )
+    ]

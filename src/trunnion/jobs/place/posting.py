@@ -10,6 +10,7 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
+from trunnion.messages import Wording
 from trunnion.placing.placement import Placement
 
 
@@ -55,7 +56,7 @@ def post_placed(
     if not found.toolpaths:
         raise InputError(nc_program_stays(found.files[0]))
     if found.best is None or not found.fits:
-        raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
+        raise InputError(Problem(found.files[0], 0, Wording("PLC150", "fits_nowhere")))
     texts = as_texts(given.get("settings"))
     if found.tool_length_mm is not None:
         texts.setdefault("tool_length", str(found.tool_length_mm))

@@ -15,6 +15,7 @@ from trunnion.jobs.place.bodies import BodiesInput, stock_mesh
 from trunnion.jobs.project.file import load_project
 from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import PostedSetup, Project
+from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 
 
@@ -47,15 +48,19 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
     """
     loaded = load_project(project)
     if loaded.hooks:
-        what, cure = "has hooks, which would change its CL files", "give the CL files that are to be placed"
-        raise InputError(Problem(str(project), 0, what, cure, code="PLC160"))
+        raise InputError(Problem(str(project), 0, Wording("PLC160", "project_with_hooks")))
     setup = _setup(loaded, project, name)
     settings = dict(setup.settings)
     angles, problems = checked_angles(*setup.angles), list[Problem]()
     if Clamping(*angles).is_turned and settings.pop("zero", None) is not None:
-        what = f"its zero is that of the part {Clamping(*angles)}, and it is placed as drawn: it has no present zero"
-        cure = "give the zero too, if there is one for the part as it is drawn"
-        problems.append(Problem(str(project), 0, what, cure, Severity.WARNING, code="PLC330"))
+        problems.append(
+            Problem(
+                str(project),
+                0,
+                Wording("PLC330", "zero_of_turned_part", clamping=Clamping(*angles)),
+                severity=Severity.WARNING,
+            )
+        )
     bodies = _bodies(loaded.simulation, loaded.posted.index(setup), problems)
     return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems), bodies)
 
@@ -80,8 +85,7 @@ def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:
     found = [each for each in loaded.setups if name is None or each.name == name]
     if len(found) == 1:
         return found[0]
-    names = ", ".join(each.name for each in loaded.setups)
+    names = tuple(each.name for each in loaded.setups)
     if name is None:
-        what, cure = f"has {len(found)} set-ups that post CL files", f"name one with setup: {names}"
-        raise InputError(Problem(str(project), 0, what, cure, code="PLC170"))
-    raise InputError(argument_problem("setup", f"is {name!r}", f"write one of {names}", code="PLC170"))
+        raise InputError(Problem(str(project), 0, Wording("PLC170", "several_setups", count=len(found), names=names)))
+    raise InputError(argument_problem("setup", Wording("PLC170", "no_such_setup", wanted=repr(name), names=names)))

@@ -9,6 +9,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.placing.table_limits import ClampingArea, Standing, points_around
 from trunnion.placing.turning import hull_points
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
@@ -35,10 +36,10 @@ def standing_on(
         return None
     area = ClampingArea.of(machine)
     if area is None:
-        what = f"is not held against the table: the definition of {machine.key} states none"
-        cure = "state table_size_mm or table_diameter_mm in its [facts]"
         name = "part" if stock is None else "stock"
-        remarks.append(argument_problem(name, what, cure, Severity.WARNING, code="PLC260"))
+        remarks.append(
+            argument_problem(name, Wording("PLC260", "no_table_stated", machine=machine.key), severity=Severity.WARNING)
+        )
         return None
     every = np.concatenate(points)
     return Standing(area, every[hull_points(every)])

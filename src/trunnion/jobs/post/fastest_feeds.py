@@ -15,9 +15,10 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.words import NumberFormat
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, Severity, setting_problem
 from trunnion.jobs.post.expected_values import expectation
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.motion import Motion
 from trunnion.model.run import Run
@@ -26,7 +27,6 @@ from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
 from trunnion.timing import HARDLY_MOVES
 from trunnion.verification import reachable_feeds
-from trunnion.wording import counted
 
 #: A feed that is reached but for this share is reached.
 _REACHED: Final = 1e-6
@@ -53,8 +53,9 @@ def with_reached_feeds(
         If nothing can read the program back.
     """
     if run is None:
-        what = f"feed is fastest, and programs for {program.control.name} cannot be read back: nothing times them"
-        raise InputError(argument_problem("settings", what, "leave it out", code="CTL920"))
+        raise InputError(
+            setting_problem("feed", Wording("CTL920", "nothing_times_feeds", control=program.control.name))
+        )
     expected = expectation(program, options)
     reached = reachable_feeds(run, toolpaths, expected.tolerances, expected.settings)
     own = [operation.moves.feed for path in toolpaths for operation in path.operations if len(operation.moves)]
@@ -165,9 +166,14 @@ def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Proble
         count, greatest = count + len(share), max(greatest, float(share.max(initial=1.0)))
     if not count:
         return []
-    what = f"{counted(count, 'block')} cut faster than the CL file says, up to {greatest:.3g} times as fast: feed_limit"
-    cure = "make sure that tool and material bear it; plunges, and phases other than cuts, keep their feeds"
-    return [Problem(toolpaths[0].file, 0, what, cure, Severity.WARNING, code="PLN435")]
+    return [
+        Problem(
+            toolpaths[0].file,
+            0,
+            Wording("PLN435", "faster_than_cl_file", count=count, greatest=greatest),
+            severity=Severity.WARNING,
+        )
+    ]
 
 
 def unlimited_axes(machine: Machine) -> list[Problem]:
@@ -175,6 +181,8 @@ def unlimited_axes(machine: Machine) -> list[Problem]:
     names = [axis.name for axis in machine.axes if axis.acceleration is None]
     if not names:
         return []
-    what = f"states no acceleration of {', '.join(names)}: feeds are lowered as if they changed their speed at once"
-    cure = "state acceleration_mm_s2 and acceleration_deg_s2 of the axes, and jerks if they are known"
-    return [Problem(machine.key, 0, what, cure, Severity.WARNING, code="PLN425")]
+    return [
+        Problem(
+            machine.key, 0, Wording("PLN425", "accelerations_not_stated", axes=tuple(names)), severity=Severity.WARNING
+        )
+    ]

@@ -19,6 +19,7 @@ from trunnion import readers
 from trunnion.arrays import Floats, Ints
 from trunnion.controls.inches import without_comments
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording, phrase
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Motion
 from trunnion.model.run import Run
@@ -39,21 +40,21 @@ _OFFSET_WRITTEN: Final = "NC352"
 
 #: Columns of a run that a text must leave as they are, and what each of them is.
 _COLUMNS: Final = {
-    "machine_frame": "the points behind it are in machine coordinates",
-    "inches": "it changes the unit of lengths",
-    "work_offset": "it changes the work offset",
-    "tcp": "it switches TCP",
-    "tool": "it changes the tool",
-    "edge": "it changes the tool length",
-    "compensation": "it switches radius compensation",
-    "kind": "the moves behind it are of another kind",
-    "tip": "the points behind it are elsewhere",
-    "rotary": "the rotary axes behind it are elsewhere",
-    "feed_mode": "it changes what F means",
-    "feed": "it changes the feed",
-    "spindle": "it switches the spindle",
-    "rpm": "it changes the spindle speed",
-    "orientation": "it changes how the tool axis moves",
+    "machine_frame": phrase("points_in_machine_coordinates"),
+    "inches": phrase("changes_unit"),
+    "work_offset": phrase("changes_work_offset"),
+    "tcp": phrase("switches_tcp"),
+    "tool": phrase("changes_tool"),
+    "edge": phrase("changes_tool_length"),
+    "compensation": phrase("switches_radius_compensation"),
+    "kind": phrase("moves_of_other_kind"),
+    "tip": phrase("points_elsewhere"),
+    "rotary": phrase("rotary_axes_elsewhere"),
+    "feed_mode": phrase("changes_meaning_of_feed"),
+    "feed": phrase("changes_feed"),
+    "spindle": phrase("switches_spindle"),
+    "rpm": phrase("changes_spindle_speed"),
+    "orientation": phrase("changes_how_tool_axis_moves"),
 }
 
 #: Events that a text may make: functions of the machine's builder, dwells, stops, messages.
@@ -72,20 +73,9 @@ _BEHIND_MODES: Final = ("same_tool", "preselect", "after_approach", "between_pla
 _WORD: Final = re.compile(r"(?<![A-Z0-9_.])([A-Z_]+)([0-9]*(?:\.[0-9]+)?)")
 
 _MOST_LISTED: Final = 20
-_TEMPLATE_CURE: Final = (
-    "write what moves nothing and changes no mode, and declare words of the machine's builder under [control.known]"
-)
-_CURE: Final = "write it as a CL statement, or leave it out: INSERT takes what moves nothing and changes no mode"
 
-#: What is said of a text that calls a subprogram, and its cure.
-_NOT_RUN: Final = "is not run with raw text"
-_CALL_CURE: Final = (
-    'declare a call that comes back under [control.known] of the definition, such as "M98 P77" = "comes back: probes",'
-    " or leave it out"
-)
-
-#: How readers tell of a call whose subprogram they do not have.
-_CALLS: Final = re.compile(r"missing subprogram ([^;:]+)")
+#: What is said of a text that calls a subprogram.
+_NOT_RUN: Final = "subprogram_not_run"
 
 
 def insert_problems(program: Program) -> list[Problem]:
@@ -131,9 +121,9 @@ def _modes_at(name: str, program: Program) -> list[Problem]:
         word = _mode_in(words, reader) if reader.raw_words.not_known(words, program.machine) else ""
         if word:
             assert template is not None
-            what = f"template {name} writes {word}, and the operation does not say its own mode again behind it"
-            cure = "leave it out, or write it into the template of the approach, in place of the mode there"
-            problems.append(Problem(*template.place_of(k), what, cure, code="CTL457"))
+            problems.append(
+                Problem(*template.place_of(k), Wording("CTL457", "mode_not_stated_again", template=name, word=word))
+            )
     return problems
 
 
@@ -157,22 +147,30 @@ def _is_remark(event: Insert, program: Program) -> bool:
     )
 
 
-def _problem(program: Program, motion: Motion, event: Insert, effect: str) -> Problem:
+def _problem(program: Program, motion: Motion, event: Insert, effect: Wording) -> Problem:
     """Return what is wrong with a text, at its line of the CL file or at its template."""
     file, text = program.file_of(motion.operation), event.text.strip().replace("\n", " | ")
     if not event.template:
-        cure = _CALL_CURE if effect.endswith(_NOT_RUN) else _CURE
-        return Problem(file, event.line, f"INSERT/{text}: {effect}", cure, code="CTL455")
+        variant = "calls_subprogram" if effect.variant == _NOT_RUN else "changes_something"
+        return Problem(file, event.line, Wording("CTL455", variant, text=text, effect=effect))
     place = program.control.templates[event.template].place_of(0)
-    what = f"template {event.template} writes {text} at {file}:{event.line}: {effect}"
-    return Problem(*place, what, _TEMPLATE_CURE, code="CTL457")
+    wording = Wording(
+        "CTL457",
+        "template_changes_something",
+        template=event.template,
+        text=text,
+        file=file,
+        line=event.line,
+        effect=effect,
+    )
+    return Problem(*place, wording)
 
 
-def _not_known(text: str, program: Program) -> str:
-    """Which word of a text nobody knows to change nothing: a run shows only what its reader follows."""
+def _not_known(text: str, program: Program) -> Wording | None:
+    """Which word of a text nobody knows to change nothing, a phrase: a run shows only what its reader follows."""
     known = readers.reader_of(program.machine).raw_words.not_known
     word = next((word for line in text.split("\n") if (word := known(line, program.machine))), "")
-    return f"nobody knows that {word} changes nothing" if word else ""
+    return phrase("not_known_to_change_nothing", word=word) if word else None
 
 
 class _Trial:
@@ -193,7 +191,7 @@ class _Trial:
             tuple(replace(event, line=0) for event in switched), tuple(sorted(settings.items())),
         )  # fmt: skip
 
-    def effects(self, texts: Sequence[str]) -> list[tuple[str, str]]:
+    def effects(self, texts: Sequence[str]) -> list[tuple[str, Wording]]:
         """Return the texts that change something, each with what it does: alone, or with those around it."""
         if not texts:
             return []
@@ -204,13 +202,13 @@ class _Trial:
         found = [*self.effects(texts[:half]), *self.effects(texts[half:])] if half else []
         return found or [(texts[0], effect)]
 
-    def _effect(self, texts: Sequence[str]) -> str:
-        """Return what texts do, in words; empty if nothing."""
+    def _effect(self, texts: Sequence[str]) -> Wording | None:
+        """Return what texts do, a phrase; None if nothing."""
         without = self._run([self._quiet] * len(texts))
         try:
             with_text = self._run(texts)
         except InputError as error:
-            return f"the program cannot be run with it: {error.problems[0].what}"
+            return phrase("cannot_be_run", reason=error.problems[0].wording)
         words = [word for word in readers.known_words(self._program.machine) if HOME not in word.effects]
         return _difference(without, with_text, words)
 
@@ -255,25 +253,25 @@ def _first_feed(feed: Floats) -> float:
     return float(known[0]) if len(known) else 100.0
 
 
-def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWord]) -> str:
-    """Return what a run does that another one does not, in words; words ``declared`` to do nothing do nothing."""
-    known = {diagnostic.text for diagnostic in without.errors}
+def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWord]) -> Wording | None:
+    """Return what a run does that another one does not, a phrase; words ``declared`` to do nothing do nothing."""
+    known = {diagnostic.wording for diagnostic in without.errors}
     # What stands behind an end that the text has brought about is a consequence of it.
     end = min((event.line for event in with_text.events if event.kind == "end"), default=math.inf)
     errors = [each for each in with_text.errors if each.code != _OFFSET_WRITTEN]
-    faults = [each for each in errors if each.text not in known and each.line <= end]
-    unknown = [each.text for each in faults]
+    faults = [each for each in errors if each.wording not in known and each.line <= end]
     if len(with_text) > len(without) and all(each.code == _POSITION_IN_DOUBT for each in faults):
-        return "it moves the machine"
+        return phrase("moves_machine")
     effect = _first_change(without, with_text)
     if effect:
         return effect
-    if unknown:
-        if call := _CALLS.search(unknown[0]):
-            return f"nobody can say what it does: subprogram {call[1]} {_NOT_RUN}"
-        return f"nobody can say what it does: {unknown[0]}"
+    if faults:
+        fault = faults[0].wording
+        if called := _missing_subprogram(fault):
+            return phrase("subprogram_not_run", called=called)
+        return phrase("effect_not_known", fault=fault)
     if len(with_text) < len(without):
-        return "it ends the program"
+        return phrase("ends_program")
     more = {
         "where the machine is" if kind == "known" else kind
         for kind, text, _ in _events(with_text, without) - _events(without, without)
@@ -281,12 +279,25 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
     }
     if "spindle" in more:
         return _COLUMNS["spindle"]
-    return f"it changes {', '.join(sorted(more))}" if more else ""
+    return phrase("changes_more", kinds=tuple(sorted(more))) if more else None
 
 
-def _first_change(without: Run, with_text: Run) -> str:
-    """Return what is different in the first row that is, in words; empty if the rows that both have are the same."""
-    rows, found = min(len(without), len(with_text)), ""
+def _missing_subprogram(fault: Wording) -> str:
+    """Return the subprogram that a reader does not have; empty if that is not the fault."""
+    match fault.variant:
+        case "missing_subprogram_number":
+            return f"O{fault.parameter('number'):04d}"
+        case "missing_subprogram":
+            return f"O{fault.parameter('label')}"
+        case "unknown_or_missing":
+            return str(fault.parameter("call"))
+    return ""
+
+
+def _first_change(without: Run, with_text: Run) -> Wording | None:
+    """Return what is different in the first row that is, a phrase; None if the rows that both have are the same."""
+    rows = min(len(without), len(with_text))
+    found: Wording | None = None
     first = rows
     for name, what in _COLUMNS.items():
         before, after = (getattr(run, name)[:rows].astype(np.float64) for run in (without, with_text))

@@ -12,7 +12,6 @@ from trunnion.errors import Problem, Severity
 from trunnion.files import OutputPlace
 from trunnion.jobs.result_output import Target
 from trunnion.messages import Wording
-from trunnion.wording import counted
 
 _MOST_NAMED: Final = 5
 
@@ -22,11 +21,14 @@ def left_over(target: Target, papers: Iterable[OutputPlace]) -> list[Problem]:
     files = target.files.left_over(papers)
     if not files:
         return []
-    named = named_files(files, None if target.path is None else target.path.resolve().parent)
-    one = len(files) == 1
-    what = f"{named} {'is' if one else 'are'} of the program before"
-    cure = f"write {'it' if one else 'them'} with this one, or delete {'it' if one else 'them'}"
-    return [Problem(target.name, 0, what, cure, Severity.WARNING, code="FIL280")]
+    names, more = first_names(files, None if target.path is None else target.path.resolve().parent)
+    if more:
+        wording = Wording("FIL280", "many_files_left_over", files=names, count=more)
+    elif len(names) > 1:
+        wording = Wording("FIL280", "files_left_over", files=names)
+    else:
+        wording = Wording("FIL280", "file_left_over", file=names[0])
+    return [Problem(target.name, 0, wording, severity=Severity.WARNING)]
 
 
 def kept_files(target: Target) -> list[Problem]:
@@ -37,8 +39,7 @@ def kept_files(target: Target) -> list[Problem]:
     ]
 
 
-def named_files(files: Sequence[Path], folder: Path | None) -> str:
+def first_names(files: Sequence[Path], folder: Path | None) -> tuple[tuple[str, ...], int]:
     """Return the names of the first files, with the paths of those outside a folder, and how many more there are."""
-    names = [file.name if file.parent == folder else str(file) for file in files]
-    more = f" and {counted(len(names) - _MOST_NAMED, 'more file')}" if len(names) > _MOST_NAMED else ""
-    return f"{', '.join(names[:_MOST_NAMED])}{more}"
+    names = tuple(file.name if file.parent == folder else str(file) for file in files)
+    return names[:_MOST_NAMED], max(0, len(names) - _MOST_NAMED)

@@ -17,6 +17,7 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.stages import PlannedProgram
+from trunnion.messages import Wording
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.place_texts import with_place_texts
@@ -114,7 +115,7 @@ def load_toolpaths(
     if job.control.units == INCH:
         _check_units_of(toolpaths)
     if not toolpaths:
-        raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
+        raise InputError(argument_problem("cl", Wording("ARG130", "no_cl_file")))
     if job.has_normals:
         from trunnion.cl.surface_normals import with_normals
 
@@ -127,9 +128,10 @@ def load_toolpaths(
 
 def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
     """Raise ``InputError`` for a CL file that would be taken for one in mm while the program counts in inches."""
-    what, cure = "nothing says whether it is in mm or inches", "write setting cl_units=mm or setting cl_units=inch"
     unknown = [
-        Problem(toolpath.file, 0, what, cure, code="CL410") for toolpath in toolpaths if not toolpath.states_unit
+        Problem(toolpath.file, 0, Wording("CL410", "unit_not_stated"))
+        for toolpath in toolpaths
+        if not toolpath.states_unit
     ]
     if unknown:
         raise InputError(unknown)
@@ -148,15 +150,12 @@ def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
 def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]) -> list[Problem]:
     """Warnings of settings for one operation by a name that several have."""
     names = [name for _, name in cut]
-    cure = "rename one of them in the CL file if it must not have it"
     return [
         Problem(
             file,
             0,
-            f"{names.count(name)} operations are called {name}: all have its settings",
-            cure,
-            Severity.WARNING,
-            code="ARG270",
+            Wording("ARG270", "operations_of_one_name", count=names.count(name), operation=name),
+            severity=Severity.WARNING,
         )
         for name, file in {name: file for file, name in reversed(cut) if name in own}.items()
         if names.count(name) > 1
@@ -195,7 +194,7 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program), *leaning]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
-        refused = Problem(file, 0, "no program is written", job.forcing, code="CTL940")
+        refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
@@ -213,10 +212,15 @@ def _leaning_operations(planned: Plan, most: float | None) -> list[Problem]:
         tilt = np.degrees(np.arccos(np.clip(operation.moves.axis[:, 2], -1.0, 1.0)))
         worst = int(tilt.argmax())
         if tilt[worst] > most + _SAME_ANGLE:
-            what = f"operation {operation.name}: the tool axis leans {tilt[worst]:.3f} degrees from Z, over {most:g}"
-            cure = "allow it with the setting max_tilt, or lean the tool less in the CAM system"
             line = int(operation.moves.line[worst])
-            found.setdefault((operation.file, operation.line), Problem(operation.file, line, what, cure, code="PLN340"))
+            found.setdefault(
+                (operation.file, operation.line),
+                Problem(
+                    operation.file,
+                    line,
+                    Wording("PLN340", "leans_too_far", operation=operation.name, tilt=float(tilt[worst]), most=most),
+                ),
+            )
     return list(found.values())
 
 
@@ -241,5 +245,4 @@ def _missing_reader(job: PostJob) -> list[Problem]:
     """Why nothing can prove a program for this machine; empty where its control has a reader."""
     if readers.can_read(job.machine):
         return []
-    what = f"programs for {job.control.name} cannot be read back yet: nothing proves this one"
-    return [Problem(job.machine.key, 0, what, code="CTL920")]
+    return [Problem(job.machine.key, 0, Wording("CTL920", "program_not_read_back", control=job.control.name))]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from trunnion.controls import Control, load_control
 from trunnion.controls.inches import in_units
 from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, argument_problem, setting_problem
 from trunnion.files import OutputFiles
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.jobs.inputs.settings import (
@@ -25,6 +25,7 @@ from trunnion.jobs.inputs.settings import (
 )
 from trunnion.jobs.result_output import PaperFiles
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
@@ -43,11 +44,9 @@ _MODES: Final = {
     "tcp": MachiningMode.TCP,
 }
 
-#: What a refusal says of ``force``.
-FORCING: Final = "force=True writes it"
-
-#: What gives subprograms other numbers.
-_OTHER_NUMBERS: Final = "begin with another number by setting first_number=2001"
+#: The setting that makes a program of several files, and its value, as they are written.
+_DIVIDING: Final = "programs=operations"
+_DIVIDED: Final = "operations"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +67,7 @@ class PostJob:
     notices       comments for the head of the program
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
-    forcing       what a refusal says of ``force``; empty where it cannot be asked for
+    can_force     whether ``force`` can be asked for, which refusals then say
     strict        a basis of the proof that is missing is an error
     """
 
@@ -87,7 +86,7 @@ class PostJob:
     notices: tuple[str, ...] = ()
     clamping: Clamping = field(default_factory=Clamping)
     decisions: tuple[Decision, ...] = ()
-    forcing: str = FORCING
+    can_force: bool = True
     strict: bool = False
 
     @property
@@ -128,21 +127,20 @@ class PostJob:
         size = number_setting(self.settings, "split")
         if self.settings.get("programs", "one") == "one":
             if size is not None:
-                cure = "write programs=operations too"
                 raise InputError(
-                    argument_problem("settings", "split divides subprograms, and there are none", cure, code="ARG240")
+                    setting_problem("split", Wording("ARG240", "split_without_subprograms", dividing=_DIVIDING))
                 )
             return None
         if self.control.subprograms is None:
-            what = f"programs is operations, and {self.control.name} has no words for subprograms here"
-            raise InputError(argument_problem("settings", what, "leave it out", code="ARG250"))
-        if path is None:
-            cure = "name a file or a folder, or write setting programs=one"
             raise InputError(
-                argument_problem("output", "a program of several files needs a place for them", cure, code="FIL210")
+                setting_problem(
+                    "programs", Wording("ARG250", "no_subprograms", divided=_DIVIDED, control=self.control.name)
+                )
             )
+        if path is None:
+            raise InputError(argument_problem("output", Wording("FIL210", "no_place_for_several_files")))
         numbered = self.control.subprograms.first_number is not None
-        open_file = partial(files.add_file, other_name=_OTHER_NUMBERS) if numbered else files.add_file
+        open_file = partial(files.add_file, is_numbered=True) if numbered else files.add_file
         return SubprogramOutput(path.stem, open_file, None if size is None else int(size))
 
 
@@ -187,9 +185,8 @@ def _with_numbers(control: Control, asked: str | None) -> Control:
     """
     numbers = control.block_numbers
     if asked == "operations" and not numbers.letter:
-        cure = "leave it out: its numbers have no letter, and stand before every block"
         raise InputError(
-            argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure, code="ARG250")
+            setting_problem("numbers", Wording("ARG250", "no_numbers_of_operations", control=control.name))
         )
     if asked is None or (asked == "on" and not numbers.letter):
         return control
@@ -211,18 +208,17 @@ def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control
         return control
     naming = control.subprograms
     if naming is None or naming.first_number is None or settings.get("programs") != "operations":
-        why = f"{control.name} names its subprograms" if naming and not naming.first_number else "there are none"
-        what = "first_number is that of subprograms that have numbers"
         raise InputError(
-            argument_problem(
-                "settings", f"{what}: {why}", "leave it out, or write programs=operations too", code="ARG240"
+            setting_problem(
+                "first_number",
+                Wording("ARG240", "first_number_without_numbers", control=control.name)
+                if naming and not naming.first_number
+                else Wording("ARG240", "first_number_without_subprograms", dividing=_DIVIDING),
             )
         )
     if first != int(first):
         raise InputError(
-            argument_problem(
-                "settings", f"first_number is {settings['first_number']!r}", "write a whole number", code="ARG220"
-            )
+            setting_problem("first_number", Wording("ARG220", "no_whole_number", value=repr(settings["first_number"])))
         )
     return replace(control, subprograms=replace(naming, first_number=int(first)))
 
@@ -237,22 +233,15 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
     """
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
-        raise InputError(
-            argument_problem(
-                "settings", "tcp is on, and the machine's control has none", "write tcp=off", code="ARG250"
-            )
-        )
+        raise InputError(setting_problem("tcp", Wording("ARG250", "no_tcp")))
     mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
     numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
     fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
     lower_feed = settings.get("lower_feed", "no") == "yes"
     if limit is not None and not fastest:
-        raise InputError(
-            argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too", code="ARG220")
-        )
+        raise InputError(setting_problem("feed_limit", Wording("ARG220", "only_with_fastest_feed")))
     if fastest and lower_feed:
-        what = "lower_feed is yes, and feed=fastest keeps all axes within their speeds"
-        raise InputError(argument_problem("settings", what, "leave lower_feed out", code="ARG220"))
+        raise InputError(setting_problem("lower_feed", Wording("ARG220", "lower_feed_with_fastest")))
     known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
     if "clearance" in settings:
         known["clearance"] = _parse_clearance(settings["clearance"])
@@ -282,9 +271,14 @@ def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str,
     for entry in text.split(","):
         name, _, word = entry.rpartition(":")
         if word not in known:
-            what = "mode is tcp, and there is no TCP" if word == "tcp" else f"mode is {text!r}"
-            cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
-            raise InputError(argument_problem("settings", what, cure, code="ARG220"))
+            raise InputError(
+                setting_problem(
+                    "mode",
+                    Wording("ARG220", "mode_without_tcp", known=tuple(known))
+                    if word == "tcp"
+                    else Wording("ARG220", "unknown_mode", value=repr(text), known=tuple(known)),
+                )
+            )
         if name:
             own[name] = known[word]
         else:
@@ -302,5 +296,4 @@ def _parse_clearance(text: str) -> Clearance:
     least = -10000.0 if surface is ClearanceSurface.PLANE else 0.1
     if least <= value <= 10000.0:
         return Clearance(value, surface)
-    cure = RUN_SETTINGS["clearance"].cure("clearance")
-    raise InputError(argument_problem("settings", f"clearance is {text!r}", cure, code="ARG220"))
+    raise InputError(setting_problem("clearance", RUN_SETTINGS["clearance"].fault("clearance", text)))

@@ -25,7 +25,7 @@ from trunnion.jobs.post.left_over_files import kept_files, left_over
 from trunnion.jobs.post.machining_times import new_time_token, prints_times, write_times
 from trunnion.jobs.post.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.planning import load_toolpaths, new_problems, plan_program
-from trunnion.jobs.post.post_job import FORCING, PostJob, prepare
+from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.program_places import ProgramPlaces
 from trunnion.jobs.post.proving import prove, report_proof
 from trunnion.jobs.post.reading import as_clamped
@@ -46,14 +46,14 @@ class Work:
     others     its other files, none of which is written over
     group      with whose files the program appears; None: alone
     is_placed  the head of the program says how the part is clamped, even if that is as it is drawn
-    forcing    what a refusal says of ``force``
+    can_force  whether refusals speak of ``force``
     later      takes the papers, and who gives it writes them; None: they are written
     """
 
     others: Sequence[FilePath] = ()
     group: OutputGroup | None = None
     is_placed: bool = False
-    forcing: str = FORCING
+    can_force: bool = True
     later: list[PostPapers] | None = None
 
 
@@ -173,7 +173,7 @@ def post_beside(
         columns=found["columns"],
     )  # fmt: skip
     existing, hook_files = (check_paths(name, found.get(name)) for name in ("subprograms", "hooks"))
-    job = replace(job, beside=tuple(existing), forcing=work.forcing, strict=found["strict"])
+    job = replace(job, beside=tuple(existing), can_force=work.can_force, strict=found["strict"])
     inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *work.others]
     if (simulation := found["simulation"]) is not None:
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input

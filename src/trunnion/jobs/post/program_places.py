@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from trunnion.controls import Control
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.result_output import Target
+from trunnion.messages import Wording, phrase
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.verification import Check, Place, Verification
 
@@ -66,26 +67,27 @@ class ProgramPlaces:
         for passage in self.passages:
             text = passage.text_at(file, line)
             if text is not None:
-                return f"{text.strip()}: written by {_named(passage, control)}"
+                return phrase("text_of_template", text=text.strip(), **_named(passage, control)).what
         return ""
 
-    def cause(self, checks: Sequence[Check], control: Control) -> str:
-        """Which template is likely to have made checks fail, in words; empty if none of the user's is near."""
+    def cause(self, checks: Sequence[Check], control: Control) -> Wording | None:
+        """Which template is likely to have made checks fail, a phrase; None if none of the user's is near."""
         places = [place for check in checks if not check.passed for place in check.places if place.nc_line]
         for place in places:
             for passage in self.passages:
                 if passage.text_at(place.nc_file, place.nc_line) is not None:
-                    return f"{place.block_name} is written by {_named(passage, control)}"
+                    return phrase("block_of_template", block=place.block_name, **_named(passage, control))
         if not places:
-            return ""
+            return None
         first = min(places, key=lambda each: (each.nc_file, each.nc_line))
         above = [each for each in self.passages if each.file == first.nc_file and each.line < first.nc_line]
         if not above:
-            return ""
+            return None
         nearest = max(above, key=lambda each: each.line)
-        return f"the last text of a template above {first.block_name} is that of {_named(nearest, control)}"
+        return phrase("block_below_template", block=first.block_name, **_named(nearest, control))
 
 
-def _named(passage: TemplatePassage, control: Control) -> str:
+def _named(passage: TemplatePassage, control: Control) -> dict[str, object]:
+    """Return the parameters by which messages name the template of a passage."""
     file, line = control.templates[passage.template].place_of(0)
-    return f"template {passage.template} ({file}:{line})"
+    return {"template": passage.template, "file": file, "line": line}

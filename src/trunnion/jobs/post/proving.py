@@ -16,6 +16,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram
 from trunnion.jobs.post.writing import named_run, named_verification
 from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
+from trunnion.messages import Wording
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.verification import Verification, rows_from_starts, verify, without_columns
@@ -88,7 +89,11 @@ def report_proof(posting: Posting, planned: PlannedProgram, proof: Proof) -> Pos
 
 def _nothing_checked(posting: Posting) -> Problem:
     """Return the warning of a forced program that no reader can read."""
-    what, papers = "it is written by force, and nothing has been checked", posting.job.papers.by_name()
-    without = ["setup sheet" if name == "sheet" else name for name in papers if name != "manifest"]
-    lost = f": there is no {' and no '.join(without)}" if without else ""
-    return Problem(posting.target.name, 0, f"{what}{lost}", severity=Severity.WARNING, code="CTL930")
+    papers = posting.job.papers.by_name()
+    without = tuple("setup sheet" if name == "sheet" else name for name in papers if name != "manifest")
+    wording = (
+        Wording("CTL930", "nothing_checked_no_papers", papers=without)
+        if without
+        else Wording("CTL930", "nothing_checked")
+    )
+    return Problem(posting.target.name, 0, wording, severity=Severity.WARNING)

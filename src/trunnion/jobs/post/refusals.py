@@ -8,6 +8,7 @@ from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.post.result import PostResult, ProofFailedError
 from trunnion.jobs.post.stages import Posting, Proof
 from trunnion.jobs.verify.reports import write_refusal
+from trunnion.messages import Wording
 
 
 @contextmanager
@@ -31,8 +32,9 @@ def refused(posting: Posting, proof: Proof, result: PostResult) -> ProofFailedEr
     if job.papers.report is not None:
         result.write_report(job.papers.report)
         posting.target.files.remember_alone(job.papers.report)
-    failed = "; ".join(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
+    failed = tuple(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
+    wording = Wording("CTL910", "can_be_forced" if job.can_force else "nothing_written", failed=failed)
     cause = places.cause(proof.failed, job.control)  # the template that is likely to be why
-    what = "; ".join(filter(None, (f"the program fails its proof: {failed}", cause)))
-    cure = "; ".join(filter(None, ("no program is written", job.forcing)))
-    return ProofFailedError(Problem(result.toolpaths[0].file, 0, what, cure, code="CTL910"), result)
+    if cause is not None:
+        wording = wording.within("because", cause=cause)
+    return ProofFailedError(Problem(result.toolpaths[0].file, 0, wording), result)

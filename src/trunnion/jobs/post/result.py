@@ -9,6 +9,7 @@ from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import written_text
 from trunnion.jobs.verify.reports import write_post_report
+from trunnion.messages import Wording
 from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -108,9 +109,7 @@ class PostResult:
             be written.
         """
         if self.verification is None:
-            raise InputError(
-                Problem(str(file), 0, "nothing was proven", "post for a control that has a reader", code="CTL920")
-            )
+            raise InputError(Problem(str(file), 0, Wording("CTL920", "nothing_proven")))
         assert self.proof is not None
         write_post_report(self.proof, file, self.decisions, self.simulation)
 

@@ -28,6 +28,7 @@ from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.result_output import NO_PAPERS
 from trunnion.jobs.verify.comparing import diff
+from trunnion.messages import Wording
 
 #: What projects are called that are cases, and how the names of others end.
 _NAMES: Final = ("case.toml", "part.toml")
@@ -118,8 +119,7 @@ class Case:
             with output_group(remembers=False) as group:
                 result = post_into(group, project, ProjectOptions(replaces=True))
                 if state_of(list(self._state)) != self._state:
-                    what, cure = "has changed since it was compared", "test it again"
-                    raise InputError(Problem(str(self.path), 0, what, cure, code="PRJ160"))
+                    raise InputError(Problem(str(self.path), 0, Wording("PRJ160", "changed_since_compared")))
             self._remember([files_of(program) for program in result.results])
         else:
             self._remember([list(program) for program in self._programs])
@@ -159,22 +159,15 @@ def find_cases(place: Path) -> list[Path]:
     if not place.is_dir():
         if place.suffix == ".toml":
             return [place]
-        raise InputError(
-            Problem(str(place), 0, "is no folder, and no project (.toml)", "give a folder of cases", code="PRJ310")
-        )
+        raise InputError(Problem(str(place), 0, Wording("PRJ310", "no_folder_of_cases")))
     found: list[Path] = []
     for folder, below, names in os.walk(place):
         below[:] = sorted(name for name in below if not name.startswith("."))
         found += [Path(folder) / name for name in sorted(names) if name in _NAMES or name.endswith(_ENDING)]
         if len(found) > _MOST_CASES:
-            raise InputError(
-                Problem(str(place), 0, f"has more than {_MOST_CASES} cases", "test a part of it", code="PRJ310")
-            )
+            raise InputError(Problem(str(place), 0, Wording("PRJ310", "too_many_cases", most=_MOST_CASES)))
     if not found:
-        what = f"has no case: no {', '.join(_NAMES)} or file that ends in {_ENDING} in it or below"
-        raise InputError(
-            Problem(str(place), 0, what, "write a project for each case (docs/projects.md)", code="PRJ310")
-        )
+        raise InputError(Problem(str(place), 0, Wording("PRJ310", "no_case", names=_NAMES, ending=_ENDING)))
     return found
 
 
@@ -187,8 +180,16 @@ def posted_case(path: Path) -> Iterator[Case]:
         except TrunnionError as error:
             case = Case(path, error=error)
         except OSError as error:
-            what = f"cannot be compared: {error.strerror or error}"
-            case = Case(path, error=InputError(Problem(str(error.filename or path), 0, what, code="FIL120")))
+            case = Case(
+                path,
+                error=InputError(
+                    Problem(
+                        str(error.filename or path),
+                        0,
+                        Wording("FIL120", "case_unreadable", reason=error.strerror or error),
+                    )
+                ),
+            )
         yield case
 
 

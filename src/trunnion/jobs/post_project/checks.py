@@ -17,9 +17,10 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Project
 from trunnion.jobs.verify.comparing import diff
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.verification import durations
-from trunnion.wording import counted, format_duration
+from trunnion.wording import format_duration
 
 if TYPE_CHECKING:  # imported where a project is simulated
     from trunnion.jobs.simulate.result import SimulationResult
@@ -85,12 +86,12 @@ def check_project(
     ]
 
 
-def _shows(project: Project) -> str:
-    """How to see all that the simulation of a project finds, which takes programs that are written."""
-    command = f"trunnion simulate {project.path.name} shows all of it"
+def _shows(project: Project) -> Wording:
+    """How to see all that the simulation of a project finds, which takes programs that are written: a phrase."""
+    name = project.path.name
     if project.checks.simulate is Judgement.REFUSE:
-        return f'mend these first; or post with simulate = "warn" under [checks], then {command}'
-    return f"once the programs are written, {command}"
+        return phrase("simulate_after_mending", project=name)
+    return phrase("simulate_once_written", project=name)
 
 
 def _name(project: Project, result: PostResult) -> str:
@@ -112,10 +113,15 @@ def _too_long(project: Project, results: Sequence[PostResult]) -> Iterator[Probl
         assert result.verification is not None
         seconds, known = durations(result.verification)
         if seconds.sum() > longest:
-            least = "" if known.all() else "at least "
-            what = f"takes {least}{format_duration(float(seconds.sum()))}, and may take {format_duration(longest)}"
             yield Problem(
-                _name(project, result), 0, what, "divide the work, or raise longest_s of [checks]", code="PRJ230"
+                _name(project, result),
+                0,
+                Wording(
+                    "PRJ230",
+                    "takes_too_long" if known.all() else "takes_at_least_too_long",
+                    time=format_duration(float(seconds.sum())),
+                    longest=format_duration(longest),
+                ),
             )
 
 
@@ -128,13 +134,10 @@ def _compare_released(
     else:
         pairs = [(result, released, ()) for result, released in zip(results, setup.released, strict=False)]
         if len(results) != len(setup.released):
-            what = f"becomes {counted(len(results), 'program')}, and {len(setup.released)} are released"
             yield Problem(
                 str(project.place_of(setup.output)),
                 0,
-                what,
-                "look at what CAM has changed, then release the new ones",
-                code="PRJ220",
+                Wording("PRJ220", "other_number_of_programs", count=len(results), released=len(setup.released)),
             )
     for result, released, beside in pairs:
         run = _run(project, result)
@@ -142,8 +145,11 @@ def _compare_released(
             released, run, machine=run.machine, subprograms=[*beside, *setup.subprograms],
         )  # fmt: skip
         if not compared.same:
-            what = f"does not move as {Path(released).name} does: {'; '.join(compared.lines())}"
-            yield Problem(_name(project, result), 0, what, "look at both, then release the new one", code="PRJ220")
+            yield Problem(
+                _name(project, result),
+                0,
+                Wording("PRJ220", "moves_otherwise", released=Path(released).name, differences=tuple(compared.lines())),
+            )
 
 
 def _simulate(
@@ -160,18 +166,22 @@ def _simulate(
     return simulate_setups(replace(project.simulation, setups=setups), observer)
 
 
-def _found(simulated: "SimulationResult", cure: str) -> Iterator[Problem]:
-    """Yield what a set-up must not do, each at its program and line; the ``cure`` says how to see more of it."""
+def _found(simulated: "SimulationResult", remedy: Wording) -> Iterator[Problem]:
+    """Yield what a set-up must not do, each at its program and line; the ``remedy`` says how to see more of it."""
     for finding in simulated.findings[:_MOST_TOLD]:
-        yield Problem(finding.file, finding.line, f"the simulation finds: {finding}", code="PRJ210")
+        yield Problem(finding.file, finding.line, Wording("PRJ210", "simulation_finds", finding=finding))
     if len(simulated.findings) > _MOST_TOLD:
-        what = f"the simulation has {len(simulated.findings)} findings here; the first {_MOST_TOLD} are told"
-        yield Problem(simulated.programs[0], 0, what, cure, code="PRJ210")
+        yield Problem(
+            simulated.programs[0],
+            0,
+            Wording("PRJ210", "more_findings", count=len(simulated.findings), most=_MOST_TOLD, remedy=remedy),
+        )
     yield from (remark for remark in simulated.remarks if remark.severity is Severity.ERROR)
     gouge = simulated.gouge
     if gouge is not None and gouge.largest > simulated.limit and not simulated.findings:
-        what = f"the simulation finds up to {gouge.largest:.3f} mm missing from the part"
-        yield Problem(simulated.programs[0], 0, what, cure, code="PRJ210")
+        yield Problem(
+            simulated.programs[0], 0, Wording("PRJ210", "missing_from_part", largest=gouge.largest, remedy=remedy)
+        )
 
 
 def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:

@@ -15,10 +15,9 @@ from typing import Final
 
 from trunnion.errors import Problem, Severity
 from trunnion.files import EarlierJob, OutputGroup, resolve_output
-from trunnion.jobs.post.left_over_files import named_files
+from trunnion.jobs.post.left_over_files import first_names
 from trunnion.jobs.project.project import PostedSetup, Project
-
-_CODE: Final = "PRJ155"
+from trunnion.messages import Wording, phrase
 
 #: With what the names of set-ups begin that are only counted.
 _COUNTED: Final = "set-up "
@@ -51,11 +50,15 @@ def left_over_setups(
             continue
         files = sorted(file for file in earlier.written() if file not in now | read)
         if files:
-            one = len(files) == 1
-            named = named_files(files, project.folder.resolve())
-            what = f"{named} {'is' if one else 'are'} of {_whose(project, earlier)}"
-            cure = f"delete {'it' if one else 'them'}, here and on the control"
-            found.append(Problem(str(project.path), 0, what, cure, Severity.WARNING, code=_CODE))
+            names, more = first_names(files, project.folder.resolve())
+            owner = _whose(project, earlier)
+            if more:
+                wording = Wording("PRJ155", "many_files_left_over", files=names, count=more, owner=owner)
+            elif len(names) > 1:
+                wording = Wording("PRJ155", "files_left_over", files=names, owner=owner)
+            else:
+                wording = Wording("PRJ155", "file_left_over", file=names[0], owner=owner)
+            found.append(Problem(str(project.path), 0, wording, severity=Severity.WARNING))
     return found
 
 
@@ -76,20 +79,18 @@ def _is_of(project: Project, job: EarlierJob) -> bool:
     return job.owner[:1] == (str(resolve_output(project.path).path),)
 
 
-def _whose(project: Project, job: EarlierJob) -> str:
-    """Of what the files of a program are: of a set-up that now writes to another one, or of none any more.
+def _whose(project: Project, job: EarlierJob) -> Wording:
+    """Of what the files of a program are: of a set-up that now writes to another one, or of none any more; a phrase.
 
     A set-up is known by the name that it was given, or by a CL file.
     """
     _, name, *cl = job.owner
     for setup in project.setups:
         if (name and setup.name == name and not name.startswith(_COUNTED)) or set(cl) & set(setup.cl):
-            return (
-                f"set-up {setup.name.removeprefix(_COUNTED)} under its earlier name"
-                if setup.name
-                else ("its program under the earlier name")
-            )
-    return "a set-up that it no longer has"
+            if setup.name:
+                return phrase("setup_under_earlier_name", setup=setup.name.removeprefix(_COUNTED))
+            return phrase("program_under_earlier_name")
+    return phrase("setup_no_longer_there")
 
 
 def _places(files: Iterable[Path]) -> set[Path]:

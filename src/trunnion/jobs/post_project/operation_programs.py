@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Final
 
 from trunnion import readers
-from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem
+from trunnion.errors import InputError, Problem, RefusedError, Severity, setting_problem
 from trunnion.jobs.inputs.settings import check_operation_names
 from trunnion.jobs.post.post_job import PostJob
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (
     BlockSkip,
@@ -68,9 +69,7 @@ def operation_programs(toolpaths: Sequence[Toolpath], job: PostJob, output: Path
     """
     moving = [(path, own) for path in toolpaths for own in path.operations if len(own.moves)]
     if not moving:
-        raise InputError(
-            Problem(toolpaths[0].file, 0, "has no operation that moves", "check what CAM has written", code="CL140")
-        )
+        raise InputError(Problem(toolpaths[0].file, 0, Wording("CL140", "nothing_moves")))
     names = [operation.name for _, operation in moving]
     check_operation_names(job.own_settings, job.settings, names)
     _check_modes(job.settings.get("mode", ""), names)
@@ -143,8 +142,7 @@ def _check_modes(text: str, names: Iterable[str]) -> None:
     known = dict.fromkeys(names)
     for name in (entry.rpartition(":")[0] for entry in text.split(",")):
         if name and name not in known:
-            what = f"mode is set for operation {name}, and there is none of that name"
-            raise InputError(argument_problem("settings", what, f"write one of {', '.join(known)}", code="ARG230"))
+            raise InputError(setting_problem("mode", Wording("ARG230", "no_operation", name=name, known=tuple(known))))
 
 
 def _check_apart(moving: Sequence[tuple[Toolpath, Operation]], *, is_absolute: bool) -> None:
@@ -153,18 +151,29 @@ def _check_apart(moving: Sequence[tuple[Toolpath, Operation]], *, is_absolute: b
     for (toolpath, operation), (_, following) in pairwise(moving):
         left = _left_on(operation)
         if left is not None:
-            what = f"{operation.name} leaves on what line {left.line} switches on, and {following.name} goes on with it"
-            cure = "switch it off in the operation, or write one program"
-            problems.append(Problem(operation.file or toolpath.file, left.line, what, cure, code="PRJ140"))
+            problems.append(
+                Problem(
+                    operation.file or toolpath.file,
+                    left.line,
+                    Wording(
+                        "PRJ140",
+                        "leaves_something_on",
+                        operation=operation.name,
+                        line=left.line,
+                        following=following.name,
+                    ),
+                )
+            )
     first = moving[0][1].frame
     for toolpath, operation in moving:
         if operation.frame != first and not is_absolute:
-            what = (
-                f"{operation.name} is in another coordinate system than {moving[0][1].name}: as programs of their own"
+            problems.append(
+                Problem(
+                    operation.file or toolpath.file,
+                    operation.line,
+                    Wording("PRJ140", "other_coordinate_system", operation=operation.name, first=moving[0][1].name),
+                )
             )
-            what += " they would count from different zeros"
-            cure = "write setting frame=absolute, or one program"
-            problems.append(Problem(operation.file or toolpath.file, operation.line, what, cure, code="PRJ140"))
     if problems:
         raise RefusedError(problems)
 

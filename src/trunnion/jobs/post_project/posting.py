@@ -25,6 +25,7 @@ from trunnion.jobs.post_project.setups import NO_OPTIONS, PostedPrograms, Projec
 from trunnion.jobs.project.file import load_project, told_by_keys
 from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
+from trunnion.messages import Wording
 
 if TYPE_CHECKING:  # imported where a project is simulated
     from trunnion.jobs.simulate.result import SimulationResult
@@ -131,8 +132,10 @@ def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, obs
 
 def _running_hooks(project: Project) -> list[Problem]:
     """Warnings of the code that a project has run: it may come from anyone."""
-    what, cure = f"runs as Python, because {project.path.name} names it", "read it before, if it is not yours"
-    return [Problem(file, 0, what, cure, Severity.WARNING, code="HOK150") for file in project.hooks]
+    return [
+        Problem(file, 0, Wording("HOK150", "runs_hooks", project=project.path.name), severity=Severity.WARNING)
+        for file in project.hooks
+    ]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -169,7 +172,7 @@ def _reported(posting: ProjectPosting, found: _Found) -> list[Problem]:
     warnings = [problem for problem in found.problems if problem.severity is Severity.WARNING]
     posting.observer.problems(warnings)
     if refused:
-        nothing = Problem(str(posting.project.path), 0, "no program of the project is written", code="CTL940")
+        nothing = Problem(str(posting.project.path), 0, Wording("CTL940", "no_program_of_project"))
         raise RefusedError([*refused, nothing])
     return warnings
 
@@ -189,9 +192,8 @@ def _write_papers(posting: ProjectPosting, found: _Found) -> None:
 def check_within(files: Sequence[Path], project: Project) -> None:
     """Raise ``InputError`` for files of subprograms and operations that links lead out of the folder."""
     folder = project.into or project.folder
-    what, cure = "leads out of the folder of the project", "remove the link"
     if outside := [file for file in files if not is_within(file, folder)]:
-        raise InputError([Problem(str(file), 0, what, cure, code="PRJ120") for file in outside])
+        raise InputError([Problem(str(file), 0, Wording("PRJ120", "leads_out_of_folder")) for file in outside])
 
 
 def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]], used: Sequence[Path]) -> list[Problem]:
@@ -202,10 +204,5 @@ def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]], use
             continue
         for file in programs_of_operations(setup.output):
             if resolve_output(file).path not in known:
-                what = "is the program of an operation that the CL files no longer have"
-                found.append(
-                    Problem(
-                        str(file), 0, what, "remove it from here and from the control", Severity.WARNING, code="PRJ150"
-                    )
-                )
+                found.append(Problem(str(file), 0, Wording("PRJ150", "operation_gone"), severity=Severity.WARNING))
     return found

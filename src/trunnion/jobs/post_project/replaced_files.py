@@ -7,6 +7,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.inputs.reading import as_machine
 from trunnion.jobs.project.project import Division, Project
+from trunnion.messages import Wording
 
 
 def check_replaced(project: Project) -> None:
@@ -40,6 +41,4 @@ def replaced_file(file: Path, first: Path, *, paper: bool = False) -> list[Probl
         return []
     if not paper and earlier.has_edited(place):
         return []
-    what = "would be replaced, although no post has written it as it is"
-    cure = "remove it, or take the new one over with trunnion test"
-    return [Problem(str(file), 0, what, cure, code="FIL250")]
+    return [Problem(str(file), 0, Wording("FIL250", "not_as_posted"))]

@@ -138,7 +138,7 @@ def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program
         "strict": posting.is_strict, "explain": posting.options.explain, "hooks": project.hooks,
         "columns": project.checks.longest_s is not None,
     }  # fmt: skip
-    work = Work(posting.inputs, posting.group, forcing="", later=posting.later)
+    work = Work(posting.inputs, posting.group, can_force=False, later=posting.later)
     return post_beside(program.cl, machine, given, work, posting.observer)
 
 

@@ -24,6 +24,7 @@ from trunnion.jobs.project.keys import KEYS, OF_PROJECT
 from trunnion.jobs.project.project import Judgement, Project, ProjectChecks
 from trunnion.jobs.project.setups import OF_ONE_PROGRAM, Purpose, SetupReader, places_of, try_value
 from trunnion.jobs.project.stated_values import StatedValues
+from trunnion.messages import Wording
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 
 #: A line that begins the table of a simulation: no control has one like it.
@@ -74,9 +75,7 @@ def load_project(path: Path) -> Project:
 def read_whole(path: Path, elsewhere: Collection[str] = (), *, is_posted: bool) -> Project:
     """Read a project for posts or for simulations; errors as ``load_project`` or ``read_project``."""
     if path.suffix != ".toml":
-        raise InputError(
-            Problem(str(path), 0, "is a project by its content", "let its name end in .toml", code="SIM112")
-        )
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "project_of_other_ending")))
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
     return read_project_table(
@@ -87,10 +86,7 @@ def read_whole(path: Path, elsewhere: Collection[str] = (), *, is_posted: bool) 
 def read_project_table(root: Table, path: Path, elsewhere: Collection[str] = (), *, is_posted: bool = True) -> Project:
     """Read the table of a project that stands, or would stand, in the file ``path``; errors as ``load_project``."""
     if "simulation" not in root and not any(key in root for key in _KEYS_OF_PROJECTS):
-        what = f"is no project: it has none of the keys {', '.join(_KEYS_OF_PROJECTS)}, and no table [simulation]"
-        raise InputError(
-            Problem(str(path), 0, what, "give the path of a project, or name the files themselves", code="SIM112")
-        )
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "no_project", keys=_KEYS_OF_PROJECTS)))
     found = _Reader(Purpose(path, elsewhere, is_posted)).project(root)
     root.report_unread_keys()
     root.raise_problems()

@@ -9,6 +9,7 @@ from trunnion.definitions import Table
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.files import name_fault
+from trunnion.messages import Wording
 
 #: Files that one key may name, and a project.
 _MOST_FILES: Final = 1000
@@ -51,11 +52,9 @@ class ProjectPaths:
         if name.endswith("/") or _answer(Path.is_dir, location):
             table.add_problem(key, f'"{name[:100]}" is a folder', "name a file in it")
         elif not _answer(Path.is_dir, location.parent):
-            table.add_problem(key, f'"{name[:100]}" is in a folder that is not there', "make it first", code="FIL220")
+            table.add_problem(key, Wording("FIL220", "no_such_folder_for", name=name[:100]))
         elif fault := name_fault(PurePosixPath(name)) or name_fault(self._behind_links(location)):
-            table.add_problem(
-                key, f"cannot be written: {fault}", "write letters, digits and _, such as top.mpf", code="FIL340"
-            )
+            table.add_problem(key, Wording("FIL340", "name_impossible", fault=fault))
         return location
 
     def _behind_links(self, location: Path) -> PurePosixPath:
@@ -78,8 +77,12 @@ class ProjectPaths:
         """Return the path that a name in a project leads to; one that leads out of its folder is a mistake."""
         self._count += 1
         if self._count > _MOST_NAMES:  # asking the system about each takes a while
-            what = f"{table.key_path(key)} is beyond the {_MOST_NAMES} files that a project may name"
-            raise InputError(Problem(*table.location(key), what, "write several projects", code="PRJ110"))
+            raise InputError(
+                Problem(
+                    *table.location(key),
+                    Wording("PRJ110", "too_many_files", most=_MOST_NAMES).of_key(table.key_path(key)),
+                )
+            )
         pure = PurePosixPath(name)
         location = self._folder / pure
         outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name) or len(name) > 1000

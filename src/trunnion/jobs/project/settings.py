@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, Final
 
 from trunnion.definitions import Table
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, key_subject
 from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
 from trunnion.jobs.project.keys import SETTINGS
 from trunnion.jobs.project.project import PostedSetup
@@ -53,6 +53,10 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
     return found, places
 
 
+#: How a project writes what parameters of messages about the setting ``programs`` say: by its key ``divide``.
+_OF_DIVIDE: Final = {"divided": '"subprograms"', "dividing": 'divide = "subprograms"'}
+
+
 @contextmanager
 def told_in_project(setup: PostedSetup, given: Settings) -> Iterator[None]:
     """Tell problems with settings where the project states them; those that are ``given`` otherwise as they are."""
@@ -63,17 +67,15 @@ def told_in_project(setup: PostedSetup, given: Settings) -> Iterator[None]:
 
 
 def _in_project(problem: Problem, setup: PostedSetup, given: Settings) -> Problem:
-    if problem.argument != "settings":
+    name = problem.setting
+    if problem.argument != "settings" or name in given:
         return problem
-    name = problem.what.partition(" ")[0]
-    if name in given:
-        return problem
-    what = problem.what.replace("programs is operations", 'programs is "subprograms"')  # the words of divide
-    cure = problem.cure.replace("programs=operations", 'divide = "subprograms"')
+    stated = dict(problem.wording.parameters)
+    wording = problem.wording.with_parameters(**{each: word for each, word in _OF_DIVIDE.items() if each in stated})
     if name in setup.places:
         file, line, key = setup.places[name]
-        said = f"{key}{what.removeprefix(name)}"
+        wording = wording.bare().of_key(key)
     else:
         file, line, key = setup.places["settings"]
-        said = f"{key}: {what}"
-    return Problem(file, line, said, cure, problem.severity, code=problem.code)
+        wording = wording.within("of", name=key)
+    return Problem(file, line, wording, severity=problem.severity, subject=key_subject(key))

@@ -11,8 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
-from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.definitions.messages import meant_word
+from trunnion.errors import InputError, Problem, Severity, argument_problem, key_subject
 from trunnion.jobs.arguments import with_present_names
 from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.reading import FilePath, as_machine
@@ -64,8 +64,15 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
     for name in stated:
         if name not in (*_WHOLE, *_OF_SETUP):
             names = ("project", *_WHOLE, *_OF_SETUP)
-            cure = did_you_mean(name, names) or f"known here: {', '.join(names)}"
-            raise InputError(argument_problem("simulation", f"has no {name!r}", cure, code="SIM110"))
+            near = meant_word(name, names)
+            raise InputError(
+                argument_problem(
+                    "simulation",
+                    Wording("SIM110", "unknown_but_near", name=repr(name), near=near)
+                    if near
+                    else Wording("SIM110", "unknown", name=repr(name), known=names),
+                )
+            )
     stated = {name: value for name, value in stated.items() if value is not None and value != () and value != []}
     if project is None:
         base = SimulationInput("", [SetupInput((), machine)])
@@ -75,9 +82,7 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
     setup = replace(base.setups[0], machine=machine, **own)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
-        raise InputError(
-            argument_problem("stock", "is missing", "give it, or a project file that states it", code="SIM110")
-        )
+        raise InputError(argument_problem("stock", Wording("SIM110", "missing")))
     if isinstance(found.stock, str) and not is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
@@ -96,8 +101,16 @@ def simulated_as_clamped(given: SimulationInput, clamping: Clamping) -> Simulati
         wanted = getattr(setup, name)
         if wanted is not None and not are_one_angle(wanted, angle):
             file, line, key = setup.places[name]
-            what = f"{key} is {number(wanted)}, and the part of the post is clamped at {number(angle)} degrees"
-            raise InputError(Problem(file, line, what, f"give the {name} {number(wanted)}", code="SIM113"))
+            raise InputError(
+                Problem(
+                    file,
+                    line,
+                    Wording(
+                        "SIM113", "clamped_otherwise", angle=number(wanted), clamped=number(angle), name=name
+                    ).of_key(key),
+                    subject=key_subject(key),
+                )
+            )
     return replace(given, setups=[replace(setup, turn=clamping.turn, tilt=clamping.tilt)])
 
 
@@ -122,28 +135,48 @@ def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
 def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> SimulationInput:
     """Return a project, whose programs are not looked at: the one that is posted is simulated."""
     if not is_project(path):
-        cure = "give the path of a project (.toml)"
-        raise InputError(Problem(str(path), 0, "is no project of a simulation", cure, code="SIM112"))
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "no_project_of_simulation")))
     found = read_project(path, ("nc", "machine", *stated))
     if len(found.setups) > 1:
-        what, cure = f"has {len(found.setups)} set-ups, and one program is posted", "write a project of this one set-up"
-        raise InputError(Problem(str(path), 0, what, cure, code="SIM112"))
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "several_setups", count=len(found.setups))))
     setup = found.setups[0]
     if setup.machine and as_machine(setup.machine).key != machine.key:
         file, line, key = setup.places["machine"]
-        what = f"{key} is {as_machine(setup.machine).key}, and the program is posted for {machine.key}"
-        raise InputError(Problem(file, line, what, "post it for the machine of the project", code="SIM113"))
+        raise InputError(
+            Problem(
+                file,
+                line,
+                Wording("SIM113", "other_machine", machine=as_machine(setup.machine).key, posted=machine.key).of_key(
+                    key
+                ),
+                subject=key_subject(key),
+            )
+        )
     for name, own in (("zero", machine.workpiece_zero), ("tool_length", machine.tool_length)):
         wanted = getattr(setup, name)
         if wanted is not None and wanted != own:
             file, line, key = setup.places[name]
             value = ",".join(f"{number:g}" for number in wanted) if isinstance(wanted, tuple) else f"{wanted:g}"
-            what = f"{key} is {value}, and the post has {'none' if own is None else 'another one'}"
-            raise InputError(Problem(file, line, what, f"give setting {name}={value}", code="SIM113"))
+            raise InputError(
+                Problem(
+                    file,
+                    line,
+                    Wording(
+                        "SIM113", "not_of_the_post" if own is None else "other_than_of_the_post", name=name, value=value
+                    ).of_key(key),
+                    subject=key_subject(key),
+                )
+            )
     if setup.until is not None:
         file, line, key = found.places["until"]
-        what = f"{key} is {setup.until}, and the program that is posted is simulated as a whole"
-        raise InputError(Problem(file, line, what, "leave it out", code="SIM113"))
+        raise InputError(
+            Problem(
+                file,
+                line,
+                Wording("SIM113", "only_to_a_block", block=setup.until).of_key(key),
+                subject=key_subject(key),
+            )
+        )
     return replace(found, setups=[replace(setup, zero=None, tool_length=None)])
 
 
@@ -171,8 +204,7 @@ def simulate_posted(
         If nobody reads it, a file cannot be used, or nothing says the form of a tool.
     """
     if run is None:
-        what = "nobody reads programs of this control, and what is not read cannot be simulated"
-        raise InputError(argument_problem("simulation", what, "leave it out", code="SIM115"))
+        raise InputError(argument_problem("simulation", Wording("SIM115", "program_not_read")))
     setup = replace(given.setups[0], programs=(run,), machine=run.machine, cl=toolpaths, cl_is_turned=True)
     return simulate_setups(replace(given, setups=[setup]), observer)
 

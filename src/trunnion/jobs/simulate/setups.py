@@ -22,6 +22,7 @@ from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import toolpaths_clamped
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
@@ -33,7 +34,6 @@ from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification import restore_rapids
-from trunnion.wording import counted
 
 #: Fewer errors do not say that a file is no program of the machine.
 _FEW_ERRORS: Final = 5
@@ -84,8 +84,7 @@ def _tools(runs: Sequence[Run], known: KnownTools) -> dict[str, ToolShape]:
     if in_spindle or any(_cuts_without_call(run) for run in runs):
         called.append(NO_CALL)
         if not in_spindle:
-            what, cure = "the program cuts before it calls a tool", "state the one that is in the spindle: 0=ball:10"
-            raise InputError(argument_problem("tools", what, cure, code="SIM150"))
+            raise InputError(argument_problem("tools", Wording("SIM150", "cuts_before_first_tool")))
     found = known.choose(called)
     return found | ({"": found[NO_CALL]} if NO_CALL in found else {})
 
@@ -102,15 +101,23 @@ def _check_programs(runs: Sequence[Run], machine: Machine) -> None:
         wrong = sorted({(each.file, each.line): each for each in run.errors}.items())
         if len(wrong) > max(_FEW_ERRORS, len(run)):
             (file, line), first = wrong[0]
-            what = f"{first.text}; {counted(len(wrong), 'line')} of it not understood"
-            raise InputError(Problem(file, line, what, f"is this a program of {machine.key}?", code="SIM140"))
+            raise InputError(
+                Problem(
+                    file,
+                    line,
+                    Wording(
+                        "SIM140", "no_program_of_machine", first=first.wording, count=len(wrong), machine=machine.key
+                    ),
+                )
+            )
 
 
 def _without_motion(runs: Sequence[Run]) -> list[Problem]:
     """Programs that move nothing: an error where none of a set-up does, for then nothing was simulated."""
     severity = Severity.WARNING if any(len(run) for run in runs) else Severity.ERROR
-    what, cure = "there is no motion in it: nothing was simulated", "give the program that moves the tool"
-    return [Problem(run.files[0], 0, what, cure, severity, code="SIM148") for run in runs if not len(run)]
+    return [
+        Problem(run.files[0], 0, Wording("SIM148", "nothing_moves"), severity=severity) for run in runs if not len(run)
+    ]
 
 
 def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[Problem]:
@@ -122,7 +129,13 @@ def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[P
         if len(rows):
             row = int(rows[0])
             other = int(run.work_offset[row])
-            name = run.work_offset_name(other) if other else "no work offset"
-            what, cure = f"cuts in {name}, and the set-up is in {wanted}", "select the set-up's own work offset"
-            found.append(Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure, code="SIM141"))
+            found.append(
+                Problem(
+                    run.files[int(run.file[row])],
+                    int(run.line[row]),
+                    Wording("SIM141", "cuts_in_other_offset", offset=run.work_offset_name(other), wanted=wanted)
+                    if other
+                    else Wording("SIM141", "cuts_in_no_offset", wanted=wanted),
+                )
+            )
     return found

@@ -16,6 +16,7 @@ from trunnion.jobs.project.file import is_project, read_project
 from trunnion.jobs.project.keys import OF_ONE_SETUP, OF_PROJECT
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.steps import simulate_setups
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 
 #: Arguments of the simulation as a whole.
@@ -114,15 +115,12 @@ def as_simulation_input(nc: FilePath | Run | Iterable[FilePath | Run], given: Si
     project = next((Path(each) for each in programs if not isinstance(each, Run) and is_project(Path(each))), None)
     if project is not None:
         if len(programs) > 1:
-            what, cure = f"{project} is a project, and stands beside other programs", "give it alone"
-            raise InputError(argument_problem("nc", what, cure, code="SIM111"))
+            raise InputError(argument_problem("nc", Wording("SIM111", "project_among_programs", project=project)))
         stated = [name for name, value in {**whole, **own}.items() if not _is_left_out(value)]
         return _overruled(read_project(project, stated), whole, own, until)
     for name in ("machine", "stock"):
         if {**whole, **own}.get(name) is None:
-            raise InputError(
-                argument_problem(name, "is missing", "give it, or a project file that states it", code="SIM110")
-            )
+            raise InputError(argument_problem(name, Wording("SIM110", "missing")))
     setup = SetupInput(programs=programs, until=until, **own)
     return SimulationInput(setups=[setup], **whole)
 
@@ -134,8 +132,7 @@ def _overruled(
     stated = {name: value for name, value in own.items() if not _is_left_out(value)}
     several = [name for name in OF_ONE_SETUP if name in stated and len(project.setups) > 1]
     if several:
-        what, cure = "would be that of all set-ups of the project", "state it in the project"
-        raise InputError([argument_problem(name, what, cure, code="SIM111") for name in several])
+        raise InputError([argument_problem(name, Wording("SIM111", "of_all_setups")) for name in several])
     last: dict[str, Any] = {} if until is None else {"until": until}
     setups = [
         replace(each, **stated, **(last if each is project.setups[-1] else {}), places=_without(each.places, stated))

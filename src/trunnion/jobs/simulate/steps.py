@@ -14,6 +14,7 @@ from trunnion.jobs.observer import Observer
 from trunnion.jobs.simulate.result import SimulationResult, join_results, make_result
 from trunnion.jobs.simulate.setups import prepare_setup
 from trunnion.machines.forward import tool_axis_rows
+from trunnion.messages import Wording
 from trunnion.simulation.cutting.shares import JoinedShares, Share
 from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.prepared_setup import PreparedSetup
@@ -72,11 +73,9 @@ def cut_setup_share(given: SimulationInput, share: Share, observer: Observer) ->
 def _check_sharing(given: SimulationInput) -> None:
     """Refuse to divide what is not known from single tiles."""
     if len(given.setups) > 1:
-        what = f"divides the stock of one set-up, and here are {len(given.setups)}, each with what the last one leaves"
-        raise InputError(argument_problem("tiles", what, "leave it out", code="SIM116"))
+        raise InputError(argument_problem("tiles", Wording("SIM116", "several_setups", count=len(given.setups))))
     if given.stop_at == "first":
-        what = "has no meaning where the simulation ends at the first finding, which no single tile knows"
-        raise InputError(argument_problem("tiles", what, "leave out one of them", code="SIM116"))
+        raise InputError(argument_problem("tiles", Wording("SIM116", "stops_at_first_finding")))
 
 
 _Prepared: TypeAlias = tuple["SetupSteps", StockShape, Sequence[PreparedSetup], Sequence[list[Problem]]]
@@ -108,9 +107,11 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
     cell = given.cell or default_cell(shape, min(widths.values(), default=math.inf))
     check_narrow_tools(widths, cell)
     if given.accuracy is not None and given.accuracy > _COARSEST * cell:
-        what = f"{given.accuracy:g} mm is more than half of a cell of {cell:g} mm: gouges of a cell would not be told"
         raise InputError(
-            argument_problem("accuracy", what, f"give {_COARSEST * cell:g} mm at most, or a wider cell", code="SIM121")
+            argument_problem(
+                "accuracy",
+                Wording("SIM121", "coarser_than_cells", accuracy=given.accuracy, cell=cell, most=_COARSEST * cell),
+            )
         )
     simulation.check_cell(shape, cell)
     tolerance, to_first = given.accuracy or _TOLERANCE * cell, given.stop_at == "first"

@@ -13,6 +13,7 @@ from trunnion.jobs.inputs.arguments import check_observer, check_path, wrong_arg
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.result_output import declared_output
+from trunnion.messages import Wording
 from trunnion.model.recording import Recording
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.twin.recording.files import check_is_new
@@ -99,9 +100,7 @@ def machine_feed(address: str, *, observer: Observer = SILENT, **given: Unpack[L
     if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
         raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
     if user and not secure:
-        raise InputError(
-            argument_problem("user", "needs a channel that is encrypted", "add secure=True", code="TWN210")
-        )
+        raise InputError(argument_problem("user", Wording("TWN210", "user_without_encryption")))
     listed = load_nodes(check_path("nodes", found["nodes"]))
     import_extra("asyncua", "twin")
     from trunnion.twin.recording.client import Access
@@ -128,11 +127,7 @@ def check_address(address: object) -> None:
     if parts is None or not usable:
         raise wrong_argument("address", address, cure)
     if "@" in parts.netloc:
-        raise InputError(
-            argument_problem(
-                "address", "has a user in it", "give the user with argument user=NAME, and no password", code="TWN210"
-            )
-        )
+        raise InputError(argument_problem("address", Wording("TWN210", "user_in_address")))
 
 
 def read_recording(file: FilePath) -> Recording:
@@ -160,11 +155,7 @@ def as_recording(recorded: object) -> Recording:
 def _folder() -> Path:
     folder = user_data()
     if folder is None:
-        raise InputError(
-            Problem(
-                "trunnion", 0, "you have no folder for data", "set HOME, or record without secure=True", code="TWN120"
-            )
-        )
+        raise InputError(Problem("trunnion", 0, Wording("TWN120", "no_folder_for_certificates")))
     return folder / "trunnion" / "twin"
 
 

@@ -19,6 +19,7 @@ from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.result_output import check_output_name
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run
@@ -175,18 +176,12 @@ def twin_program(
     """
     placed = set_up_machine(as_machine(machine), zero, tool_length)
     if not isinstance(nc, Run) and is_cl_file(path := check_path("nc", nc)):
-        what, cure = "is a CL file, and a control runs programs", "post it first with trunnion post"
-        raise InputError(Problem(str(path), 0, what, cure, code="TWN110"))
+        raise InputError(Problem(str(path), 0, Wording("TWN110", "cl_file_served")))
     run = restore_rapids(as_run(nc, placed, check_paths("subprograms", subprograms)), rapid_feed_of(placed))
     if run.errors:
-        raise RefusedError(
-            [
-                Problem(each.file, each.line, each.text, "the twin runs no program with errors", code=each.code)
-                for each in run.errors
-            ]
-        )
+        raise RefusedError([Problem(each.file, each.line, each.wording.within("stops_twin")) for each in run.errors])
     if not len(run):
-        raise InputError(Problem(run.files[0], 0, "moves nothing", "give a program with motions", code="TWN111"))
+        raise InputError(Problem(run.files[0], 0, Wording("TWN111", "nothing_moves")))
     return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])
 
 
@@ -229,9 +224,7 @@ def add_twin_user(name: str, password: str, *, operator: bool = True, users: Fil
 def _folder() -> Path:
     folder = user_data()
     if folder is None:
-        raise InputError(
-            Problem("trunnion", 0, "you have no folder for data", "name a file with argument users=FILE", code="TWN120")
-        )
+        raise InputError(Problem("trunnion", 0, Wording("TWN120", "no_folder_for_users")))
     return folder / "trunnion" / "twin"
 
 
@@ -242,8 +235,7 @@ def _security(users: FilePath | None) -> "Security":
     path = users_file(users)
     found = read_users(path)
     if not len(found):
-        cure = "add one with argument add_user=NAME"
-        raise InputError(Problem(str(path), 0, "has no user, and other computers need one", cure, code="TWN132"))
+        raise InputError(Problem(str(path), 0, Wording("TWN132", "no_user")))
     return Security(found, _folder())
 
 

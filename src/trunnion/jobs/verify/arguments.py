@@ -9,6 +9,7 @@ from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
 from trunnion.jobs.inputs.hooked import no_cl_files
 from trunnion.jobs.inputs.settings import check_tolerance
+from trunnion.messages import Wording
 
 #: How far the tip may be off its CL point, mm.
 DEFAULT_TOLERANCE: Final = 0.001
@@ -27,7 +28,7 @@ def checked(given: VerifyArguments) -> VerifyArguments:
     check_choice("feed", given["feed"], ("programmed", "fastest"))
     feed_limit = _feed_limit(given)
     if given["feed"] == "fastest" and not has_cl:
-        raise _without_cl("feed", "is fastest, and only CL files say what feeds may be at most")
+        raise InputError(argument_problem("feed", Wording("ARG130", "fastest_feed_without_cl")))
     if given["units"] is not None:
         check_choice("units", given["units"], ("mm", "inch"))
     tool = _tool(given["tool"])
@@ -39,7 +40,7 @@ def checked(given: VerifyArguments) -> VerifyArguments:
         raise no_cl_files()
     turn, tilt = checked_angles(given["turn"], given["tilt"])
     if (turn or tilt) and not has_cl:
-        raise _without_cl("turn" if turn else "tilt", "is that of CL files, and there are none")
+        raise InputError(argument_problem("turn" if turn else "tilt", Wording("ARG130", "clamping_without_cl")))
     return {
         **given, "feed_limit": feed_limit, "tool": tool, "edge": edge, "hooks": hooks, "turn": turn, "tilt": tilt
     }  # fmt: skip
@@ -50,23 +51,15 @@ def angles_of(given: VerifyArguments) -> tuple[float, float]:
     return given["turn"] or 0.0, given["tilt"] or 0.0
 
 
-def _without_cl(argument: str, what: str) -> InputError:
-    return InputError(argument_problem(argument, what, "name them with cl", code="ARG130"))
-
-
 def _feed_limit(given: VerifyArguments) -> float | None:
     """Return a feed limit, checked."""
     limit = given["feed_limit"]
     if limit is None:
         return None
     if given["feed"] != "fastest":
-        raise InputError(
-            argument_problem("feed_limit", "is for feed=fastest only", "write feed=fastest too", code="ARG130")
-        )
+        raise InputError(argument_problem("feed_limit", Wording("ARG130", "only_with_fastest_feed")))
     if isinstance(limit, bool) or not isinstance(limit, int | float) or not 0.0 < limit < math.inf:
-        raise InputError(
-            argument_problem("feed_limit", f"is {limit!r}", "write a number above 0, mm/min", code="ARG220")
-        )
+        raise InputError(argument_problem("feed_limit", Wording("ARG220", "no_feed_limit", value=repr(limit))))
     return float(limit)
 
 

@@ -11,6 +11,7 @@ from typing import Final
 
 from trunnion.controls import Control
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic, Run
 
 _OF_BUILDER: Final = "NC225"
@@ -20,24 +21,7 @@ _LEFT_ON: Final = "NC351"
 #: Warnings of a kind that are told one by one; a program with more words is hardly one for this machine.
 _MOST_TOLD: Final = 20
 
-#: By code: what the many are that are not told one by one, and what to do about one, and about all of them.
-_KINDS: Final = {
-    _OF_BUILDER: (
-        "words belong to the machine",
-        "look it up, and declare it in [control.known]",
-        "see that the program is for this machine",
-    ),
-    _WAITS: (
-        "blocks wait or stop",
-        "see that it is meant, or take it out of the template or CL file that it comes from",
-        "see that they are meant",
-    ),
-    _LEFT_ON: (
-        "modes are left to the next program",
-        "change the template or CL file that it comes from",
-        "set them back before the end",
-    ),
-}
+_KINDS: Final = (_OF_BUILDER, _WAITS, _LEFT_ON)
 
 
 def stated_words(control: Control, settings: Mapping[str, str]) -> frozenset[str]:
@@ -56,18 +40,21 @@ def program_warnings(run: Run, stated: frozenset[str] = frozenset()) -> list[Pro
 def _is_told(noted: Diagnostic, code: str, stated: frozenset[str]) -> bool:
     if noted.code != code or noted.severity is not Severity.WARNING:
         return False
-    return code != _OF_BUILDER or noted.text.partition(" ")[0] not in stated
+    return code != _OF_BUILDER or noted.wording.parameter("word") not in stated
 
 
 def _of_kind(run: Run, code: str, noted: Sequence[Diagnostic]) -> list[Problem]:
     """Return the first warnings of a kind one by one, and the others together."""
-    many, cure, cure_of_many = _KINDS[code]
     told = [
-        Problem(each.file or run.files[0], each.line, each.text, cure, Severity.WARNING, code=code)
+        Problem(
+            each.file or run.files[0],
+            each.line,
+            Wording(code, "noted", noted=each.wording),
+            severity=Severity.WARNING,
+        )
         for each in noted[:_MOST_TOLD]
     ]
-    if len(noted) > _MOST_TOLD:
-        what = f"{len(noted) - _MOST_TOLD} more {many}"
+    if more := len(noted) - len(told):
         line = noted[_MOST_TOLD].line
-        told.append(Problem(run.files[0], line, what, cure_of_many, Severity.WARNING, code=code))
+        told.append(Problem(run.files[0], line, Wording(code, "more_noted", count=more), severity=Severity.WARNING))
     return told

@@ -12,6 +12,7 @@ from trunnion.jobs.inputs.input_files import verified_files
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import check_report_name
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
 
@@ -74,9 +75,7 @@ def add_report(
         When the verification has no columns.
     """
     if len(verification.seconds) != len(verification.run):
-        raise InputError(
-            Problem(name, 0, "the verification has no columns", "ask for it with columns=True", code="ARG130")
-        )
+        raise InputError(Problem(name, 0, Wording("ARG130", "verified_without_columns")))
     from trunnion.reporting import render_report  # most runs write no report
 
     content = None

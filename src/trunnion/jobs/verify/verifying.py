@@ -19,6 +19,7 @@ from trunnion.jobs.verify.arguments import checked
 from trunnion.jobs.verify.expectation import expected, tolerances
 from trunnion.jobs.verify.reading import VerifiedMachine, read_program
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.verification import Verification
 
@@ -140,5 +141,4 @@ def _without_motion(run: Run) -> list[Problem]:
     """Return a warning of a program that moves nothing."""
     if len(run) or run.errors:
         return []
-    what, cure = "there is no motion in it: nothing of a path was checked", "give the program that moves the tool"
-    return [Problem(run.files[0], 0, what, cure, Severity.WARNING, code="NC185")]
+    return [Problem(run.files[0], 0, Wording("NC185", "nothing_moves"), severity=Severity.WARNING)]

@@ -29,6 +29,7 @@ from trunnion.jobs.project.keys import OF_PROJECT, OF_SETUP
 from trunnion.jobs.registry import JOBS
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import stated_clamping
 from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
@@ -77,23 +78,16 @@ def view_program(
     if any(are_cl):
         if not all(are_cl):
             other = files[are_cl.index(False)]
-            raise InputError(
-                Problem(str(other), 0, "is no CL file, as others here are", "view them one by one", code="PAG112")
-            )
+            raise InputError(Problem(str(other), 0, Wording("PAG112", "no_cl_file_as_others")))
         stated: PostArguments = {"settings": settings, "subprograms": subprograms, "hooks": hooks}
         return _posted(files, machine, stated, observer)
     if settings:
-        what, cure = (
-            "is an NC program, to which settings of posting mean nothing",
-            "leave them out, or give the CL file",
-        )
-        raise InputError(Problem(str(files[0]), 0, what, cure, code="PAG111"))
+        raise InputError(Problem(str(files[0]), 0, Wording("PAG111", "settings_for_program")))
     others = [*files[1:], *subprograms]
     run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))
     unused = [file for file in files[1:] if str(file) not in run.files]
     if unused:
-        what = f"is not called by {files[0].name}, and one program is shown"
-        raise InputError(Problem(str(unused[0]), 0, what, "view it alone", code="PAG113"))
+        raise InputError(Problem(str(unused[0]), 0, Wording("PAG113", "never_called", program=files[0].name)))
     cl = given["cl"]
     toolpaths = hooked_toolpaths(as_toolpaths(cl, None, False, observer), machine, hooks)
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
@@ -106,16 +100,16 @@ def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Pro
     stated = stated_clamping(toolpaths) if is_cl_file(file) else stated_place(file).clamping
     if stated is None or stated.is_as_drawn:
         return []
-    what = f"it says that the part is {stated}, and a view shows stock, part and fixtures as they are given"
-    return [Problem(str(file), 0, what, "give them as they are clamped", Severity.WARNING, code="PAG116")]
+    return [
+        Problem(str(file), 0, Wording("PAG116", "bodies_clamped_otherwise", clamping=stated), severity=Severity.WARNING)
+    ]
 
 
 def _posted(files: Sequence[Path], machine: Machine, stated: PostArguments, observer: Observer) -> ViewedProgram:
     result = post_beside(files, machine, {**stated, "force": True}, observer=observer)
     text = result.text
     if result.verification is None or text is None:
-        what, cure = "no reader knows the control, so that its motion is not known", "view it on another machine"
-        raise InputError(Problem(str(files[0]), 0, what, cure, code="PAG114"))
+        raise InputError(Problem(str(files[0]), 0, Wording("PAG114", "control_without_reader")))
     name = f"{files[0].stem}{load_control(machine.control).extension}"
     run = result.verification.run
     verification = replace(result.verification, program=name, run=replace(run, files=(name, *run.files[1:])))
@@ -152,13 +146,24 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
     chosen, number = _setup(path, project.setups, setup)
     programs = list(chosen.programs)
     if Clamping(*checked_angles(chosen.turn, chosen.tilt)).is_turned:
-        what = f"has a part that is clamped turned{f' in {chosen.name}' if chosen.name else ''}, and a view turns none"
-        cure = "view the program itself, with bodies as they are clamped"
-        raise InputError(Problem(str(path), 0, what, cure, code="PAG115"))
-    if len(programs) != 1:
-        what = f"has {len(programs)} programs in its set-up{f' {chosen.name}' if chosen.name else ''}"
         raise InputError(
-            Problem(str(path), 0, f"{what}, and a view shows one", "view the program itself", code="PAG112")
+            Problem(
+                str(path),
+                0,
+                Wording("PAG115", "clamped_turned_in_setup", setup=chosen.name)
+                if chosen.name
+                else Wording("PAG115", "clamped_turned"),
+            )
+        )
+    if len(programs) != 1:
+        raise InputError(
+            Problem(
+                str(path),
+                0,
+                Wording("PAG112", "several_programs_in_setup", count=len(programs), setup=chosen.name)
+                if chosen.name
+                else Wording("PAG112", "several_programs", count=len(programs)),
+            )
         )
     found = {name: getattr(chosen, name) for name in _OF_SETUP} | {name: getattr(project, name) for name in _OF_PROJECT}
     if number:  # what an earlier set-up leaves is known to the simulation of all of them only
@@ -170,11 +175,10 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
 def _setup(path: Path, setups: Sequence[SetupInput], wanted: str | None) -> tuple[SetupInput, int]:
     names = [each.name or str(number) for number, each in enumerate(setups, 1)]
     if wanted is None and len(setups) > 1:
-        cure = f"choose one of {', '.join(names)}"
-        raise InputError(Problem(str(path), 0, f"has {len(setups)} set-ups, and a view shows one", cure, code="PAG112"))
+        raise InputError(
+            Problem(str(path), 0, Wording("PAG112", "several_setups", count=len(setups), names=tuple(names)))
+        )
     for number, (each, name) in enumerate(zip(setups, names, strict=True)):
         if wanted in (None, name, str(number + 1)):
             return each, number
-    raise InputError(
-        Problem(str(path), 0, f'has no set-up "{wanted}"', f"choose one of {', '.join(names)}", code="PAG112")
-    )
+    raise InputError(Problem(str(path), 0, Wording("PAG112", "no_such_setup", wanted=wanted, names=tuple(names))))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.reading import MachineLike, as_machine
 from trunnion.jobs.view.viewing import prepare_view
+from trunnion.messages import Wording
 from trunnion.model.recording import LINE, PROGRAM, Mark
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.live import LivePose
@@ -51,9 +52,13 @@ class LiveMachine:
             await feed.close()
             missing = [name for name in self._machine.names if name not in feed.names]
             if missing:
-                what = f"does not show the axes {', '.join(missing)}"
-                cure = f"choose a list of nodes with argument nodes=FILE that has the axes of {self._machine.key}"
-                raise InputError(Problem("the machine", 0, what, cure, code="TWN231"))
+                raise InputError(
+                    Problem(
+                        "the machine",
+                        0,
+                        Wording("TWN231", "axes_not_shown", axes=tuple(missing), machine=self._machine.key),
+                    )
+                )
 
         asyncio.run(connect())
 

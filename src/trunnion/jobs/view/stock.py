@@ -20,6 +20,7 @@ from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.tools.profile import cutting_width
@@ -46,9 +47,7 @@ def view_simulation(machine: Machine, **given: Any) -> SimulationInput | None:
         return simulation_input(given, machine)
     alone = [name for name in _OF_STOCK if given[name] is not None]
     if alone:
-        raise InputError(
-            [argument_problem(name, "belongs to a simulation", "give stock as well", code="PAG111") for name in alone]
-        )
+        raise InputError([argument_problem(name, Wording("PAG111", "of_a_simulation")) for name in alone])
     return None
 
 

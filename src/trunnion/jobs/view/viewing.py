@@ -17,6 +17,7 @@ from trunnion.jobs.project.file import is_project
 from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import view_simulation, with_stock
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.simulation.meshes import load_mesh
 from trunnion.simulation.tools.choice import NO_CALL
@@ -46,15 +47,11 @@ def prepare_view(
         stated = of_project(files[0], setup, stated)
         files = check_paths("nc", stated.pop("nc"))
     elif setup is not None:
-        raise InputError(
-            argument_problem("setup", "belongs to a project", "leave it out, or give the project", code="PAG111")
-        )
+        raise InputError(argument_problem("setup", Wording("PAG111", "setup_without_project")))
     content, run = _prepared(files, settings, observer, **stated)
     if against is None:
         if against_machine is not None:
-            raise InputError(
-                argument_problem("against_machine", "belongs to a second program", "name that, too", code="PAG111")
-            )
+            raise InputError(argument_problem("against_machine", Wording("PAG111", "machine_without_program")))
         return content
     alone = isinstance(against, str | os.PathLike)
     beside = [check_path("against", against)] if alone else check_paths("against", against)
@@ -70,11 +67,9 @@ def _prepared(
 ) -> tuple[ViewContent, Run]:
     """Put together what a page shows of one program, when no project states arguments any more; and its run."""
     if not files:
-        raise InputError(argument_problem("nc", "is empty", "name a program, CL files or a project", code="PAG110"))
+        raise InputError(argument_problem("nc", Wording("PAG110", "nothing_to_view")))
     if given["machine"] is None:
-        raise InputError(
-            argument_problem("machine", "is missing", "say on which machine the program runs", code="PAG110")
-        )
+        raise InputError(argument_problem("machine", Wording("PAG110", "missing_machine")))
     placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
     of_stock = ("stock", "part", "fixtures", "tools", "tool_libraries", "unit", "near", "cell", "accuracy")
     simulated = view_simulation(placed, **{name: given[name] for name in of_stock})

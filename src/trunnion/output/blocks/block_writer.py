@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Bytes, Ints
 from trunnion.controls.words import ABSENT, BlockNumbers, Word, WordRangeError
 from trunnion.encoding import TextForm
+from trunnion.messages import Wording
 from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, NUMBER, WAIT, write_blocks
 from trunnion.output.blocks.line_heads import GivenNumbers, LineHeads
 
@@ -308,8 +309,10 @@ def _check_range(word: Word, column: Ints) -> None:
         (lowest, word.format.least, lowest < word.format.least / unit * scale),
     ):
         if beyond and count != ABSENT:
-            what = f"word {word.letter}{count / scale:g} is beyond {limit / unit:g}"
-            raise WordRangeError(what, int(np.argmax(column == count)))
+            wording = Wording(
+                "CTL110", "word_beyond_format", letter=word.letter, value=count / scale, limit=limit / unit
+            )
+            raise WordRangeError(wording, int(np.argmax(column == count)))
 
 
 def _rule(word: Word) -> list[int]:

@@ -5,6 +5,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import Formats
 from trunnion.controls.words import NumberFormat, WordRangeError
+from trunnion.messages import Wording
 from trunnion.model.splines import Spline
 
 
@@ -51,5 +52,6 @@ def printed(number: NumberFormat, value: float, name: str) -> str:
     shown = number.rounded(value) / number.unit
     if not number.least / number.unit <= shown <= number.greatest / number.unit:
         limit = number.greatest if shown > 0.0 else number.least
-        raise WordRangeError(f"{name} {shown:g} is beyond {limit / number.unit:g}")
+        wording = Wording("CTL110", "number_beyond_format", name=name, value=shown, limit=limit / number.unit)
+        raise WordRangeError(wording)
     return number.text(value)

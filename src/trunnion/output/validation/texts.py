@@ -14,13 +14,26 @@ from trunnion.transliteration import lacking, spelled
 def text_problems(program: Program) -> list[Problem]:
     """Return a warning for each text that is transliterated, and an error for one that must stay as it is."""
     encoding, found = program.text_form.encoding, dict[str, Problem]()
-    for what, text, file, line in (*_texts(program), *_settings(program)):
+    for kind, text, file, line in (*_texts(program), *_settings(program)):
         written = spelled(text, encoding)
         if written != text and text not in found:
-            why = f"is written {written!r}: {_missing(program, text)}"
-            cure = _cure(program, text)
-            found[text] = Problem(file, line, f"{what} {text!r} {why}", cure, Severity.WARNING, code="CTL810")
+            wording = _transliterated(program, kind, text, written)
+            found[text] = Problem(file, line, wording, severity=Severity.WARNING)
     return [*found.values(), *_called(program), *_inserted(program)]
+
+
+def _transliterated(program: Program, kind: Wording, text: str, written: str) -> Wording:
+    """Return what becomes of a text; another encoding helps only where this one lacks a letter, and the control takes
+    others.
+    """
+    said: dict[str, object] = {"kind": kind, "text": repr(text), "written": repr(written)}
+    encoding = program.text_form.encoding
+    letter = lacking(text, encoding)
+    if not letter:
+        return Wording("CTL810", "unseen_characters_left_out", **said)
+    said |= {"encoding": encoding, "letter": repr(letter)}
+    family_only = program.control.family.SETTING_CHOICES.get("encoding")
+    return Wording("CTL810", "only_encoding_lacks_letter" if family_only else "encoding_lacks_letter", **said)
 
 
 def _missing(program: Program, text: str) -> Wording | str:
@@ -29,16 +42,8 @@ def _missing(program: Program, text: str) -> Wording | str:
     return phrase("no", encoding=encoding, letter=repr(letter)) if letter else phrase("characters_nobody_sees")
 
 
-def _cure(program: Program, text: str) -> str:
-    """Another encoding helps only where this one lacks a letter, and the control takes others."""
-    if not lacking(text, program.text_form.encoding):
-        return "rename it without them"
-    family_only = program.control.family.SETTING_CHOICES.get("encoding")
-    return "rename it if it must not be" if family_only else "rename it, or write setting encoding=utf-8"
-
-
-def _texts(program: Program) -> Iterator[tuple[str, str, str, int]]:
-    """Yield what is printed of operations: what it is, the text, CL file and line."""
+def _texts(program: Program) -> Iterator[tuple[Wording, str, str, int]]:
+    """Yield what is printed of operations: what it is (a phrase), the text, CL file and line."""
     fields = _printed(program)
     lists_tools = program.effective_setting("tool_list") == "on"
     lists_operations = program.effective_setting("operation_list") == "on"
@@ -46,23 +51,23 @@ def _texts(program: Program) -> Iterator[tuple[str, str, str, int]]:
         operation = motion.operation
         place = program.file_of(operation), operation.line
         if motion.starts_operation and ("operation" in fields or lists_operations):
-            yield "the operation", operation.name, *place
+            yield phrase("the_operation"), operation.name, *place
         if motion.starts_operation and ("tool_name" in fields or lists_tools):
-            yield "the tool", operation.tool.name, *place
+            yield phrase("the_tool"), operation.tool.name, *place
         if motion.starts_operation and ("tool_holder" in fields or lists_tools):
-            yield "the holder", operation.tool.holder, *place
+            yield phrase("the_holder"), operation.tool.holder, *place
         for event in operation.events:
             if isinstance(event, Message | Stop) and event.text:
-                yield "the text", event.text, place[0], event.line
+                yield phrase("the_text"), event.text, place[0], event.line
 
 
-def _settings(program: Program) -> Iterator[tuple[str, str, str, int]]:
+def _settings(program: Program) -> Iterator[tuple[Wording, str, str, int]]:
     """Yield settings that templates print."""
     fields = _printed(program)
     for values in (program.settings, *program.own_settings.values()):
         for key, text in values.items():
             if key in fields:
-                yield f"setting {key}", text, program.file, 0
+                yield phrase("the_setting", name=key), text, program.file, 0
 
 
 def _printed(program: Program) -> set[str]:

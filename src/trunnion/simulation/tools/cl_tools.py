@@ -4,7 +4,7 @@ import math
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.toolpath import Tool
 from trunnion.simulation.tools.outlines import rounded_corner
@@ -18,8 +18,6 @@ _BALL: Final = 1.0 - ROUNDING
 #: How far sizes that say the same may differ, as a part of the diameter.
 _SAME: Final = 1e-3
 
-_SAY_IT: Final = "state the tool itself: its kind and its sizes"
-
 
 def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, dialect: str = "clsf") -> ToolShape:
     """Return the body of a cutter that a CL file describes.
@@ -30,7 +28,8 @@ def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, diale
 
     Raises ``InputError`` if the CL file does not say all of its form, or says it in a way whose meaning is not settled.
     """
-    called = f"tool {number}" if number is not None else f"tool {tool.name}" if tool.name else "its tool"
+    name = tool.name if number is None else number
+    called = phrase("tool_called", name=name) if name != "" else phrase("its_tool")
     if unsettled := _unsettled(tool, dialect):
         raise InputError(
             Problem(
@@ -47,8 +46,16 @@ def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, diale
         )
     sizes = _sizes(tool)
     if faults := shape_faults(sizes):
-        whats = ((f"{called}: its {size.replace('_', ' ')} {what}", cure) for size, what, cure in faults)
-        raise InputError([Problem(file, line, what, f"{cure}, or {_SAY_IT}", code="SIM152") for what, cure in whats])
+        raise InputError(
+            [
+                Problem(
+                    file,
+                    line,
+                    Wording("SIM152", "of_cl_file", tool=called, size=size.replace("_", " "), fault=wording),
+                )
+                for size, wording in faults
+            ]
+        )
     return tool_shape(sizes, number, tool.name, tool.holder)
 
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, TypeAlias
 
+from trunnion.messages import Wording
+
 #: Two points nearer to each other than this, as a part of their size, are the same: outlines are computed.
 _SAME: Final = 1e-9
 
@@ -108,7 +110,7 @@ class ToolShape:
     number        by which programs call it; None if it has none
     length        from the tip to the gauge point, mm; 0 if it is not known
     flute_length  from the tip to where it stops cutting, mm
-    remarks       what had to be taken for granted, in sentences
+    remarks       what had to be taken for granted
     is_drawn_only nothing states how long it is: its size can be drawn, and counts for nothing
     """
 
@@ -118,7 +120,7 @@ class ToolShape:
     length: float = 0.0
     flute_length: float = 0.0
     description: str = ""
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Wording, ...] = ()
     is_drawn_only: bool = False
 
     @property

@@ -7,6 +7,7 @@ from itertools import accumulate, pairwise
 from typing import Final, TypedDict, Unpack
 
 from trunnion.errors import InputError, argument_problem
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.tools.outlines import cutter_outline, side_slope, tip_height
 from trunnion.simulation.tools.profile import (
     Element,
@@ -62,7 +63,7 @@ def tool_shape(sizes: ToolSizes, number: int | None = None, name: str = "", desc
     Raises ``InputError`` if sizes are impossible, with all of them.
     """
     if faults := shape_faults(sizes):
-        raise InputError([argument_problem(size, what, cure, code="SIM152") for size, what, cure in faults])
+        raise InputError([argument_problem(size, wording) for size, wording in faults])
     outline = cutter_outline(sizes)
     length, flute_length, remarks = _lengths(sizes, outline[-1].end[1])
     outline += _side(sizes, outline[-1].end, flute_length)
@@ -83,11 +84,16 @@ def shape_faults(sizes: ToolSizes) -> tuple[SizeFault, ...]:
         return faults
     tip = tip_height(sizes)
     if sizes.length and sizes.length < tip * (1.0 - ROUNDING):
-        return (SizeFault("length", f"is {sizes.length:g}, but its tip alone is {tip:.6g} high", "write all of it"),)
+        return (SizeFault("length", Wording("SIM152", "less_than_tip", value=sizes.length, tip=tip)),)
     return ()
 
 
-def _lengths(sizes: ToolSizes, top: float) -> tuple[float, float, tuple[str, ...]]:
+def fault_of_size(fault: SizeFault) -> Wording:
+    """Return the phrase of a fault, with its cure, as one of several of a tool."""
+    return phrase("fault_of_size", size=fault.size.replace("_", " "), fault=fault.wording)
+
+
+def _lengths(sizes: ToolSizes, top: float) -> tuple[float, float, tuple[Wording, ...]]:
     """Length and flute length of a tool whose outline ends at ``top``, and what was taken for granted."""
     flute_length = sizes.flute_length
     if side_slope(sizes) is None and (flute_length == 0.0 or flute_length > top - _NO_HEIGHT):
@@ -95,10 +101,10 @@ def _lengths(sizes: ToolSizes, top: float) -> tuple[float, float, tuple[str, ...
     if flute_length and sizes.length:
         return sizes.length, flute_length, ()
     if sizes.length:
-        remark = f"the flute length is not stated: all {sizes.length:g} mm of the tool below its holder cut"
+        remark = Wording("SIM155", "all_of_it_cuts", length=sizes.length)
         return sizes.length, sizes.length, (remark,)
     length = flute_length or max(UNSTATED_LENGTH, _UNSTATED_DIAMETERS * sizes.diameter, top)
-    remark = f"the length is not stated: the tool is {length:g} mm of flutes without shank and holder"
+    remark = Wording("SIM155", "flutes_alone", length=length)
     return length, length, (remark,)
 
 

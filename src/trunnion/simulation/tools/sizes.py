@@ -10,6 +10,8 @@ from dataclasses import dataclass, fields
 from enum import StrEnum
 from typing import Final, NamedTuple
 
+from trunnion.messages import Wording
+
 #: Greatest size of a tool, mm: a larger one is in another unit, or a slip.
 GREATEST: Final = 10_000.0
 
@@ -42,7 +44,7 @@ class ToolKind(StrEnum):
     BARREL = "barrel"
 
 
-#: What others call them, as ``did_you_mean`` takes it.
+#: What others call them, as ``meant_word`` takes it.
 OTHER_KINDS: Final = {
     "mill": ToolKind.FLAT, "endmill": ToolKind.FLAT, "flatmill": ToolKind.FLAT, "flatendmill": ToolKind.FLAT,
     "squareendmill": ToolKind.FLAT, "cylinder": ToolKind.FLAT, "cylindrical": ToolKind.FLAT, "facemill": ToolKind.FLAT,
@@ -118,11 +120,14 @@ class ToolSizes:
 
 
 class SizeFault(NamedTuple):
-    """What is impossible about a size: the field of ``ToolSizes`` that has it, the fault and its cure."""
+    """What is impossible about a size: the field of ``ToolSizes`` that has it, and the fault."""
 
     size: str
-    what: str
-    cure: str
+    wording: Wording
+
+
+def _fault(size: str, variant: str, **parameters: object) -> SizeFault:
+    return SizeFault(size, Wording("SIM152", variant, **parameters))
 
 
 class SizesOfKind(NamedTuple):
@@ -194,36 +199,34 @@ def _out_of_range(sizes: ToolSizes) -> Iterator[SizeFault]:
             continue
         below = ANGLE_LIMITS.get(field.name)
         if field.name in needed and value == 0.0:
-            yield SizeFault(field.name, "is not stated", f"a tool of the kind {sizes.kind} needs it")
+            yield _fault(field.name, "size_needed", kind=sizes.kind)
         elif value != 0.0 and field.name not in (*needed, *others, *OF_BODY):
-            yield SizeFault(field.name, f"is no size of a tool of the kind {sizes.kind}", "leave it out")
+            yield _fault(field.name, "size_of_other_kind", kind=sizes.kind)
         elif below and not 0.0 <= value < below:
-            yield SizeFault(field.name, f"is {value:g}", f"write an angle above 0 and below {below:g} degrees")
+            yield _fault(field.name, "angle_out_of_range", value=value, below=below)
         elif not 0.0 <= value <= GREATEST:
-            yield SizeFault(field.name, f"is {value:g}", f"write a number above 0, at most {GREATEST:g}")
+            yield _fault(field.name, "size_out_of_range", value=value, most=GREATEST)
     for name, pieces in (("shank", sizes.shank), ("holder", sizes.holder)):
         if len(pieces) > MOST_PIECES:
-            yield SizeFault(name, f"has {len(pieces)} pieces", f"write at most {MOST_PIECES}")
+            yield _fault(name, "too_many_pieces", count=len(pieces), most=MOST_PIECES)
             return
         for number, piece in enumerate(pieces, 1):
             for value in (piece.lower_diameter, piece.upper_diameter, piece.height):
                 if not 0.0 < value <= GREATEST:
-                    what = f"has {value:g} in piece {number}"
-                    yield SizeFault(name, what, f"write diameters and heights above 0, at most {GREATEST:g}")
+                    yield _fault(name, "piece_out_of_range", value=value, piece=number, most=GREATEST)
 
 
 def _cutter_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     """Sizes of a cutter that cannot be together."""
     half = 0.5 * sizes.diameter
     if sizes.kind is ToolKind.DRILL and sizes.side_angle >= 0.5 * sizes.tip_angle:
-        what = f"is {sizes.side_angle:g}: side and tip never meet"
-        yield SizeFault("side_angle", what, f"write less than half the angle of the tip, {0.5 * sizes.tip_angle:g}")
+        yield _fault("side_angle", "side_never_meets_tip", value=sizes.side_angle, half=0.5 * sizes.tip_angle)
     elif sizes.kind in (ToolKind.BULL, ToolKind.TAPER, ToolKind.DRILL):
         bottom = 90.0 - 0.5 * sizes.tip_angle if sizes.tip_angle else 0.0
         room = corner_room(half, math.radians(bottom), math.radians(sizes.side_angle))
-        yield from _at_most(sizes, "corner_radius", room, "what fits between bottom and side")
+        yield from _at_most(sizes, "corner_radius", room, "does_not_fit_between_bottom_and_side")
     elif sizes.kind is ToolKind.CHAMFER and sizes.tip_diameter >= sizes.diameter:
-        yield SizeFault("tip_diameter", f"is {sizes.tip_diameter:g}", f"write less than {sizes.diameter:g}")
+        yield _fault("tip_diameter", "not_less", value=sizes.tip_diameter, limit=sizes.diameter)
     elif sizes.kind is ToolKind.LOLLIPOP:
         yield from _lollipop_contradictions(sizes)
     elif sizes.kind is ToolKind.T_SLOT:
@@ -234,43 +237,40 @@ def _cutter_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
         yield from _barrel_contradictions(sizes)
 
 
-def _at_most(sizes: ToolSizes, name: str, most: float, what: str) -> Iterator[SizeFault]:
+def _at_most(sizes: ToolSizes, name: str, most: float, variant: str) -> Iterator[SizeFault]:
     value = getattr(sizes, name)
     if value > most * (1.0 + ROUNDING):
-        yield SizeFault(name, f"is {value:g}, more than {what}", f"write at most {most:.6g}")
+        yield _fault(name, variant, value=value, most=most)
 
 
 def _lollipop_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     if sizes.neck_diameter >= sizes.diameter:
-        yield SizeFault("neck_diameter", f"is {sizes.neck_diameter:g}", f"write less than {sizes.diameter:g}")
+        yield _fault("neck_diameter", "not_less", value=sizes.neck_diameter, limit=sizes.diameter)
     else:
-        yield from _at_most(sizes, "flute_length", ball_height(sizes), "the ball up to its neck")
+        yield from _at_most(sizes, "flute_length", ball_height(sizes), "more_than_ball_up_to_neck")
 
 
 def _t_slot_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     half = 0.5 * sizes.diameter
     if sizes.neck_diameter >= sizes.diameter:
-        yield SizeFault("neck_diameter", f"is {sizes.neck_diameter:g}", f"write less than {sizes.diameter:g}")
-    yield from _at_most(sizes, "corner_radius", half, "half the diameter")
-    yield from _at_most(sizes, "upper_radius", half, "half the diameter")
+        yield _fault("neck_diameter", "not_less", value=sizes.neck_diameter, limit=sizes.diameter)
+    yield from _at_most(sizes, "corner_radius", half, "more_than_half_the_diameter")
+    yield from _at_most(sizes, "upper_radius", half, "more_than_half_the_diameter")
     if sizes.corner_radius + sizes.upper_radius > sizes.flute_length * (1.0 + ROUNDING):
-        what = f"is {sizes.flute_length:g}, less than both corners together"
-        yield SizeFault("flute_length", what, "it is the height of the cutting disc")
+        yield _fault("flute_length", "less_than_both_corners", value=sizes.flute_length)
 
 
 def _thread_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     if sizes.crest >= sizes.pitch:
-        yield SizeFault("crest", f"is {sizes.crest:g}", f"write less than the pitch, {sizes.pitch:g}")
+        yield _fault("crest", "not_less_than_pitch", value=sizes.crest, pitch=sizes.pitch)
     elif groove_depth(sizes) >= 0.5 * sizes.diameter:
-        what = (
-            f"is {sizes.pitch:g}: its grooves would be {groove_depth(sizes):.4g} mm deep, more than the tool is thick"
-        )
-        yield SizeFault("pitch", what, "write the distance from tooth to tooth")
+        yield _fault("pitch", "grooves_too_deep", value=sizes.pitch, depth=groove_depth(sizes))
     if sizes.neck_diameter >= sizes.diameter:
-        yield SizeFault("neck_diameter", f"is {sizes.neck_diameter:g}", f"write less than {sizes.diameter:g}")
+        yield _fault("neck_diameter", "not_less", value=sizes.neck_diameter, limit=sizes.diameter)
     if not 1 <= tooth_count(sizes) <= MOST_TEETH:
-        what = f"is {sizes.flute_length:g}, which is {tooth_count(sizes)} teeth"
-        yield SizeFault("flute_length", what, f"write 1 to {MOST_TEETH} times the pitch")
+        yield _fault(
+            "flute_length", "number_of_teeth", value=sizes.flute_length, count=tooth_count(sizes), most=MOST_TEETH
+        )
 
 
 def _barrel_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
@@ -278,10 +278,9 @@ def _barrel_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     off_axis = 0.5 * sizes.diameter - profile
     farthest = max(0.0 if corner else widest, abs(sizes.flute_length - widest))
     if farthest >= profile or off_axis + math.sqrt(profile**2 - farthest**2) <= 0.0:
-        what = f"is {profile:g}: the side would reach the tool axis"
-        yield SizeFault("profile_radius", what, "write the radius of the side, which is longer than the flutes")
+        yield _fault("profile_radius", "side_reaches_tool_axis", value=profile)
     elif corner and not _corner_fits(sizes, off_axis):
-        yield SizeFault("corner_radius", f"is {corner:g}, more than fits below the side", "write a smaller one")
+        yield _fault("corner_radius", "does_not_fit_below_side", value=corner)
 
 
 def _corner_fits(sizes: ToolSizes, off_axis: float) -> bool:
@@ -296,22 +295,18 @@ def _corner_fits(sizes: ToolSizes, off_axis: float) -> bool:
 def _body_contradictions(sizes: ToolSizes) -> Iterator[SizeFault]:
     below_holder = sizes.length or sizes.flute_length
     if sizes.length and sizes.flute_length > sizes.length:
-        what = f"is {sizes.flute_length:g}, more than the length {sizes.length:g}"
-        yield SizeFault("flute_length", what, "the length counts from the tip to the holder")
+        yield _fault("flute_length", "more_than_length", value=sizes.flute_length, length=sizes.length)
     above = [name for name in ("shank_diameter", "neck_length", "shank", "holder") if getattr(sizes, name)]
     if above and not sizes.length:
-        yield SizeFault("length", "is not stated", f"write it: {above[0].replace('_', ' ')} has no place without it")
+        yield _fault("length", "no_place_without_length", above=above[0].replace("_", " "))
     elif above and above != ["holder"] and not sizes.flute_length and sizes.kind is not ToolKind.LOLLIPOP:
-        what = f"is not stated, but the {above[0].replace('_', ' ')} is"
-        yield SizeFault("flute_length", what, "write where the flutes end")
+        yield _fault("flute_length", "flutes_end_nowhere", above=above[0].replace("_", " "))
     if sizes.neck_length and not sizes.neck_diameter:
-        yield SizeFault("neck_diameter", "is not stated, but the neck's length is", "write both or none")
+        yield _fault("neck_diameter", "neck_without_diameter")
     if sizes.neck_diameter and (sizes.shank_diameter or sizes.shank) and not sizes.neck_length:
-        yield SizeFault("neck_length", "is not stated", "write where the neck ends and the shank begins")
+        yield _fault("neck_length", "neck_without_length")
     if sizes.neck_length and not sizes.flute_length <= sizes.neck_length <= (sizes.length or math.inf):
-        what = f"is {sizes.neck_length:g}, not between flute length and length"
-        yield SizeFault("neck_length", what, "it counts from the tip to where the shank begins")
+        yield _fault("neck_length", "neck_not_between", value=sizes.neck_length)
     top = below_holder + sum(piece.height for piece in sizes.holder)
     if sizes.gauge_length and sizes.gauge_length < top * (1.0 - ROUNDING):
-        what = f"is {sizes.gauge_length:g}, but the tool with its holder is {top:g} long"
-        yield SizeFault("gauge_length", what, "it counts from the tip to the gauge point, above the holder")
+        yield _fault("gauge_length", "less_than_tool_with_holder", value=sizes.gauge_length, top=top)

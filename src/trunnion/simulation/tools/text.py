@@ -11,8 +11,9 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.definitions.messages import meant_word
+from trunnion.errors import InputError, argument_problem
+from trunnion.messages import Wording
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.shapes import shape_faults, tool_shape
 from trunnion.simulation.tools.sizes import OF_BODY, OF_KIND, OTHER_KINDS, BodyPiece, ToolKind, ToolSizes
@@ -62,11 +63,13 @@ _NUMBER: Final = re.compile(r"\d{1,9}(\.\d{0,12})?|\.\d{1,12}", re.ASCII)
 _PIECE: Final = re.compile(r"(?P<low>[\d.]+)(-(?P<high>[\d.]+))?x(?P<height>[\d.]+)", re.ASCII)
 _TOOL_NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
 
-_FORM: Final = "write NUMBER=KIND:SIZES, such as 3=ball:10,length=60,flutes=20,shank=10,holder=40x50/60x30"
-
 
 class _TextError(Exception):
-    """What is wrong with a text, and its cure."""
+    """What is wrong with a text."""
+
+    def __init__(self, variant: str, **parameters: object) -> None:
+        super().__init__(variant)
+        self.wording = Wording("SIM153", variant, **parameters)
 
 
 def parse_tool(text: str, diameters: Mapping[int, float] | None = None) -> ToolShape:
@@ -81,27 +84,24 @@ def parse_tool(text: str, diameters: Mapping[int, float] | None = None) -> ToolS
     try:
         called, sizes = _read(text, diameters or {})
     except _TextError as error:
-        what, cure = error.args
-        raise InputError(_problem(shown, what, cure, "SIM153")) from None
+        raise InputError(argument_problem("tools", error.wording.within("of_quoted", text=shown))) from None
     if faults := shape_faults(sizes):
-        named = ((_NAME_OF.get(size, size), what, cure) for size, what, cure in faults)
-        raise InputError([_problem(shown, f"{name} {what}", cure, "SIM152") for name, what, cure in named])
+        named = ((_NAME_OF.get(size, size), wording) for size, wording in faults)
+        raise InputError(
+            [argument_problem("tools", wording.of_key(name).within("of_quoted", text=shown)) for name, wording in named]
+        )
     if _TOOL_NUMBER.fullmatch(called):
         return tool_shape(sizes, int(called))
     return tool_shape(sizes, None, called)
 
 
-def _problem(shown: str, what: str, cure: str, code: str) -> Problem:
-    return argument_problem("tools", f'"{shown}": {what}', cure, code=code)
-
-
 def _read(text: str, diameters: Mapping[int, float]) -> tuple[str, ToolSizes]:
     """Return the number or name of a tool, and its sizes."""
     if len(text) > _LONGEST:
-        raise _TextError(f"is {len(text)} letters long", _FORM)
+        raise _TextError("too_long", count=len(text))
     called, equals, described = (part.strip() for part in text.partition("="))
     if not equals or not called:
-        raise _TextError("says no number of a tool" if equals else "has no =", _FORM)
+        raise _TextError("no_number_of_tool" if equals else "no_equals")
     word, _, rest = described.partition(":")
     kind = _kind(word.strip())
     given = dict(_sizes(kind, rest))
@@ -114,9 +114,10 @@ def _kind(word: str) -> ToolKind:
     try:
         return ToolKind(word)
     except ValueError:
-        near = did_you_mean(word, ToolKind, OTHER_KINDS)
-        cure = f"{near} " if near else ""
-        raise _TextError(f'"{word}" is no kind of tool', f"{cure}write one of {', '.join(ToolKind)}") from None
+        near = meant_word(word, ToolKind, OTHER_KINDS)
+        if near:
+            raise _TextError("no_kind_but_near", word=word, near=near, kinds=tuple(ToolKind)) from None
+        raise _TextError("no_kind", word=word, kinds=tuple(ToolKind)) from None
 
 
 def _sizes(kind: ToolKind, text: str) -> Iterator[tuple[str, Any]]:
@@ -129,13 +130,13 @@ def _sizes(kind: ToolKind, text: str) -> Iterator[tuple[str, Any]]:
         name, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals:
             if names or place >= len(order):
-                least = ", ".join(_NAME_OF[field] for field in order)
-                raise _TextError(f'"{name}" has no name', f"a {kind} begins with {least}; write names for all others")
+                least = tuple(_NAME_OF[field] for field in order)
+                raise _TextError("size_without_name", value=name, kind=kind, first=least)
             field, value = order[place], name
         else:
             names, field = True, _field(kind, name)
         if field in seen:
-            raise _TextError(f"{_NAME_OF[field]} is there twice", "write it once")
+            raise _TextError("size_twice", size=_NAME_OF[field])
         seen.add(field)
         yield from _value(field, value)
 
@@ -144,9 +145,10 @@ def _field(kind: ToolKind, name: str) -> str:
     needed, others = OF_KIND[kind]
     known = [_NAME_OF[field] for field in dict.fromkeys((*needed, *others, *OF_BODY, "holder"))]
     if name not in known:
-        near = did_you_mean(name, known)
-        cure = f"{near} " if near else ""
-        raise _TextError(f'a {kind} has no size "{name}"', f"{cure}known here: {', '.join(known)}")
+        near = meant_word(name, known)
+        if near:
+            raise _TextError("no_size_but_near", kind=kind, name=name, near=near, known=tuple(known))
+        raise _TextError("no_size", kind=kind, name=name, known=tuple(known))
     return _NAMES[name]
 
 
@@ -161,8 +163,7 @@ def _value(field: str, text: str) -> Iterator[tuple[str, Any]]:
 
 def _number(name: str, text: str) -> float:
     if not _NUMBER.fullmatch(text) or not math.isfinite(float(text)) or float(text) == 0.0:
-        unit = "degrees" if name.endswith("angle") else "mm"
-        raise _TextError(f'{name} is "{text}"', f"write a number above 0, in {unit}, with a point: {name}=12.5")
+        raise _TextError("no_angle" if name.endswith("angle") else "no_length", name=name, value=text)
     return float(text)
 
 
@@ -172,8 +173,7 @@ def _pieces(name: str, text: str) -> tuple[BodyPiece, ...]:
     for part in text.split("/"):
         match = _PIECE.fullmatch(part.strip())
         if not match:
-            cure = f"write DIAMETERxHEIGHT or LOWER-UPPERxHEIGHT, from below to above: {name}=30-40x20/60x30"
-            raise _TextError(f'{name} has the piece "{part}"', cure)
+            raise _TextError("no_piece", name=name, piece=part)
         low = _number(name, match["low"])
         high = _number(name, match["high"]) if match["high"] else low
         found.append(BodyPiece(low, high, _number(name, match["height"])))

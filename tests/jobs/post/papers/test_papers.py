@@ -390,13 +390,13 @@ def test_papers_that_cannot_be(folder: Path, tmp_path: Path, capsys: pytest.Capt
     for given, message in (
         ({"sheet": folder / "a.pdf"}, "a setup sheet is a page or data"),
         ({"manifest": folder / "a.txt"}, "a manifest is data"),
-        ({"manifest": tmp_path / "a.json"}, "tells of the files beside it"),
+        ({"manifest": tmp_path / "a.json"}, "lists the files beside it"),
         ({"sheet": folder / "same.html", "report": folder / "same.html"}, "would be written twice"),
         ({"listing": folder / "part.cls"}, "would be written over"),
     ):
         with pytest.raises(InputError, match=message):
             post(folder, **given)
-    with pytest.raises(InputError, match="tells of the files beside it"):
+    with pytest.raises(InputError, match="lists the files beside it"):
         trunnion.post(folder / "part.cls", machine="yl569", manifest=tmp_path / "a.json")
     assert main(["verify", str(folder / "job.mpf")]) == 2
     assert "name the machine" in capsys.readouterr().err

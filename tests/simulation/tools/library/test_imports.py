@@ -205,12 +205,12 @@ def test_a_tool_has_the_contour_that_its_cam_draws(name: str) -> None:
 
 def test_what_is_taken_for_granted_of_an_import_is_said() -> None:
     tool = {**entry("tap right hand", LB=0.0), "holder": {"description": "ER 32"}}
-    assert autodesk(tool).tool(3).remarks == (
+    assert tuple(map(str, autodesk(tool).tool(3).remarks)) == (
         "it is a tap right hand: simulated as a cylinder",
         "its length below the holder (LB) is missing: all of it (OAL) stands free",
         "its holder has no form (segments): none is simulated",
     )
-    assert bit("tap.fcstd", TipAngle=90, CuttingEdgeLength=20).tool(None, "bit").remarks == (
+    assert tuple(map(str, bit("tap.fcstd", TipAngle=90, CuttingEdgeLength=20).tool(None, "bit").remarks)) == (
         "a tool bit has no holder: all of its length, 50 mm, stands free",
         "it is a tap: simulated without its thread",
     )

@@ -23,6 +23,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
+from trunnion.messages import Wording
 from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
 from trunnion.reporting.text import clean
@@ -49,8 +50,6 @@ _OF_CHECK: Final = ("key", "state", "missing", "summary", "worst", "limit", "uni
 
 #: Bytes of a name that file systems take.
 _LONGEST_NAME: Final = 255
-
-_NO_MANIFEST: Final = "is no manifest of a post"
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,12 +217,12 @@ def verify_manifest(manifest: FilePath, *, cl: Sequence[FilePath] = ()) -> Manif
     data = _read(path)
     found = [_checked(path, entry) for entry in _entries(path, data, "files")]
     if not found:
-        raise _fault(path, "it names no file")
+        raise _fault(path, Wording("FIL330", "no_files"))
     _check_whole(path, data, found)
     inputs = data.get("inputs")
     stated = _entries(path, inputs if isinstance(inputs, dict) else {}, "cl")
     if not stated:
-        raise _fault(path, "it names no CL file")
+        raise _fault(path, Wording("FIL330", "no_cl_files"))
     sums = {entry.get("sha256"): clean(str(entry.get("name"))) for entry in stated}
     given = set[str]()
     for file in check_paths("cl", cl):
@@ -239,14 +238,14 @@ def _check_whole(path: Path, data: dict[str, Any], files: Sequence[ManifestFile]
     """Raise ``InputError`` for a manifest from which something was taken, or that contradicts itself."""
     programs = [file.name for file in files if file.what == "program"]
     if programs != [data.get("program")]:
-        raise _fault(path, "its program is not the one among its files")
+        raise _fault(path, Wording("FIL330", "other_program"))
     names = [file.name.casefold() for file in files]
     if twice := next((file.name for k, file in enumerate(files) if names[k] in names[:k]), ""):
-        raise _fault(path, f"it names {twice} twice")
+        raise _fault(path, Wording("FIL330", "file_twice", name=twice))
     checks = _entries(path, data, "checks")
     sound = bool(checks) and all(map(_is_sound, checks)) and data.get("overruled") == []
     if data.get("may_run") is True and not sound:
-        raise _fault(path, "it says that the program may run, and its checks do not")
+        raise _fault(path, Wording("FIL330", "checks_contradict"))
 
 
 def _is_sound(check: dict[str, Any]) -> bool:
@@ -263,20 +262,21 @@ def _read(path: Path) -> dict[str, Any]:
             text = file.read(_MOST_BYTES + 1)
         data = json.loads(text) if len(text) <= _MOST_BYTES else None
     except OSError as error:
-        raise _fault(path, f"it cannot be read: {error.strerror}") from None
+        raise _fault(path, Wording("FIL330", "cannot_be_read", reason=error.strerror)) from None
     except (ValueError, RecursionError):
         data = None
     if not isinstance(data, dict) or "files" not in data or "made_by" not in data:
-        raise _fault(path, "it has no list of files in JSON")
+        raise _fault(path, Wording("FIL330", "no_list_of_files"))
     if data.get("schema") not in (_FIRST_SCHEMA, SCHEMA):
-        raise _fault(path, f"its schema is {data.get('schema')!r:.40}, and {SCHEMA} is known here")
+        shown = f"{data.get('schema')!r:.40}"
+        raise _fault(path, Wording("FIL330", "other_schema", schema=shown, known=SCHEMA))
     return data
 
 
 def _entries(path: Path, data: dict[str, Any], key: str) -> list[dict[str, Any]]:
     entries = data.get(key, [])
     if not isinstance(entries, list) or not all(isinstance(each, dict) for each in entries):
-        raise _fault(path, f"its {key} are no list of files")
+        raise _fault(path, Wording("FIL330", "no_such_list", key=key))
     return entries
 
 
@@ -284,9 +284,9 @@ def _checked(manifest: Path, entry: dict[str, Any]) -> ManifestFile:
     """One file of the post, which is beside the manifest."""
     name, what, size = entry.get("name"), entry.get("what"), entry.get("bytes")
     if not isinstance(name, str) or not _is_plain(name):
-        raise _fault(manifest, f"{name!r:.80} is no name of a file beside it")
+        raise _fault(manifest, Wording("FIL330", "no_name_beside", name=f"{name!r:.80}"))
     if what not in _WHATS:
-        raise _fault(manifest, f"{what!r:.80} is nothing that a post writes")
+        raise _fault(manifest, Wording("FIL330", "nothing_of_a_post", kind=f"{what!r:.80}"))
     file = manifest.with_name(name)
     if not file.is_file():
         fault = "is missing"
@@ -317,10 +317,10 @@ def _sum_of(file: Path) -> str:
     try:
         return checksum(file)
     except OSError as error:
-        raise InputError(Problem(str(file), 0, f"cannot be read: {error.strerror}", "", code="FIL120")) from None
+        raise InputError(
+            Problem(str(file), 0, Wording("FIL120", "program_unreadable", reason=error.strerror))
+        ) from None
 
 
-def _fault(path: Path, why: str) -> InputError:
-    return InputError(
-        Problem(str(path), 0, f"{_NO_MANIFEST}: {why}", "name the manifest that a post has written", code="FIL330")
-    )
+def _fault(path: Path, wording: Wording) -> InputError:
+    return InputError(Problem(str(path), 0, wording))

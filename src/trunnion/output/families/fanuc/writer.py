@@ -15,7 +15,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import LINES_FOR_SPLINES, SPLINES_SETTING
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
@@ -165,19 +165,18 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     return problems
 
 
-def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     """Return invalid numbers, calls and shifts, and tool vectors on a control that has no word for them."""
     program = settings.get("program", "1")
     wrong = []
     if not (program.isdecimal() and program.isascii() and 0 < int(program) < 10**_PROGRAM_NUMBER_DIGITS):
-        digits = _PROGRAM_NUMBER_DIGITS
-        wrong.append(("program", f"write the program's number, at most {digits} digits, such as program=1234"))
+        wrong.append(("program", phrase("number_of_program", digits=_PROGRAM_NUMBER_DIGITS)))
     if not _is_call(settings.get("call", "M98")):
-        wrong.append(("call", "write M98, or G65, with arguments such as G65 A1. B-2.5, each letter once"))
+        wrong.append(("call", phrase("call_of_subprogram")))
     if settings.get("orientation") == "vector" and not settings.get("tcp_on_vector", ""):
-        wrong.append(("orientation", "write angles: this control has no TCP that takes the tool axis as a vector"))
+        wrong.append(("orientation", phrase("angles_without_vectors")))
     if not is_valid_shift(settings.get("bore_lift", "")):
-        wrong.append(("bore_lift", "write millimetres, at least 0.001, such as 0.5, or nothing"))
+        wrong.append(("bore_lift", phrase("shift_from_bore")))
     return wrong
 
 

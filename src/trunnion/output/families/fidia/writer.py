@@ -15,7 +15,7 @@ from trunnion.controls.family_writer import FIRST_HOLE, ArcWords, Codes, Formats
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import ALL_LEFT_ON, SAFE_START_CHOICES, SAFE_START_SETTING, TCP_USED
 from trunnion.controls.words import ABSENT
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
 from trunnion.output.shared import iso
@@ -128,12 +128,12 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     return [(int(moves.line[per_rev[0]]), UnsupportedFeatureError(Wording("CTL330", "feed_per_revolution")))]
 
 
-def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     """Return words that switch TCP on and off for different machines."""
     pair = settings.get("tcp_on", "G196"), settings.get("tcp_off", "G197")
     if pair in _TCP_PAIRS or pair[1] not in dict(_TCP_PAIRS).values():
         return []
-    return [("tcp_on", "write G196 with tcp_off=G197, or G96 with tcp_off=G97")]
+    return [("tcp_on", phrase("pair_of_tcp_words"))]
 
 
 def cycle_call(

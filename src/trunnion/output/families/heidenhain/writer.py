@@ -14,7 +14,7 @@ from trunnion.controls.family_writer import ArcWords, Codes, Formats, Unsupporte
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import RADIUS_ARC_WORDS
 from trunnion.controls.words import ABSENT
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
@@ -167,23 +167,21 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     ]
 
 
-def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     """Return an invalid program name, preset, side, retract or block form."""
     wrong = []
     name, blank = settings.get("program", ""), settings.get("blank", "")
     if name and not re.fullmatch(r"[A-Za-z0-9_#$%&-]{1,24}", name):
-        wrong.append(("program", "write up to 24 letters, digits and _ # $ % & -"))
+        wrong.append(("program", phrase("name_of_program")))
     if not re.fullmatch(r"[0-9]{1,5}", settings.get("work_offset", "1")):
-        wrong.append(("work_offset", "write the number of the preset, such as 1"))
+        wrong.append(("work_offset", phrase("number_of_preset")))
     if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
-        wrong.append(("disengage", "write 1 for -X, 2 for -Y, 3 for +X or 4 for +Y"))
+        wrong.append(("disengage", phrase("side_to_disengage")))
     distance = settings.get("retract_distance", "")
     if distance and not (re.fullmatch(r"[0-9]{1,5}(\.[0-9]{1,4})?", distance) and float(distance) > 0.0):
-        cure = "write how far the tool retracts along its axis, mm, such as 50; or nothing"
-        wrong.append(("retract_distance", cure))
+        wrong.append(("retract_distance", phrase("distance_of_retract")))
     if blank not in ("", "extents") and _blank_corners(blank) is None:
-        cure = "write the corners X,Y,Z,X,Y,Z of the block form, mm, the lower one first; or extents, for all cuts"
-        wrong.append(("blank", cure))
+        wrong.append(("blank", phrase("corners_of_blank")))
     return wrong
 
 

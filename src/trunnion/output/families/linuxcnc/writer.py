@@ -116,7 +116,7 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     return [*compensated, *iso.feed_per_rev_before_spindle(operation, spindle_known)]
 
 
-def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     """Return nothing."""
     return []
 

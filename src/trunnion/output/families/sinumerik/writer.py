@@ -22,7 +22,7 @@ from trunnion.controls.vocabulary import (
     SPLINES_SETTING,
     TCP_USED,
 )
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
@@ -185,15 +185,13 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     return []
 
 
-def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
+def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     """Return an invalid lift-off or style of swivelling."""
     wrong = []
     if not is_valid_lift(settings.get("bore_lift", "")):
-        wrong.append(
-            ("bore_lift", "write millimetres, at least 0.001 and negative for the other side, such as 0.5; or nothing")
-        )
+        wrong.append(("bore_lift", phrase("lift_from_bore")))
     if not _NEW_SWIVEL.fullmatch(settings.get("swivel_style", "0")):
-        wrong.append(("swivel_style", "write a whole number that ends in 0: planes are never added to each other"))
+        wrong.append(("swivel_style", phrase("style_of_swivelling")))
     return wrong
 
 

@@ -11,9 +11,10 @@ from dataclasses import replace
 from typing import Any, Final, TypeAlias
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.tools.library.json_text import JsonObject, finite, short_text
 from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary, UnusableTool
-from trunnion.simulation.tools.shapes import shape_faults
+from trunnion.simulation.tools.shapes import fault_of_size, shape_faults
 from trunnion.simulation.tools.sizes import (
     ANGLE_LIMITS,
     MOST_PIECES,
@@ -28,8 +29,6 @@ from trunnion.simulation.tools.sizes import (
 _Form: TypeAlias = Callable[[JsonObject, JsonObject], ToolSizes]
 
 _UNITS: Final[Mapping[str, float]] = {"millimeters": 1.0, "inches": 25.4}
-
-_SAY_IT: Final = "state the tool itself: its kind and its sizes"
 
 #: Most tools of a library.
 _MOST_TOOLS: Final = 20_000
@@ -46,12 +45,7 @@ def read_autodesk(file: str, root: Mapping[str, Any]) -> ToolLibrary:
     library = JsonObject(root)
     entries = library.children("data", _MOST_TOOLS)
     if library.faults:
-        raise InputError(
-            [
-                Problem(file, 0, what, "export the library again, or fewer tools", code="SIM170")
-                for what in library.faults
-            ]
-        )
+        raise InputError([Problem(file, 0, Wording("SIM170", "faulty", fault=fault)) for fault in library.faults])
     tools: list[LibraryTool] = []
     unusable: list[UnusableTool] = []
     for tool in entries:
@@ -72,34 +66,42 @@ def _read_tool(file: str, place: str, tool: JsonObject) -> LibraryTool | Unusabl
     name = short_text(tool.values.get("description")) or short_text(tool.values.get("product-id"))
     found = _sizes(tool)
     if not tool.faults and found:
-        faults = shape_faults(found)
-        tool.faults.extend(f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in faults)
+        tool.faults.extend(map(fault_of_size, shape_faults(found)))
     if tool.faults or not found:
-        shown = " ".join(filter(None, ("tool", "" if called is None else str(called), name)))
-        problems = (Problem(file, 0, f"{shown} ({place}): {what}", _SAY_IT, code="SIM152") for what in tool.faults)
+        shown = " ".join(filter(None, ("" if called is None else str(called), name)))
+        problems = (
+            Problem(
+                file,
+                0,
+                Wording("SIM152", "of_library", tool=shown, place=place, fault=fault)
+                if shown
+                else Wording("SIM152", "of_library_nameless", place=place, fault=fault),
+            )
+            for fault in tool.faults
+        )
         return UnusableTool(called, name, tuple(problems))
     kind = short_text(tool.values.get("type"))
     return LibraryTool(found, called, name, kind, tuple(_remarks(kind, tool)))
 
 
-def _remarks(kind: str, tool: JsonObject) -> Iterator[str]:
+def _remarks(kind: str, tool: JsonObject) -> Iterator[Wording]:
     """Yield what was taken for granted of a tool."""
     if kind in _AS_CYLINDERS:
-        yield f"it is a {kind}: simulated as a cylinder"
+        yield Wording("SIM155", "as_cylinder", kind=kind)
     if not tool.child("geometry").length("LB"):
-        yield "its length below the holder (LB) is missing: all of it (OAL) stands free"
+        yield Wording("SIM155", "all_of_it_stands_free")
     if tool.values.get("holder") and not tool.child("holder").children("segments", MOST_PIECES):
-        yield "its holder has no form (segments): none is simulated"
+        yield Wording("SIM155", "holder_without_form")
 
 
 def _sizes(tool: JsonObject) -> ToolSizes | None:
     """Return the sizes of a tool; None if its kind or its unit is not known, which is a fault of it."""
     kind, unit = short_text(tool.values.get("type")), short_text(tool.values.get("unit"))
     if kind not in _FORMS:
-        tool.faults.append(f"{kind} is a type that is not read" if kind else "it has no type")
+        tool.faults.append(phrase("type_not_read", type=kind) if kind else phrase("no_type"))
         return None
     if unit not in _UNITS:
-        tool.faults.append(f'its unit is {unit}, not "millimeters" or "inches"' if unit else "it has no unit")
+        tool.faults.append(phrase("unit_not_read", unit=unit) if unit else phrase("no_unit"))
         return None
     geometry = tool.child("geometry", _UNITS[unit])
     found = _with_body(_FORMS[kind](tool, geometry), tool, geometry)
@@ -115,7 +117,7 @@ def _with_body(form: ToolSizes, tool: JsonObject, geometry: JsonObject) -> ToolS
     if not length:
         length = geometry.length("OAL")
         if pieces:
-            geometry.faults.append("geometry.LB is missing: nothing says where its holder begins")
+            geometry.faults.append(phrase("holder_begins_nowhere"))
     flute_length = form.flute_length or min(geometry.length("LCF"), length or math.inf)
     shank = _pieces(tool.child("shaft", geometry.scale))
     found = replace(
@@ -165,7 +167,7 @@ def _holder(tool: JsonObject, geometry: JsonObject) -> tuple[tuple[BodyPiece, ..
     """
     unit = short_text(tool.child("holder").values.get("unit"))
     if unit and unit not in _UNITS:
-        tool.faults.append(f'its holder has the unit {unit}, not "millimeters" or "inches"')
+        tool.faults.append(phrase("unit_of_holder_not_read", unit=unit))
     holder = tool.child("holder", _UNITS.get(unit, geometry.scale))
     pieces, gauge = _pieces(holder), holder.length("gaugeLength")
     return (_below(pieces, gauge) if gauge else pieces), gauge
@@ -193,21 +195,22 @@ def _below(pieces: tuple[BodyPiece, ...], height: float) -> tuple[BodyPiece, ...
     return tuple(found)
 
 
-def _refuse(geometry: JsonObject, key: str, why: str) -> None:
-    """Note a size whose meaning is not settled, unless it is absent."""
+def _refuse(geometry: JsonObject, key: str, why: str, **parameters: object) -> None:
+    """Note a size whose meaning is not settled, unless it is absent; ``why`` is the phrase of the reason."""
     if geometry.values.get(key):
-        geometry.faults.append(f"{geometry.path}.{key} is {str(geometry.values[key])[:40]}: {why}")
+        shown = str(geometry.values[key])[:40]
+        geometry.faults.append(phrase(why, size=f"{geometry.path}.{key}", value=shown, **parameters))
 
 
 def _flat(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
-    _refuse(geometry, "RE", "a flat end mill has no corner radius")
+    _refuse(geometry, "RE", "flat_with_corner")
     return ToolSizes(ToolKind.FLAT, geometry.length("DC"))
 
 
 def _ball(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     diameter, radius = geometry.length("DC"), geometry.length("RE")
     if radius and abs(radius - 0.5 * diameter) > _SAME * diameter:
-        _refuse(geometry, "RE", f"half the diameter is {0.5 * diameter / geometry.scale:g}")
+        _refuse(geometry, "RE", "ball_of_other_radius", half=0.5 * diameter / geometry.scale)
     return ToolSizes(ToolKind.BALL, diameter)
 
 
@@ -218,7 +221,7 @@ def _bull(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
 
 def _face(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     """Return a straight one is a bull nose; an upper radius means nothing without an angle."""
-    _refuse(geometry, "TA", "a face mill with an angle is not read")
+    _refuse(geometry, "TA", "face_mill_with_angle")
     return _bull(tool, geometry)
 
 
@@ -227,7 +230,7 @@ def _taper(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     diameter, radius, angle = geometry.length("DC"), geometry.length("RE"), geometry.angle("TA")
     form = short_text(tool.values.get("tapered-type"))
     if form not in ("tapered_bull_nose", "tapered_ball") and radius:
-        geometry.faults.append(f"its tapered-type is {form or 'missing'}, not tapered_bull_nose or tapered_ball")
+        geometry.faults.append(phrase("tapered_type_not_read", type=form) if form else phrase("tapered_type_missing"))
     if not angle:
         return _bull(tool, geometry)
     if form != "tapered_ball" or angle >= ANGLE_LIMITS["side_angle"]:
@@ -235,13 +238,12 @@ def _taper(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     b = math.radians(angle)
     meeting = 2.0 * radius * (1.0 - math.sin(b)) / math.cos(b)
     if abs(meeting - diameter) > _SAME * diameter:
-        shown = f"{meeting / geometry.scale:.6g}"
-        _refuse(geometry, "DC", f"a ball of this RE with this TA has {shown} where side and bottom would meet")
+        _refuse(geometry, "DC", "ball_of_other_meeting", meeting=meeting / geometry.scale)
     return ToolSizes(ToolKind.TAPER_BALL, 2.0 * radius, side_angle=angle)
 
 
 def _chamfer(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
-    _refuse(geometry, "RE", "a rounded tip of a chamfer mill is not read")
+    _refuse(geometry, "RE", "chamfer_with_rounded_tip")
     tip = geometry.length("tip-diameter")
     return ToolSizes(ToolKind.CHAMFER, geometry.length("DC"), tip_diameter=tip, side_angle=geometry.angle("TA"))
 
@@ -252,7 +254,7 @@ def _countersink(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
 
 
 def _drill(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
-    _refuse(geometry, "tip-diameter", "a drill ends in a point")
+    _refuse(geometry, "tip-diameter", "drill_with_flat_tip")
     angle = geometry.angle("SIG")
     if angle == ANGLE_LIMITS["tip_angle"]:
         return ToolSizes(ToolKind.FLAT, geometry.length("DC"))
@@ -277,7 +279,7 @@ def _slot(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
 def _thread_mill(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
     """Teeth begin at the tip, as many as NT says and LCF holds."""
     if geometry.values.get("thread-tip-type") != "point":
-        geometry.faults.append("the crest of its teeth is not a point, which is not read")
+        geometry.faults.append(phrase("crest_no_point"))
     pitch, angle = geometry.length("TP"), geometry.angle("thread-profile-angle")
     teeth = geometry.number("NT", MOST_TEETH)
     if pitch:

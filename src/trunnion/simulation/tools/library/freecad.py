@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from trunnion.errors import Problem
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.tools.library.json_text import finite, short_text
 from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary, UnusableTool
-from trunnion.simulation.tools.shapes import shape_faults
+from trunnion.simulation.tools.shapes import fault_of_size, shape_faults
 from trunnion.simulation.tools.sizes import ANGLE_LIMITS, BodyPiece, ToolKind, ToolSizes
 
 #: mm to a unit of length, degrees to a unit of angle; a parameter without a unit is in mm or degrees.
@@ -40,13 +40,13 @@ class _Parameters:
     """The parameters of a tool bit, with what is wrong in them."""
 
     values: Mapping[str, Any]
-    faults: list[str] = field(default_factory=list)
+    faults: list[Wording] = field(default_factory=list)
 
     def length(self, key: str) -> float:
         """Return a length in mm; 0 if there is none."""
         number, unit = self._value(key)
         if unit not in _LENGTHS:
-            self.faults.append(f"{key} has the unit {unit}, which is none of length")
+            self.faults.append(phrase("no_unit_of_length", size=key, unit=unit))
             return 0.0
         return number * _LENGTHS[unit]
 
@@ -54,7 +54,7 @@ class _Parameters:
         """Return an angle in degrees; 0 if there is none."""
         number, unit = self._value(key)
         if unit not in _ANGLES:
-            self.faults.append(f"{key} has the unit {unit}, which is none of angles")
+            self.faults.append(phrase("no_unit_of_angles", size=key, unit=unit))
             return 0.0
         return number
 
@@ -66,7 +66,7 @@ class _Parameters:
             return float(match[1]), match[2].strip()
         number = finite(value)
         if number is None or number < 0.0:
-            self.faults.append(f"{key} is {str(value)[:40]}, not a number with its unit")
+            self.faults.append(phrase("no_number_with_unit", size=key, value=str(value)[:40]))
             return 0.0, ""
         return number, ""
 
@@ -78,20 +78,18 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
     given = root.get("parameter")
     parameters = _Parameters(given if isinstance(given, dict) else {})
     known = re.split(r"[/\\]", shape)[-1].casefold().replace("-", "").replace("_", "")
-    whats = []
+    faults = []
     sizes = None
     if known not in _KINDS:
-        whats = [f"{shape or 'none'} is a shape that is not read"]
+        faults = [phrase("shape_not_read", shape=shape) if shape else phrase("no_shape")]
     else:
         sizes = _sizes(known, parameters)
-        whats = parameters.faults or [
-            f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in shape_faults(sizes)
-        ]
-    if whats or sizes is None:
-        problems = tuple(Problem(file, 0, Wording("SIM152", "tool_bit", name=name, subject=what)) for what in whats)
+        faults = parameters.faults or [fault_of_size(each) for each in shape_faults(sizes)]
+    if faults or sizes is None:
+        problems = tuple(Problem(file, 0, Wording("SIM152", "tool_bit", name=name, fault=fault)) for fault in faults)
         return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
-    remarks = [f"a tool bit has no holder: all of its length, {sizes.length:g} mm, stands free"] if sizes.length else []
-    remarks += ["it is a tap: simulated without its thread"] if known == "tap" else []
+    remarks = [Wording("SIM155", "tool_bit_without_holder", length=sizes.length)] if sizes.length else []
+    remarks += [Wording("SIM155", "tap_without_thread")] if known == "tap" else []
     return ToolLibrary(file, (LibraryTool(sizes, None, name, shape, tuple(remarks)),))
 
 
@@ -157,7 +155,7 @@ def _thread_mill(form: ToolSizes, bit: _Parameters) -> ToolSizes:
     """One tooth at the tip, on a neck."""
     crest, neck, angle = bit.length("Crest"), bit.length("NeckDiameter"), bit.angle("cuttingAngle")
     if not (neck and 0.0 < angle < ANGLE_LIMITS["thread_angle"]):
-        bit.faults.append("a tooth needs NeckDiameter and cuttingAngle")
+        bit.faults.append(phrase("tooth_needs_sizes"))
         return form
     height = crest + max(form.diameter - neck, 0.0) * math.tan(math.radians(0.5 * angle))
     return replace(

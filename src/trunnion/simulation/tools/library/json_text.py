@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, NoReturn
 
 from trunnion.errors import InputError, Problem
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.tools.sizes import GREATEST
 
 #: Longest text that is read, bytes: catalogues of makers have some ten megabytes.
@@ -79,14 +79,14 @@ class JsonObject:
     values: Mapping[str, Any]
     path: str = ""
     scale: float = 1.0
-    faults: list[str] = field(default_factory=list)
+    faults: list[Wording] = field(default_factory=list)
 
     def child(self, key: str, scale: float | None = None) -> "JsonObject":
         """Return the object under a key; an empty one if there is none."""
         value = self.values.get(key)
         path = f"{self.path}.{key}" if self.path else key
         if value is not None and not isinstance(value, dict):
-            self.faults.append(f"{path} is no object")
+            self.faults.append(phrase("json_no_object", path=path))
         return JsonObject(value if isinstance(value, dict) else {}, path, scale or self.scale, self.faults)
 
     def children(self, key: str, most: int) -> "list[JsonObject]":
@@ -94,10 +94,10 @@ class JsonObject:
         value = self.values.get(key)
         path = f"{self.path}.{key}" if self.path else key
         if value is not None and not isinstance(value, list):
-            self.faults.append(f"{path} is no list")
+            self.faults.append(phrase("json_no_list", path=path))
             return []
         if value and len(value) > most:
-            self.faults.append(f"{path} has {len(value)} entries, more than {most}")
+            self.faults.append(phrase("json_long_list", path=path, count=len(value), most=most))
             return []
         items = {f"{key}[{place}]": item for place, item in enumerate(value or [])}
         holding = JsonObject(items, self.path, self.scale, self.faults)
@@ -111,7 +111,7 @@ class JsonObject:
         found = finite(value)
         if found is None or not 0.0 <= found <= most:
             path = f"{self.path}.{key}" if self.path else key
-            self.faults.append(f"{path} is {str(value)[:40]}, not a number from 0 to {most:g}")
+            self.faults.append(phrase("json_no_number", path=path, value=str(value)[:40], most=most))
             return 0.0
         return found
 

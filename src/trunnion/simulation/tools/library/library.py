@@ -22,7 +22,7 @@ class LibraryTool:
     number: int | None = None
     name: str = ""
     description: str = ""
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Wording, ...] = ()
 
     def shape(self) -> ToolShape:
         """Return its body."""

@@ -90,8 +90,8 @@ def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]
         return []
     found = ToolSizes(kind, **sizes)
     faults = shape_faults(found)
-    for size, what, cure in faults:
-        table.add_problem(size if size in _PIECES else _key(size), what, cure, code="SIM152")
+    for size, wording in faults:
+        table.add_problem(size if size in _PIECES else _key(size), wording)
     return [] if faults else [LibraryTool(found, number, name, description)]
 
 

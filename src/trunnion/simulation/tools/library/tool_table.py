@@ -16,8 +16,6 @@ _WORD: Final = re.compile(r"([A-Za-z])([+-]?(?:\d{1,12}(?:\.\d{0,20})?|\.\d{1,20
 #: Letters that a line may have: tool, pocket, diameter, offsets of the axes, angles and orientation of a lathe tool.
 _LETTERS: Final = frozenset("TPDXYZABCUVWIJQ")
 
-_LINE: Final = "write T3 P3 D10.0 Z+95.2 ;comment"
-
 
 def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
     """Return the diameters of a tool table.
@@ -32,10 +30,10 @@ def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
     seen: set[int] = set()
     problems: list[Problem] = []
     for line, content in enumerate(text.split("\n"), 1):
-        words, what = _words(content.partition(";")[0])
-        if what:
-            problems.append(Problem(file, line, what, _LINE, code="SIM174"))
-        if not words or what:
+        words, fault = _words(content.partition(";")[0])
+        if fault is not None:
+            problems.append(Problem(file, line, fault))
+        if not words or fault is not None:
             continue
         number, diameter = int(words["T"]), words.get("D", 0.0) * unit
         if number in seen:
@@ -50,17 +48,17 @@ def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
     return ToolLibrary(file, diameters=diameters)
 
 
-def _words(line: str) -> tuple[dict[str, float], str]:
+def _words(line: str) -> tuple[dict[str, float], Wording | None]:
     """Return the words of a line, and what is wrong with it; none of both for an empty one."""
     words: dict[str, float] = {}
     for part in line.split():
         match = _WORD.fullmatch(part)
         letter = match[1].upper() if match else ""
         if not match or letter not in _LETTERS:
-            return {}, f'"{part[:40]}" is no word of a tool table'
+            return {}, Wording("SIM174", "no_word", word=part[:40])
         if letter in words:
-            return {}, f"has {letter} twice"
+            return {}, Wording("SIM174", "letter_twice", letter=letter)
         words[letter] = float(match[2])
     if words and ("T" not in words or words["T"] < 0.0 or words["T"] != int(words["T"])):
-        return {}, "has no number of a tool, which is a whole number behind T"
-    return words, ""
+        return {}, Wording("SIM174", "no_number_of_tool")
+    return words, None
