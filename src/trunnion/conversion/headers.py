@@ -19,7 +19,8 @@ from trunnion.conversion.sections import ProgramSection
 from trunnion.conversion.settings import parse_number
 from trunnion.conversion.template_matching import LinePattern, TemplatePatterns, match_lines
 from trunnion.model.clamping_notices import head_comments, may_be_notice
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run import NO_OFFSET, ProgrammedWord, Run
+from trunnion.readers import reader_of
 
 _MM_PER_INCH = 25.4
 
@@ -118,12 +119,12 @@ class HeaderReader:
     def offset_settings(self, section: ProgramSection) -> dict[str, str]:
         """Return the work offset and the edge in force at the first row.
 
-        A work offset that is no G word is found in the header. On controls without edges the number is that of a tool
-        length (H), which belongs to the tool.
+        On controls without edges the number is that of a tool length (H), which belongs to the tool.
         """
         row = section.rows[0]
         offset, edge = int(self._run.work_offset[row]), int(self._run.edge[row])
-        found = {"work_offset": self._run.work_offset_name(offset)} if offset and self.offset_is_word else {}
+        has_offset = offset not in (0, NO_OFFSET) and "work_offset" in self._control.settings
+        found = {"work_offset": reader_of(self._run.machine).work_offsets.setting(offset)} if has_offset else {}
         return found | ({"edge": str(edge)} if edge >= 0 and "edge" in self._control.settings else {})
 
     def _orientation_setting(self, rows: Ints) -> dict[str, str]:

@@ -30,6 +30,10 @@ class ArcError(WordedError):
     """The reason why a block programs no circle."""
 
 
+#: Scales are equal, and directions at right angles, within this.
+SAME_SCALE: Final = 1e-9
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Arc:
     """A circle or helix to ``end`` about a centre; it turns about ``normal`` by the right-hand rule.
@@ -63,6 +67,16 @@ class ArcMap:
     def map_arc(self, arc: Arc) -> tuple[Floats, Floats, float]:
         """Return centre, normal and radius of the mapped arc."""
         return self.linear @ arc.centre + self.shift, self.normals @ arc.normal, arc.radius * self.scale
+
+    def map_in_plane(self, arc: Arc) -> tuple[Floats, Floats, float] | None:
+        """Return the same under unequal scales, which keep the circles of a plane whose two are equal; else None."""
+        ways = self.linear @ np.roll(np.eye(3), -1 - int(np.argmax(np.abs(arc.normal))), axis=1)
+        lengths = np.linalg.norm(ways, axis=0)
+        cosines = np.abs(ways.T @ ways - np.diag(lengths**2))
+        if abs(lengths[0] - lengths[1]) > SAME_SCALE * lengths[0] or cosines.max() > SAME_SCALE * lengths.max() ** 2:
+            return None
+        normal = np.cross(ways[:, 0], ways[:, 1]) * (float(arc.normal.sum()) / lengths[0] ** 2)
+        return self.linear @ arc.centre + self.shift, normal, arc.radius * float(lengths[0])
 
 
 def normal_of(plane: int, clockwise: bool) -> Floats:

@@ -315,10 +315,10 @@ class VirtualControl(CoordinateControl, ABC):
                 linear, shift = slide_map[:, :3] @ linear, slide_map[:, :3] @ shift + slide_map[:, 3]
             self._arc_map = arcs.ArcMap.of(linear, shift), self.frame.keeps_circles
         arc_map, keeps_circles = self._arc_map
-        if not keeps_circles:
+        mapped = arc_map.map_arc(arc) if keeps_circles else arc_map.map_in_plane(arc)
+        if mapped is None:
             self.note(Wording("NC320", "circle_under_unequal_scales_ellipse"), Severity.ERROR)
-            return None
-        return arc_map.map_arc(arc)
+        return mapped
 
     def _slides_to_tip(self) -> Floats:
         """Return the map (3, 4) from slide positions to the tip, with the rotary axes where they are."""

@@ -12,13 +12,19 @@ class WorkOffsetWords:
     form   what they look like, for messages
     words  regular expression of one of them, with a group for each number
     value  ``Run.work_offset`` of the numbers of its groups (None where a group is absent); 0 for none
-    name   the word that selects a value
+    name   the word that selects a value, as messages call it
+    plain  the setting ``work_offset`` is the number alone
     """
 
     form: str
     words: re.Pattern[str]
     value: Callable[[tuple[int | None, ...]], int]
     name: Callable[[int], str]
+    plain: bool = False
+
+    def setting(self, value: int) -> str:
+        """Return the setting ``work_offset`` of a value."""
+        return str(value) if self.plain else self.name(value)
 
     def value_of(self, text: str) -> int | None:
         """Return the value of a work offset as a program writes it; None if it is none."""

@@ -80,6 +80,17 @@ def test_unequal_scales_make_no_circle(run: Runner) -> None:
     assert "ellipse" in run("SCALE X2\nG3 X10 Y0 I5 J0").errors[0].text
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_equal_scales_of_a_plane_keep_its_circles(run: Runner, mirrored: bool) -> None:
+    result = run(f"SCALE X2 Y2\n{'AMIRROR X0' if mirrored else ''}\nG3 X10 Y10 Z1 I0 J10")
+    sign = -1.0 if mirrored else 1.0
+    close(result.tip[-1], [sign * 20, 20, 1])
+    close(result.arcs.centre[0], [0, 20, 0])
+    close(result.arcs.normal[0], [0, 0, sign])
+    assert not result.errors
+    assert "ellipse" in run("SCALE X2 Y2\nG18\nG3 X10 Z0 I5 K0").errors[0].text
+
+
 def test_circles_of_the_slides_are_circles_of_the_tip_on_a_tilted_table(run: Runner) -> None:
     result = run("B90\nX0 Y0 Z0\nG3 X10 Y0 I5 J0")
     close(result.arcs.centre[0], [0, 0, -5], atol=1e-12)

@@ -26,6 +26,7 @@ WORK_OFFSETS: Final = WorkOffsetWords(
     re.compile(r"(?:PRESET )?([0-9]{1,4})"),
     first_number,
     lambda value: f"preset {value}",
+    plain=True,
 )
 
 #: Parameters that no cycle of the control takes.
