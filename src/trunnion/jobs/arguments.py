@@ -246,12 +246,9 @@ def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
 
     Options that stand for settings are among the settings.
 
-    Raises
-    ------
-    TypeError
-        For a name that the function does not have.
-    InputError
-        If something is given as an argument and as a setting.
+    Raises ``TypeError`` for a name that the function does not have.
+
+    Raises ``InputError`` if something is given as an argument and as a setting.
     """
     known = kind.__annotations__
     stated = _known(cast(Mapping[str, Any], given), known, command)
