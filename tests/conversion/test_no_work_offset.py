@@ -70,6 +70,6 @@ def test_two_work_offsets_never_become_one(target: str, tmp_path: Path) -> None:
     cut = "X0. Y0. F3000\nZ5.\nZ-1. F100\nX10. F200\nZ50. F3000\nM242\n"
     head = "N1 G17 Q1\nG90\nG71\nM242\nM306 T.1\n"
     program.write_text(f"{head}G55 O1\nS1000 M3\nG1 {cut}G55 O2\n{cut}M5\nM02\n", encoding="utf-8")
-    with pytest.raises(trunnion.TrunnionError, match="the work offset is G55 O1,.*G55 O2"):
+    with pytest.raises(trunnion.TrunnionError, match=r"the work offset is G55 O1,.*G55 O2"):
         trunnion.convert(program, machine="hs664rt", to_machine=target, output=output)
     assert not output.exists()
