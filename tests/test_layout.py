@@ -1,6 +1,7 @@
 """The tests are laid out as the sources are, and what several of them use is in ``tests.support``."""
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -8,6 +9,9 @@ from tests.support.locations import ROOT, TESTS
 from tests.support.slow import SLOW
 
 SOURCES = ROOT / "src" / "trunnion"
+
+#: Lines of a module, and modules of a folder, at most: what is longer has more than one subject.
+MOST_LINES, MOST_MODULES = 400, 40
 
 #: Folders that test more than one part, hold files of the tests, or serve them.
 OTHERS = {"data", "examples", "fuzz", "golden", "linuxcnc", "matrix", "support"}
@@ -41,3 +45,10 @@ def test_support_has_no_tests() -> None:
 
 def test_what_is_marked_slow_exists() -> None:
     assert [name for name in SLOW if not (TESTS / name).exists()] == []
+
+
+def test_modules_and_folders_have_one_subject() -> None:
+    lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in SOURCES.rglob("*.py")}
+    long = [str(path.relative_to(SOURCES)) for path, count in lines.items() if count > MOST_LINES]
+    modules = Counter(str(path.parent.relative_to(SOURCES)) for path in lines)
+    assert (sorted(long), [folder for folder, count in modules.items() if count > MOST_MODULES]) == ([], [])

@@ -65,8 +65,8 @@ if TYPE_CHECKING:
     from trunnion.jobs.capability.fitting import fit as fit
     from trunnion.jobs.capability.reaching import reach as reach
     from trunnion.jobs.capability.sensitivity import sensitivity as sensitivity
-    from trunnion.jobs.convert.converting import ConvertResult as ConvertResult
     from trunnion.jobs.convert.converting import convert as convert
+    from trunnion.jobs.convert.result import ConvertResult as ConvertResult
     from trunnion.jobs.describe.cl_files import ClDescription as ClDescription
     from trunnion.jobs.describe.cl_files import describe_cl as describe_cl
     from trunnion.jobs.describe.codes import explain as explain
@@ -127,7 +127,7 @@ _MODULES: Final = {
     "ClDescription": "jobs.describe.cl_files",
     "Comparison": "verification.comparison.result",
     "ControlDescription": "jobs.describe.controls",
-    "ConvertResult": "jobs.convert.converting",
+    "ConvertResult": "jobs.convert.result",
     "CurveFit": "geometry.fitting",
     "Decision": "model.motion",
     "Explanation": "explanations",

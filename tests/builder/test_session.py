@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from trunnion import InputError, load_machine
 from trunnion.builder.chains import CHAINS
 from trunnion.builder.document import with_value, without_value
+from trunnion.builder.draft import MOST_LETTERS
 from trunnion.builder.sample import shipped_sample
 from trunnion.builder.saved_file import file_text, page_text
 from trunnion.builder.session import BuilderSession, RequestError
@@ -228,6 +229,22 @@ def test_it_is_saved_only_where_nothing_is_lost(session: BuilderSession, tmp_pat
     assert (tmp_path / "ours.toml").read_text(encoding="utf-8") == text + "# by hand\n"
     assert ask(opened, "save", text=text, name="ours.toml", seen=seen, replace=True)["saved"]
     assert (tmp_path / "ours.toml").read_text(encoding="utf-8") == text
+
+
+def test_a_name_gets_its_ending(session: BuilderSession, tmp_path: Path) -> None:
+    saved = ask(session, "save", text=begun(session), name="ours", seen="")
+    assert (saved["name"], Path(saved["saved"])) == ("ours.toml", tmp_path / "ours.toml")
+    assert ask(session, "save", text="#", name="ours", seen="")["why"] == "exists"
+
+
+def test_what_is_saved_can_be_opened_again(session: BuilderSession, tmp_path: Path) -> None:
+    for size, saved in ((MOST_LETTERS, True), (MOST_LETTERS + 1, False)):
+        name = f"long{size}.toml"
+        found = ask(session, "save", text="#" * size, name=name, seen="")
+        assert bool(found["saved"]) is saved
+        assert (tmp_path / name).exists() is saved
+    assert "PAG213" in found["problems"][0]
+    assert BuilderSession(tmp_path, f"long{MOST_LETTERS}.toml").start()
 
 
 def test_a_file_keeps_its_line_ends(tmp_path: Path) -> None:

@@ -1,7 +1,12 @@
 """``trunnion completion``: what shells complete, tried in those that are here."""
 
+import os
+import select
 import shutil
 import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -10,7 +15,17 @@ from trunnion.cli import main
 from trunnion.cli.completion import SCRIPTS
 from trunnion.jobs.registry import JOBS
 
-BASH = shutil.which("bash")
+BASH, ZSH, FISH = (shutil.which(shell) for shell in ("bash", "zsh", "fish"))
+
+#: What is typed, and what the shell makes of the last word.
+TYPED = {
+    ("si",): "simulate",
+    ("post", "--mani"): "--manifest",
+    ("post", "--feed", "f"): "fastest",
+    ("post", "part.cls", "--machine", "dmu6"): "dmu65",
+    ("post", "par"): "part.cls",
+    ("schema", "proj"): "project",
+}
 
 #: What parses a script without running it.
 PARSERS = {"zsh": ["-n"], "fish": ["--no-execute"]}
@@ -58,3 +73,59 @@ def test_a_shell_that_is_here_parses_its_script(shell: str, tmp_path: Path) -> N
     script = tmp_path / "script"
     script.write_text(SCRIPTS[shell](), encoding="utf-8")
     subprocess.run([program, *PARSERS[shell], str(script)], check=True)
+
+
+@pytest.mark.skipif(FISH is None, reason="there is no fish")
+def test_fish_completes_commands_options_words_and_files(tmp_path: Path) -> None:
+    (tmp_path / "part.cls").touch()
+    script = tmp_path / "trunnion.fish"
+    script.write_text(SCRIPTS["fish"](), encoding="utf-8")
+    asked = "".join(f"; complete -C 'trunnion {' '.join(words)}'" for words in TYPED)
+    assert FISH is not None
+    done = subprocess.run(
+        [FISH, "-c", f"source {script}{asked}"], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert done.stderr == ""
+    assert [line.partition("\t")[0] for line in done.stdout.splitlines()] == list(TYPED.values())
+
+
+@contextmanager
+def terminal(program: str, folder: Path) -> Iterator[int]:
+    """A shell at a terminal: the file descriptor of its other end."""
+    if sys.platform == "win32":
+        pytest.skip("Windows has no such terminals")
+    import pty
+
+    process, end = pty.fork()
+    if process == 0:
+        os.chdir(folder)
+        os.execve(program, [program, "-f", "-i"], {**os.environ, "TERM": "dumb", "PS1": "> "})
+    try:
+        yield end
+    finally:
+        os.close(end)
+        os.waitpid(process, 0)
+
+
+def until(end: int, text: str) -> str:
+    """What a shell shows up to a text."""
+    shown = ""
+    while text not in shown:
+        ready, _, _ = select.select([end], [], [], 60.0)
+        assert ready, f"{text!r} never came: {shown!r}"
+        shown += os.read(end, 4096).decode()
+    return shown
+
+
+@pytest.mark.skipif(ZSH is None, reason="there is no zsh")
+def test_zsh_completes_commands_options_words_and_files(tmp_path: Path) -> None:
+    (tmp_path / "part.cls").touch()
+    (tmp_path / "trunnion.zsh").write_text(SCRIPTS["zsh"](), encoding="utf-8")
+    assert ZSH is not None
+    with terminal(ZSH, tmp_path) as end:
+        os.write(end, b"source ./trunnion.zsh; echo rea''dy\n")
+        until(end, "ready")
+        for words, completed_word in TYPED.items():
+            os.write(end, f"trunnion {' '.join(words)}\t".encode())
+            until(end, " ".join(["trunnion", *words[:-1], completed_word]))
+            os.write(end, b"\x15")  # deletes the line

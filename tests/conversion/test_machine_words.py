@@ -6,7 +6,7 @@ import pytest
 
 import trunnion
 from trunnion.errors import RefusedError
-from trunnion.jobs.convert.converting import ConvertResult
+from trunnion.jobs.convert.result import ConvertResult
 
 FANUC = """%
 O0001

@@ -8,7 +8,7 @@ import pytest
 
 import trunnion
 from trunnion.errors import RefusedError
-from trunnion.jobs.convert.converting import ConvertResult
+from trunnion.jobs.convert.result import ConvertResult
 
 OPERATION = """TOOL PATH/{name},TOOL,B6
 TLDATA/MILL,6,3,80,0,0

@@ -196,7 +196,7 @@ compile_ahead([k.double, k.fold, k.fold_again])
     assert done == [
         "[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]",
         "True True True",
-        "compiling 3 kernels for this computer, once; this takes some seconds",
+        "compiling 3 kernels for this computer, once; this takes some seconds: double, fold, fold_again",
     ]
 
 

@@ -10,6 +10,7 @@ import pytest
 import trunnion
 from tests.support.locations import YL569
 from trunnion.batch import run_batch
+from trunnion.cli import main
 from trunnion.errors import InputError
 from trunnion.jobs.arguments import EARLIER, LIBRARY, PostArguments, SimulateArguments, taken
 from trunnion.jobs.registry import JOBS
@@ -119,3 +120,14 @@ def test_earlier_names_are_taken_with_a_warning() -> None:
 def test_a_name_that_nothing_has_is_a_type_error_with_the_near_one() -> None:
     with pytest.raises(TypeError, match="verify has no argument 'toleranze'; did you mean 'tolerance'"):
         trunnion.verify("a.mpf", machine="yl569", toleranze=0.1)  # type: ignore[call-arg]
+
+
+def test_a_value_is_refused_in_the_words_of_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
+    program = str(YL569 / "2_hub_rough.expected.mpf")
+    with pytest.raises(InputError) as caught:
+        trunnion.verify(program, machine="yl569", tolerance=-1.0)
+    with pytest.raises(SystemExit):
+        main(["verify", program, "--machine", "yl569", "--tolerance=-1"])
+    said = "is not a tolerance; write a number above 0 and below 1000000, such as 0.001"
+    assert said in str(caught.value)
+    assert said in capsys.readouterr().err

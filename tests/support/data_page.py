@@ -11,7 +11,7 @@ from trunnion.capability.sensitivity import Sensitivity
 from trunnion.errors import Problem
 from trunnion.geometry.fitting import CurveFit
 from trunnion.jobs.capability.fitting import MachineFit
-from trunnion.jobs.convert.converting import ConvertResult
+from trunnion.jobs.convert.result import ConvertResult
 from trunnion.jobs.describe.cl_files import ClDescription
 from trunnion.jobs.impeller.cut import ImpellerCut
 from trunnion.jobs.post.papers.manifests import ManifestCheck

@@ -31,6 +31,14 @@ def at(seconds: float) -> datetime:
     return EPOCH + timedelta(seconds=seconds)
 
 
+def test_a_history_of_numbers_of_a_type_has_that_type() -> None:
+    storage, node = TwinHistory(), ua.NodeId("x", 2)
+    storage.numbers[node] = NumberHistory(kind=ua.VariantType.UInt32)
+    storage.numbers[node].add(1, 7)
+    values, _ = asyncio.run(storage.read_node_history(node, at(0.0), at(1.0), 0))
+    assert [(each.Value.Value, each.Value.VariantType) for each in values] == [(7, ua.VariantType.UInt32)]
+
+
 def test_clients_read_it_forwards_backwards_and_in_parts() -> None:
     storage, node = TwinHistory(), ua.NodeId("x", 2)
     storage.numbers[node] = NumberHistory()

@@ -23,10 +23,7 @@ _DIAMETERS: Final = (None, 10.0, 1000.0)
 def check_tiles(action: Action, tiles: object) -> int:
     """Judge the number of tasks among which each file of a folder is divided.
 
-    Raises
-    ------
-    InputError
-        If there is no such number, or the action is not divided.
+    Raises ``InputError`` if there is no such number, or the action is not divided.
     """
     count = check_whole("tiles", tiles, 1)
     if count > MOST_TILES:
@@ -53,10 +50,7 @@ def beside_fault(name: str) -> Wording | str:
 def check_to_cl(said: Mapping[str, Any], machine: Machine | None) -> None:
     """Judge the settings of a conversion to CL files.
 
-    Raises
-    ------
-    InputError
-        With what a conversion does not take.
+    Raises ``InputError`` with what a conversion does not take.
     """
     if machine is not None:
         check_conversion_settings(prepare(machine, said.get("settings")), to_cl=True)
@@ -65,10 +59,7 @@ def check_to_cl(said: Mapping[str, Any], machine: Machine | None) -> None:
 def check_simulation(said: Mapping[str, Any]) -> None:
     """Judge stock, cells and tools of a simulation, as far as that takes no file.
 
-    Raises
-    ------
-    InputError
-        With all that is wrong.
+    Raises ``InputError`` with all that is wrong.
     """
     problems: list[Problem] = []
     for text in said.get("tools", ()):

@@ -126,10 +126,7 @@ class DaskWorkers:
     def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome | Record]]:
         """Outcomes as they come, each with its assignment; a bounded number of tasks is with the scheduler.
 
-        Raises
-        ------
-        InputError
-            If the scheduler is gone for too long, or its workers cannot do the work.
+        Raises ``InputError`` if the scheduler is gone for too long, or its workers cannot do the work.
         """
         coming, asked = iter(tasks), dict[str, _Asked]()
         looked = self._alone_since = time.monotonic()

@@ -62,10 +62,7 @@ class Divisions:
     ) -> tuple[int, Iterator[tuple[Assignment, Task]]]:
         """How many shares of a file are there, and the tasks of the others; ``digests`` are of all that it reads.
 
-        Raises
-        ------
-        InputError
-            If something that is no file stands in the place of a share.
+        Raises ``InputError`` if something that is no file stands in the place of a share.
         """
         record = assignment.record
         keys = [key_of(task.program, _said(task, number, count), digests) for number in range(count)]

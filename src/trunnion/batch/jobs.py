@@ -106,10 +106,7 @@ def folder_files(folder: Path, without: Path | None = None) -> list[str]:
 
     Links to folders are not followed, and links to files elsewhere are left out.
 
-    Raises
-    ------
-    InputError
-        If there is no such folder, or it has too many files.
+    Raises ``InputError`` if there is no such folder, or it has too many files.
     """
     if not folder.is_dir():
         raise InputError(Problem(str(folder), 0, Wording("FIL110", "no_such")))
@@ -138,19 +135,11 @@ def folder_batch(
 ) -> Batch:
     """Every file of a folder with which an action can be done.
 
-    Parameters
-    ----------
-    arguments
-        Of the function of the library; the names of files are paths.
-    results
-        The folder of results, whose files are none of the inputs.
-    patterns
-        Names of the files; by default those with the extensions of CL files, or of programs of the machine.
+    arguments  of the function of the library; the names of files are paths
+    results    the folder of results, whose files are none of the inputs
+    patterns   names of the files; by default those with the extensions of CL files, or of programs of the machine
 
-    Raises
-    ------
-    InputError
-        If an argument cannot be used, or there are no such files.
+    Raises ``InputError`` if an argument cannot be used, or there are no such files.
     """
     given = {name: value for name, value in arguments.items() if value and name != "tiles"}
     beside = {name: _listed(given.pop(name)) for name in ("cl", "subprograms") if given.get(name)}
@@ -204,26 +193,14 @@ def judged(
 ) -> tuple[dict[str, Any], dict[str, Path], Extensions]:
     """Judge the arguments of an action before any work.
 
-    Parameters
-    ----------
-    arguments
-        Of the function of the library; files by their paths.
-    folder
-        Beside which the files of the jobs lie.
+    arguments  of the function of the library; files by their paths
+    folder     beside which the files of the jobs lie
 
-    Returns
-    -------
-    dict
-        The arguments with logical names of files, as JSON has them.
-    dict
-        The paths of these, and of what they lead to, by logical names.
-    Extensions
-        Of what is read and written.
+    dict        the arguments with logical names of files, as JSON has them
+    dict        the paths of these, and of what they lead to, by logical names
+    Extensions  of what is read and written
 
-    Raises
-    ------
-    InputError
-        With what cannot be used of them.
+    Raises ``InputError`` with what cannot be used of them.
     """
     said, shared = dict(arguments), dict[str, Path]()
     machines: dict[str, Machine] = {}

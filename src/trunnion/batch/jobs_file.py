@@ -124,10 +124,7 @@ class _Tables:
 def load_batch(path: Path) -> Batch:
     """Read a file of jobs, and find their files.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, with every mistake in it and its line; or if a job has no files.
+    Raises ``InputError`` if it cannot be read, with every mistake in it and its line; or if a job has no files.
     """
     if unusable := unusable_file(path, "a file of jobs"):
         raise InputError(unusable)

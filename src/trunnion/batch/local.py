@@ -98,10 +98,7 @@ class LocalWorkers:
     def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome]]:
         """Outcomes as they come, each with its assignment; no more tasks are taken than workers are free.
 
-        Raises
-        ------
-        InputError
-            If no worker can be started.
+        Raises ``InputError`` if no worker can be started.
         """
         coming, again = iter(tasks), deque[_Given]()
         while True:

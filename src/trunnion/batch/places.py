@@ -34,10 +34,7 @@ def units_of(jobs: Sequence[BatchJob]) -> list[Unit]:
     Files whose results would have one place get another one, by which they are known but at which nothing is written
     (``Unit.clash``); only of those that write nothing, it is all they need.
 
-    Raises
-    ------
-    InputError
-        If names are made so that two results cannot be told apart.
+    Raises ``InputError`` if names are made so that two results cannot be told apart.
     """
     files = [(number, file) for number, job in enumerate(jobs) for file in job.files]
     places = [_place(jobs[number], file) for number, file in files]

@@ -70,10 +70,7 @@ class _Collector(Observer):
 def work(task: Task) -> Outcome:
     """Do the work on one file.
 
-    Raises
-    ------
-    OtherVersionError
-        If this process has another version of Trunnion than the task asks for.
+    Raises ``OtherVersionError`` if this process has another version of Trunnion than the task asks for.
     """
     if task.program != program_version():
         raise OtherVersionError(f"a worker has Trunnion {program_version()}, and this computer {task.program}")

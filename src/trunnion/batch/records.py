@@ -164,16 +164,10 @@ def _is_report(name: str, start: str) -> bool:
 def commit(store: Store, record: Record, outcome: Outcome) -> Record:
     """Write the files of an outcome and its record; doing it again, even at the same time, changes nothing.
 
-    Parameters
-    ----------
-    record
-        With place, file, job, action and key; what became of it comes from the outcome.
+    record  with place, file, job, action and key; what became of it comes from the outcome
 
-    Returns
-    -------
-    Record
-        As it is kept. A file that somebody else has put into the place of a result stays, and makes the record one of
-        a failure.
+    Record  as it is kept. A file that somebody else has put into the place of a result stays, and makes the record one
+            of a failure
     """
     files = dict(outcome.files)
     record = replace(
@@ -239,10 +233,7 @@ def _keep_away(store: Store, record: Record, what: str, known: Mapping[str, tupl
 def check_store(store: Store) -> None:
     """Find out before any work whether results can be written.
 
-    Raises
-    ------
-    InputError
-        If not.
+    Raises ``InputError`` if not.
     """
     name = f"{FOLDER}/README.txt"
     text = (

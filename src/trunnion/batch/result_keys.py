@@ -39,14 +39,9 @@ def home_of(path: Path) -> str:
 def key_of(program: str, said: Mapping[str, Any], digests: Mapping[str, str]) -> str:
     """Return the key of a result.
 
-    Parameters
-    ----------
-    program
-        Version of Trunnion.
-    said
-        What is to be done, as JSON has it.
-    digests
-        Logical names of all files that are read, and their checksums.
+    program  version of Trunnion
+    said     what is to be done, as JSON has it
+    digests  logical names of all files that are read, and their checksums
     """
     text = json.dumps([program, said, digests], sort_keys=True, ensure_ascii=True, allow_nan=False)
     return digest(text.encode("ascii"))

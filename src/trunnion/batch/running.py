@@ -100,15 +100,9 @@ def run_jobs(
 ) -> BatchResult:
     """Do what is not done yet of a batch.
 
-    Parameters
-    ----------
-    workers
-        Makes the workers, of at most as many as there are files.
+    workers  makes the workers, of at most as many as there are files
 
-    Raises
-    ------
-    InputError
-        If results cannot be kept, or nobody can work. What is done by then stays done.
+    Raises ``InputError`` if results cannot be kept, or nobody can work. What is done by then stays done.
     """
     units = units_of(batch.jobs)
     check_store(store)
@@ -232,10 +226,7 @@ def task_of(folder: Path, job: BatchJob, unit: Unit, shared: Mapping[str, bytes]
     """Return the task of a unit, with the content of its files as it is now; what goes with it and is missing is left
     out.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be read, leads out of the folder, or its result has no place.
+    Raises ``InputError`` if a file cannot be read, leads out of the folder, or its result has no place.
     """
     if unit.clash:
         raise InputError(Problem(unit.file, 0, Wording("BAT380", "result_would_another", clash=unit.clash)))

@@ -47,10 +47,7 @@ def sealed(share: bytes, seal: Seal) -> bytes:
 def unsealed(content: bytes | None, seal: Seal) -> bytes:
     """Return the share that is kept.
 
-    Raises
-    ------
-    BrokenSealError
-        If it is not the one of this seal, or not as it was written.
+    Raises ``BrokenSealError`` if it is not the one of this seal, or not as it was written.
     """
     name = f"share {seal.number + 1} of {seal.of}"
     if not content:
@@ -74,10 +71,7 @@ def file_of(content: bytes | None) -> str | None:
 def unsealed_all(contents: Sequence[bytes | Kept], seals: Sequence[Seal]) -> list[bytes]:
     """All shares of a simulation; those that only have a name are read.
 
-    Raises
-    ------
-    BrokenSealError
-        As ``unsealed``.
+    Raises ``BrokenSealError`` as ``unsealed``.
     """
     try:
         return [

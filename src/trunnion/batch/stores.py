@@ -328,10 +328,7 @@ class UrlStore:
 def open_store(place: str | os.PathLike[str]) -> Store:
     """Return the store at a folder or an address.
 
-    Raises
-    ------
-    InputError
-        If it is no place for results, or the package that knows it is not installed.
+    Raises ``InputError`` if it is no place for results, or the package that knows it is not installed.
     """
     if isinstance(place, str) and "://" in place:
         return UrlStore(place)

@@ -46,11 +46,8 @@ _MARK: Final = b"trunnion.batch"
 def check_summary(file: object) -> OutputPlace:
     """Return the place of a summary, before any work.
 
-    Raises
-    ------
-    InputError
-        If its name ends otherwise, it cannot be written, a file stands there that is no summary, or the package that
-        writes it is not installed.
+    Raises ``InputError`` if its name ends otherwise, it cannot be written, a file stands there that is no summary, or
+    the package that writes it is not installed.
     """
     place = declared_output("batch", "summary", file)
     if place.path.suffix.lower() == ".parquet":
@@ -94,10 +91,7 @@ def _costs_path(path: Path) -> Path:
 def write_summary(result: BatchResult, file: object) -> None:
     """Write the summary of a batch; it appears whole.
 
-    Raises
-    ------
-    InputError
-        As ``check_summary``.
+    Raises ``InputError`` as ``check_summary``.
     """
     place = check_summary(file)
     if place.path.suffix.lower() == ".parquet":

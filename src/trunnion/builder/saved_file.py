@@ -60,9 +60,14 @@ def read_raw(file: Path) -> str:
                 else Wording("PAG212", "cannot_read", strerror=error.strerror),
             )
         ) from None
+    check_length(file, text)
+    return text
+
+
+def check_length(file: Path, text: str) -> None:
+    """Raise ``InputError`` for the text of a file that is too long: one that is saved can be opened again."""
     if len(text) > MOST_LETTERS:
         raise InputError(Problem(str(file), 0, Wording("PAG213", "more_letters", most_letters=MOST_LETTERS)))
-    return text
 
 
 def page_text(raw: str) -> str:

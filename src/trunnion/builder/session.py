@@ -26,7 +26,7 @@ from trunnion.builder.document import (
 )
 from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
 from trunnion.builder.sample import sample_data, without_program
-from trunnion.builder.saved_file import check_place, file_text, is_file_name, page_text, read_raw
+from trunnion.builder.saved_file import check_length, check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
 from trunnion.definitions.value_marks import without_mark
 from trunnion.errors import InputError
@@ -160,6 +160,8 @@ class BuilderSession:
     def _save(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """Write the definition, unless another one would be lost that the user has not seen."""
         text, name, seen = _text(given, "text"), _text(given, "name"), _text(given, "seen")
+        if name and name != self.name and "." not in name:
+            name += ".toml"
         opened = _text(given, "file") or self.name
         try:
             file = self._place(name)
@@ -171,13 +173,14 @@ class BuilderSession:
             if file.exists() and _digest(old) != seen and given.get("replace") is not True:
                 return {"saved": "", "why": "changed" if name == opened and seen else "exists"}
             written = file_text(text, old)
+            check_length(file, written)
             with atomic_file(file) as sink:
                 sink.write(written.encode())
             if text.startswith(first_line("machine")):
                 put_beside(file, "machine")
         except InputError as error:
             return {"saved": "", "why": "cannot", "problems": [str(problem) for problem in error.problems]}
-        return {"saved": str(file), "seen": _digest(written), "mistakes": len(judge(text, file).problems)}
+        return {"saved": str(file), "name": name, "seen": _digest(written), "mistakes": len(judge(text, file).problems)}
 
 
 def _digest(text: str) -> str:

@@ -21,10 +21,7 @@ _PACKED = frozenset({".gz", ".bz2"})
 def result_stem(file: str) -> str:
     """Return the name of what is made of a CL file, without its ending.
 
-    Raises
-    ------
-    InputError
-        For stdin, which has no name.
+    Raises ``InputError`` for stdin, which has no name.
     """
     if file == STDIN:
         raise InputError(Problem("stdin", 0, Wording("FIL270", "result_without_name")))

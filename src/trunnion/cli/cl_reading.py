@@ -15,10 +15,7 @@ _SETTINGS: Final = (("units", "cl_units"), ("dialect", "dialect"))
 def as_read(given: Given, files: Iterable[str]) -> list[str | BinaryIO | Toolpath]:
     """CL files as the library takes them: their toolpaths, where it is said how they are read.
 
-    Raises
-    ------
-    InputError
-        If stdin is named twice, or a file cannot be read so.
+    Raises ``InputError`` if stdin is named twice, or a file cannot be read so.
     """
     inputs = streams(files)
     stated = {name: given.values[name] for name in ("units", "dialect") if not _is_setting(given, name)}

@@ -94,10 +94,7 @@ def old_files_told(names: Sequence[str]) -> Iterator[None]:
 def simulation_of(given: Given) -> dict[str, object] | None:
     """Return what the program is simulated with; None: it is not.
 
-    Raises
-    ------
-    InputError
-        If something is said about a simulation, and none is asked for.
+    Raises ``InputError`` if something is said about a simulation, and none is asked for.
     """
     stated = {name: getattr(given, name) for name in _SIMULATED if getattr(given, name)}
     if given.simulate:

@@ -26,12 +26,9 @@ def tell_problem(line: str) -> None:
 def print_result(*lines: str, end: str = "\n") -> None:
     """Print lines to stdout, without characters that a terminal obeys.
 
-    Raises
-    ------
-    InputError
-        If stdout takes no more, as on a disk that is full.
-    BrokenPipeError
-        If its reader has gone away.
+    Raises ``InputError`` if stdout takes no more, as on a disk that is full.
+
+    Raises ``BrokenPipeError`` if its reader has gone away.
     """
     try:
         print(*map(printable, lines), sep="\n", end=end)
@@ -47,16 +44,10 @@ def print_result(*lines: str, end: str = "\n") -> None:
 def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:
     """Print a result, as ``--json`` says: in lines, as data, or both where the data goes to a file.
 
-    Parameters
-    ----------
-    given
-        What the command was given.
-    result
-        Makes the result, a record or plain data, if it is asked for as data.
-    lines
-        Of text; beside data on stdout they are not printed.
-    aside
-        Lines go to stderr: stdout has something else.
+    given   what the command was given
+    result  makes the result, a record or plain data, if it is asked for as data
+    lines   of text; beside data on stdout they are not printed
+    aside   lines go to stderr: stdout has something else
     """
     if given.json == "-":
         print_result(as_json(to_data(result())))

@@ -99,17 +99,10 @@ def warn_of_old(names: Iterable[str]) -> None:
 def check_unnamed(target: str, *, alone: bool = True) -> None:
     """Refuse a default name that is one of somebody else's file.
 
-    Parameters
-    ----------
-    target
-        The file.
-    alone
-        There are no others, so that it can be named as the output.
+    target  the file
+    alone   there are no others, so that it can be named as the output
 
-    Raises
-    ------
-    InputError
-        If it would be replaced, although nobody has named it.
+    Raises ``InputError`` if it would be replaced, although nobody has named it.
     """
     place = resolve_output(target)
     if place.is_stream or not place.path.exists():
@@ -131,10 +124,7 @@ def check_unnamed(target: str, *, alone: bool = True) -> None:
 def output_folder(output: str | None) -> Path | None:
     """Return the folder that takes results under the names of what they are made from; None: the output is one file.
 
-    Raises
-    ------
-    InputError
-        If it is written as a folder, and there is none.
+    Raises ``InputError`` if it is written as a folder, and there is none.
     """
     if output is None:
         return Path()

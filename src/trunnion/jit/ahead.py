@@ -41,7 +41,8 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
     missing = [one for one in kernels if isinstance(one, Kernel) and not (one.announced or one.is_kept)]
     if not missing:
         return
-    _log.info("compiling %d kernels for this computer, once; this takes some seconds", len(missing))
+    names = ", ".join(one.name.rpartition(".")[2] for one in missing)
+    _log.info("compiling %d kernels for this computer, once; this takes some seconds: %s", len(missing), names)
     for one in missing:
         one.announced = True
     folder = cache_folder()

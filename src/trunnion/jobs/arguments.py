@@ -16,7 +16,8 @@ from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.registry import JOBS
 from trunnion.jobs.result_output import OutputLike
 from trunnion.messages import Wording
-from trunnion.options.kinds import Setting
+from trunnion.options.kinds import Choice, Number, Setting, Switch, WrongValueError
+from trunnion.options.option import Option
 from trunnion.wording import nearest_word
 
 if TYPE_CHECKING:  # modules that few of the functions need
@@ -77,6 +78,7 @@ class PostArguments(ReadingArguments, SetUpArguments, ClampingArguments, total=F
     hooks: Sequence[FilePath]
     feed: Literal["programmed", "fastest"] | None
     max_tilt: float | None
+    edited: Literal["refuse", "keep", "replace"] | None
     force: bool
     explain: bool
     report: FilePath | None
@@ -244,23 +246,36 @@ def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
 
     Options that stand for settings are among the settings.
 
-    Raises
-    ------
-    TypeError
-        For a name that the function does not have.
-    InputError
-        If something is given as an argument and as a setting.
+    Raises ``TypeError`` for a name that the function does not have.
+
+    Raises ``InputError`` if something is given as an argument and as a setting.
     """
     known = kind.__annotations__
     stated = _known(cast(Mapping[str, Any], given), known, command)
     options = {each.name: each for each in JOBS[command].options if each.name in known}
     found = {name: LIBRARY.get(name) for name in known} | {name: each.empty for name, each in options.items()}
     found |= {name: None for name, each in options.items() if isinstance(each.kind, Setting) or each.setting}
+    for name in stated.keys() & options.keys():
+        _check(options[name], stated[name])
     found |= stated
     for name, option in options.items():
         if option.setting and found[name] is not None:
             found["settings"] = _with_setting(found["settings"], option.setting, name, found[name])
     return cast(_Given, found)
+
+
+def _check(option: Option, value: Any) -> None:
+    """Refuse a value in the words of the command line; texts and lists are up to the function."""
+    kind = option.kind
+    if value is None or not isinstance(kind, Number | Choice | Switch) or isinstance(value, list | tuple):
+        return
+    if isinstance(kind, Number) and isinstance(value, str):
+        return
+    try:
+        kind.check(value)
+    except WrongValueError as error:
+        what, _, cure = str(error).partition("; ")
+        raise InputError(argument_problem(option.name, what, cure, code="ARG140")) from None
 
 
 def with_present_names(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -34,11 +34,8 @@ _STDOUT: Final = "-"
 def guard(given: Given) -> list[FilePath]:
     """Return the files that a command reads, once it is known that it may write what it is to write.
 
-    Raises
-    ------
-    InputError
-        If an output is one of them, or another output by whatever name, has an ending that says another form, or cannot
-        be written; or if two outputs go to stdout.
+    Raises ``InputError`` if an output is one of them, or another output by whatever name, has an ending that says
+    another form, or cannot be written; or if two outputs go to stdout.
     """
     named = [(each, given.values[each.name]) for each in outputs(given.job.options)]
     written = [(option, file) for option, file in named if file is not None and not _takes_folder(option, file)]
@@ -58,10 +55,7 @@ def guard(given: Given) -> list[FilePath]:
 def files_read(given: Given) -> Iterator[FilePath]:
     """Yield the files that a command reads, with all to which they lead.
 
-    Raises
-    ------
-    InputError
-        If one of them leads to others, and cannot be read.
+    Raises ``InputError`` if one of them leads to others, and cannot be read.
     """
     for option in given.job.options:
         if not isinstance(option.kind, FileIn):

@@ -77,10 +77,7 @@ class Given:
     def arguments(self, *left_out: str) -> dict[str, Any]:
         """Return the arguments of the function that the command runs; stdin as a stream.
 
-        Raises
-        ------
-        InputError
-            If stdin is named twice: it can be read once.
+        Raises ``InputError`` if stdin is named twice: it can be read once.
         """
         options = [each for each in self.job.options if not each.own and each.name not in left_out]
         found = {each.name: self._argument(each) for each in options}
@@ -103,10 +100,7 @@ class Given:
 def streams(files: Iterable[str]) -> list[str | BinaryIO]:
     """Files as the library takes them: ``-`` is stdin.
 
-    Raises
-    ------
-    InputError
-        If stdin is named twice: it can be read once.
+    Raises ``InputError`` if stdin is named twice: it can be read once.
     """
     named = list(files)
     if named.count(STDIN) > 1:

@@ -47,10 +47,7 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
     """Return the place of an output whose name tells its form, which is found out before any work; ``what`` says why it
     is so.
 
-    Raises
-    ------
-    InputError
-        If its name ends otherwise, or it cannot be written.
+    Raises ``InputError`` if its name ends otherwise, or it cannot be written.
     """
     place = resolve_output(check_path(argument, file))
     if Path(place.name).suffix.lower() not in endings:
@@ -71,10 +68,7 @@ def declared_output(command: str, option: str, file: object) -> OutputPlace:
 def check_report_name(file: FilePath) -> OutputPlace:
     """Return the place of a report, which is found out before any work.
 
-    Raises
-    ------
-    InputError
-        If it is of an unknown form, or cannot be written.
+    Raises ``InputError`` if it is of an unknown form, or cannot be written.
     """
     return declared_output("post", "report", file)
 
@@ -90,23 +84,13 @@ def open_target(
 ) -> Iterator[Target]:
     """Open the place of a result.
 
-    Parameters
-    ----------
-    place
-        Of the result.
-    papers
-        Files about it by what they are (``report``), which appear with it; None: there is no such file.
-    inputs
-        Files that are read: none of them is written over.
-    group
-        Of jobs whose files appear together; None: the files of this one appear when the block ends.
-    edited
-        What becomes of programs there that were edited since they were written (the setting of that name).
+    place   of the result
+    papers  files about it by what they are (``report``), which appear with it; None: there is no such file
+    inputs  files that are read: none of them is written over
+    group   of jobs whose files appear together; None: the files of this one appear when the block ends
+    edited  what becomes of programs there that were edited since they were written (the setting of that name)
 
-    Raises
-    ------
-    InputError
-        When a file cannot be written; this is found out before anything is computed.
+    Raises ``InputError`` when a file cannot be written; this is found out before anything is computed.
     """
     beside = {what: resolve_output(file) for what, file in (papers or {}).items() if file is not None}
     if group is not None:
@@ -173,10 +157,7 @@ def paper_files(
 ) -> PaperFiles:
     """Return the papers of a post, whose places are found out before any work.
 
-    Raises
-    ------
-    InputError
-        If one is of an unknown form or cannot be written, or a manifest is not beside its program.
+    Raises ``InputError`` if one is of an unknown form or cannot be written, or a manifest is not beside its program.
     """
     if report is not None:
         check_report_name(report)

@@ -84,6 +84,11 @@ class TwinProgram:
         """Name of the main program, without its folder."""
         return PurePath(self.run.files[0]).name if self.run.files else "program"
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Names of the main program and of its subprograms, without their folders."""
+        return tuple(PurePath(name).name for name in self.run.files) or (self.name,)
+
     @cached_property
     def tools(self) -> tuple[str, ...]:
         """Tools that the program calls, in the order of the first calls."""

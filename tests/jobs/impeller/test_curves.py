@@ -38,10 +38,10 @@ def test_moved_points_and_a_tolerance_add_up() -> None:
         ({"start": "up"}, "start: error: is 'up'; write natural"),
         (
             {"parameterization": "uniform"},
-            "parameterization: error: is 'uniform'; give 'chord-length' or",
+            "parameterization: error: 'uniform' is unknown; write chord-length or",
         ),
-        ({"tolerance": -1.0}, "tolerance: error: is -1.0; give a number above 0"),
-        ({"fair": True}, "fair: error: is True; give a number above 0"),
+        ({"tolerance": -1.0}, "tolerance: error: -1.0 is not a tolerance; write a number above 0"),
+        ({"fair": True}, "fair: error: True is not a tolerance; write a number above 0"),
         ({"weights": [1.0, "a"]}, "weights: error: is a list; give numbers"),
     ],
 )

@@ -244,9 +244,9 @@ class Builder {
     }
     this.seen = found.seen;
     this.saved = text;
-    this.file = element("title").textContent = name;
+    this.file = element("title").textContent = found.name;
     const address = new URL(location.href);
-    address.searchParams.set("file", name);
+    address.searchParams.set("file", found.name);
     history.replaceState(null, "", address);
     element("saving").close();
     this.tell(found.mistakes ? say("savedBad", found.saved, found.mistakes) : say("saved", found.saved), found.mistakes > 0);

@@ -23,10 +23,8 @@ _DECIMALS: Final = 1
 def write_reach_plot(found: Reach, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
     """Draw the sphere of tool axes, and the volume of tips over the tilt.
 
-    Raises
-    ------
-    InputError
-        When the name does not end in ``.svg``, the file cannot be written, or it is one of ``inputs``.
+    Raises ``InputError`` when the name does not end in ``.svg``, the file cannot be written, or it is one of
+    ``inputs``.
     """
     with atomic_file(declared_output("reach", "plot", file), inputs=inputs) as sink:
         sink.write(reach_picture(_picture(found)).encode())

@@ -132,10 +132,8 @@ def _remarks(run: Run) -> list[Problem]:
 def _zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> dict[str, float] | None:
     """Where the rotary axes stood when the zero was set, degrees by names; None: nothing was set.
 
-    Raises
-    ------
-    InputError
-        If it names something else than rotary axes, or no angles, or the linear axes cannot reach the zero there.
+    Raises ``InputError`` if it names something else than rotary axes, or no angles, or the linear axes cannot reach the
+    zero there.
     """
     pose = _stated_pose(machine, zero_at)
     if pose is not None and np.isnan(joints_at_zero(machine, pose)).any():

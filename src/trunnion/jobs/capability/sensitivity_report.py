@@ -33,10 +33,8 @@ _NONE: Final = 5e-6
 def write_sensitivity_report(found: Sensitivity, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
     """Write a sensitivity as a page that works offline, with the errors of the worst numbers over the program.
 
-    Raises
-    ------
-    InputError
-        When the name does not end in ``.html``, the file cannot be written, or it is one of ``inputs``.
+    Raises ``InputError`` when the name does not end in ``.html``, the file cannot be written, or it is one of
+    ``inputs``.
     """
     with atomic_file(declared_output("sensitivity", "report", file), inputs=inputs) as sink:
         sink.writelines(render_sensitivity_page(_content(found), _series(found)))

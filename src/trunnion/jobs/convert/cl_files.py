@@ -35,12 +35,9 @@ def write_and_prove(
 ) -> tuple[Problem, ...]:
     """Write a CL file and read it back; return what the dialect cannot say.
 
-    Raises
-    ------
-    InputError
-        If the dialect has no words for a motion, a tool or a cycle.
-    RefusedError
-        If what was written says anything else than the toolpath.
+    Raises ``InputError`` if the dialect has no words for a motion, a tool or a cycle.
+
+    Raises ``RefusedError`` if what was written says anything else than the toolpath.
     """
     writer = WRITERS[dialect](toolpath, inch=inch)
     writer.write(target.files.main, comments)

@@ -31,12 +31,8 @@ _PLACES: Final = (" point_mm", " limits_mm", " gauge_point_mm")
 def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
     """Return what is assumed of a machine.
 
-    Parameters
-    ----------
-    machine
-        The machine.
-    table
-        Its definition, merged with what it extends; None: the machine comes from no file.
+    machine  the machine
+    table    its definition, merged with what it extends; None: the machine comes from no file
     """
     own = None if table is None else table.unread_copy()
     of_files = () if own is None else (*_marked(own), *_inherited(own))

@@ -171,10 +171,7 @@ def main_texts(control: Control) -> tuple[TemplateDescription, ...]:
 def load_any_control(name: str) -> Control:
     """Return the control of a shipped control or machine, or of a file that defines one of them.
 
-    Raises
-    ------
-    InputError
-        With every mistake of the definition.
+    Raises ``InputError`` with every mistake of the definition.
     """
     is_file = name.endswith(".toml")
     if not is_file and name not in shipped_controls():

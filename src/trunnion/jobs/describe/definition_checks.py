@@ -15,12 +15,8 @@ from trunnion.readers import check_reading
 def machine_problems(table: Table, key: str) -> list[Problem]:
     """Return every mistake of a machine's definition, in the order of files and lines.
 
-    Parameters
-    ----------
-    table
-        Of ``load_table`` or ``load_draft``, unread.
-    key
-        Short name of the machine.
+    table  of ``load_table`` or ``load_draft``, unread
+    key    short name of the machine
     """
 
     def fresh() -> Table:

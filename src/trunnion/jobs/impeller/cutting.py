@@ -196,10 +196,7 @@ def _cut(cutting: _Cutting, job: PostJob, observer: Observer) -> ImpellerCut:
 def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
     """Return the names of the steps to be made.
 
-    Raises
-    ------
-    InputError
-        If the definition has none, or none of a name.
+    Raises ``InputError`` if the definition has none, or none of a name.
     """
     known = [step.name for step in impeller.definition.steps]
     if not known:
@@ -271,10 +268,7 @@ def cl_tool(tool: LibraryTool) -> Tool:
 def cl_text(toolpath: Toolpath) -> bytes:
     """Return a toolpath as a CL file.
 
-    Raises
-    ------
-    InputError
-        If it cannot hold it.
+    Raises ``InputError`` if it cannot hold it.
     """
     sink = io.BytesIO()
     WRITERS["clsf"](toolpath).write(sink)

@@ -75,10 +75,7 @@ class ImpellerFiles:
     ) -> None:  # fmt: skip
         """Find out whether all files beside the main program may be written; ``naming`` is that of subprograms, if any.
 
-        Raises
-        ------
-        InputError
-            With all of those that may not.
+        Raises ``InputError`` with all of those that may not.
         """
         names = [self.cl_file(step).name for step in steps]
         names += [self.simulation.name, self.picture.name] if simulated else []
@@ -100,10 +97,7 @@ class ImpellerFiles:
 def output_folder(output: object) -> Iterator[Path]:
     """Yield the folder of the files, made if there is none; one that is made and stays empty is removed.
 
-    Raises
-    ------
-    InputError
-        If there cannot be a folder.
+    Raises ``InputError`` if there cannot be a folder.
     """
     folder = check_path("output", output)
     if str(folder) == "-":

@@ -12,12 +12,8 @@ def program_settings(control: Control, name: str, stem: str) -> dict[str, str]:
     """Return settings of the run: title, the program's name where it has one, subprograms and TCP where the control has
     them.
 
-    Parameters
-    ----------
-    name
-        Of the impeller.
-    stem
-        Of the file of the main program.
+    name  of the impeller
+    stem  of the file of the main program
     """
     found = {"title": name}
     own_name = control.settings.get("program", "")
@@ -35,12 +31,8 @@ def operation_settings(
 ) -> dict[str, dict[str, str]]:
     """Return settings of single operations, by their names: method and stock, where the control has these settings.
 
-    Parameters
-    ----------
-    given
-        Settings that the user has made for all operations: they stay.
-    own
-        And those for single ones.
+    given  settings that the user has made for all operations: they stay
+    own    and those for single ones
     """
     found = {name: dict(values) for name, values in own.items()}
     for one in steps:

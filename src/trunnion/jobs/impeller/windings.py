@@ -14,12 +14,8 @@ from trunnion.planning.rotary_positions import wound_turns
 def winding_problems(file: str, step: MachiningStep, motions: Sequence[Motion], machine: Machine) -> Iterator[Problem]:
     """Yield a warning if the tilt of a step round the part costs rewinds or whole turns back home.
 
-    Parameters
-    ----------
-    file
-        The definition of the impeller.
-    motions
-        Of the step, as they were planned.
+    file     the definition of the impeller
+    motions  of the step, as they were planned
     """
     if step.kind not in ROUND_STEPS or step.tilt <= 0.0:
         return

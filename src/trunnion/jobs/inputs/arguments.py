@@ -61,10 +61,7 @@ def check_observer(value: object) -> None:
 def checked_angles(turn: object, tilt: object) -> tuple[float, float]:
     """Turn and tilt as arguments, checked, in whole thousandths of a degree; None is 0.
 
-    Raises
-    ------
-    InputError
-        If one is no number from -360 to 360.
+    Raises ``InputError`` if one is no number from -360 to 360.
     """
     found = []
     for name, value in (("turn", turn), ("tilt", tilt)):

@@ -68,10 +68,7 @@ class KnownTools:
     def choose(self, called: Iterable[str]) -> dict[str, ToolShape]:
         """Return the body of each tool that a program calls, by the word of the program.
 
-        Raises
-        ------
-        InputError
-            If nothing describes a tool, or nothing settles its form; with all of them.
+        Raises ``InputError`` if nothing describes a tool, or nothing settles its form; with all of them.
         """
         return choose_tools(called, self.stated, self.libraries, self.of_cl_files)
 
@@ -81,10 +78,7 @@ def known_tools(
 ) -> KnownTools:
     """Read tools that are stated, and libraries, in ``unit`` where a library states none.
 
-    Raises
-    ------
-    InputError
-        If a text is no tool, or a library cannot be used.
+    Raises ``InputError`` if a text is no tool, or a library cannot be used.
     """
     if unit is not None:
         check_choice("unit", unit, ("mm", "inch"))

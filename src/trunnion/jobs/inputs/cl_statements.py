@@ -48,10 +48,7 @@ _CURE: Final = (
 def check_statements(machine: Machine) -> None:
     """Check that what a definition says of CL statements can count.
 
-    Raises
-    ------
-    InputError
-        With each entry of ``[control.statements]`` and ``[cl.words]`` whose statement is always read.
+    Raises ``InputError`` with each entry of ``[control.statements]`` and ``[cl.words]`` whose statement is always read.
     """
     table = resolve_extends(machine.control.unread_copy(), control_library()).table("statements")
     for name in [name for name in list(table.keys()) if not can_be_unknown(name)]:
@@ -81,11 +78,8 @@ def replace_unknown_statements(
 
     A statement that has a template, and is in neither table, becomes a ``ShopStatement``.
 
-    Raises
-    ------
-    InputError
-        With every statement that may change the machine and of which the definition says nothing, or if what it says is
-        no event.
+    Raises ``InputError`` with every statement that may change the machine and of which the definition says nothing, or
+    if what it says is no event.
     """
     statements, templates = (control.statements, control.templates) if control else ({}, {})
     lines = {statement: (Insert(0, 0, line),) if line else () for statement, line in statements.items()}

@@ -20,10 +20,7 @@ def hooked_toolpaths(
 ) -> list[Toolpath]:
     """Return what hooks make of toolpaths, which see machine, control and settings; without hooks they stay.
 
-    Raises
-    ------
-    InputError
-        If there are hooks and no toolpaths, or a hook fails.
+    Raises ``InputError`` if there are hooks and no toolpaths, or a hook fails.
     """
     files: list[Path] = check_paths("hooks", hooks)
     if not files:

@@ -213,11 +213,8 @@ def as_run(
     """Return the run of a program; one that has already been read must have been read for this machine, set up as it
     is.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or a run is of another machine, workpiece zero or tool length: its positions were
-        computed with those that it has.
+    Raises ``InputError`` if the file cannot be read, or a run is of another machine, workpiece zero or tool length: its
+    positions were computed with those that it has.
     """
     others = check_paths(names[1], subprograms)
     if not isinstance(nc, Run):
@@ -263,10 +260,7 @@ def as_toolpaths(
 ) -> list[Toolpath]:
     """Return the toolpaths of one program, as ``read_toolpaths`` has them.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used, or the points of two files are in different coordinate systems.
+    Raises ``InputError`` if a file cannot be used, or the points of two files are in different coordinate systems.
     """
     toolpaths = read_toolpaths(cl, units, strict, observer, dialect, spline_tolerance)
     if problem := other_system(toolpaths):
@@ -284,10 +278,7 @@ def read_toolpaths(
 ) -> list[Toolpath]:
     """Toolpaths in their order, read if they are named; how, is said as for ``read_cl``.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used.
+    Raises ``InputError`` if a file cannot be used.
     """
     if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl):
         cl = [cl]

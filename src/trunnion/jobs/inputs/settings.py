@@ -41,10 +41,7 @@ _GREATEST_TOLERANCE: Final = 1e6
 def as_texts(settings: Settings | None) -> dict[str, str]:
     """Return settings as text, in the form that ``--set`` takes; those that are None are not set.
 
-    Raises
-    ------
-    InputError
-        If this is no mapping of texts to values, or with every value of a type that no setting has.
+    Raises ``InputError`` if this is no mapping of texts to values, or with every value of a type that no setting has.
     """
     if settings is None:
         return {}
@@ -162,10 +159,8 @@ def split_by_operation(
 ) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
     """Return settings of the program, and those of single operations by their names: ``method=ROUGH,TOP:FINISH``.
 
-    Raises
-    ------
-    InputError
-        If an operation is given a value that the control cannot have, or a setting has two values for all operations.
+    Raises ``InputError`` if an operation is given a value that the control cannot have, or a setting has two values for
+    all operations.
     """
     program: dict[str, str] = {}
     own: dict[str, dict[str, str]] = {}
@@ -212,10 +207,7 @@ def check_operation_names(
 def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     """Return a setting as a number; None if it is not set.
 
-    Raises
-    ------
-    InputError
-        If it is not a number, or out of range.
+    Raises ``InputError`` if it is not a number, or out of range.
     """
     text = settings.get(key)
     if text is None:
@@ -243,10 +235,7 @@ def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
 def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
     """Return the machine for planning: every limit is nearer by the setting ``limit_margin``.
 
-    Raises
-    ------
-    InputError
-        If an axis has no travel left.
+    Raises ``InputError`` if an axis has no travel left.
     """
     margin = number_setting(settings, "limit_margin")
     if not margin:
@@ -305,10 +294,7 @@ def work_offset_setting(text: str, machine: Machine) -> int | None:
 
     None if nothing reads programs for the machine.
 
-    Raises
-    ------
-    InputError
-        If it is no work offset of the machine's control.
+    Raises ``InputError`` if it is no work offset of the machine's control.
     """
     if not readers.can_read(machine):
         return None

@@ -59,11 +59,8 @@ class PlacedBodies:
 def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is_needed: bool = True) -> PlacedBodies:
     """Read the bodies that a path is placed among; where they are not needed, a warning says that none could meet.
 
-    Raises
-    ------
-    InputError
-        If a mesh or a tool cannot be used, or the length of a tool is not known and bodies of the machine are to be
-        kept apart; or if they are needed, and no two could meet.
+    Raises ``InputError`` if a mesh or a tool cannot be used, or the length of a tool is not known and bodies of the
+    machine are to be kept apart; or if they are needed, and no two could meet.
     """
     problems: list[Problem] = []
     carried = list(_carried(given, problems))
@@ -112,10 +109,7 @@ def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
 def stock_mesh(stock: MeshLike, problems: list[Problem]) -> TriangleMesh:
     """Return a stock as a mesh, mm; warnings are added to the problems.
 
-    Raises
-    ------
-    InputError
-        If a mesh cannot be used, or the text of a stock is none.
+    Raises ``InputError`` if a mesh cannot be used, or the text of a stock is none.
     """
     return stock_shape(stock, problems.append).as_mesh()
 

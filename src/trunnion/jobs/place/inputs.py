@@ -71,13 +71,10 @@ def read_input(
     CL files are planned as they are; where rotary axes do not reach them so, at the first of the ``tilts``, degrees, at
     which they do. The rows are those of the part as it is drawn.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used as either, or some are CL files and others programs.
-    RefusedError
-        If a program has words that are not understood, or leaves the travel in machine coordinates, or no plan of the
-        CL files is possible.
+    Raises ``InputError`` if a file cannot be used as either, or some are CL files and others programs.
+
+    Raises ``RefusedError`` if a program has words that are not understood, or leaves the travel in machine coordinates,
+    or no plan of the CL files is possible.
     """
     if isinstance(files, str | os.PathLike | Toolpath) or is_stream(files):
         files = [files]
@@ -134,10 +131,7 @@ def toolpaths_to_post(
 ) -> list[Toolpath]:
     """Read CL files that are to be posted where they are placed: who places them need not read them again.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used, or one is an NC program: it stays as it is.
+    Raises ``InputError`` if a file cannot be used, or one is an NC program: it stays as it is.
     """
     texts, found = as_texts(settings), list[Toolpath]()
     for each in files:

@@ -26,10 +26,7 @@ _GREATEST_TILT: Final = 90.0
 def orientations(turns: float | Sequence[float] | None, tilts: float | Sequence[float]) -> Grid:
     """Return the orientations that are tried.
 
-    Raises
-    ------
-    InputError
-        If a step is out of range, an angle is none, or they are too many.
+    Raises ``InputError`` if a step is out of range, an angle is none, or they are too many.
     """
     tilt_angles, refines_tilts = _tilts(tilts)
     if turns is None:

@@ -41,10 +41,7 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
     """Return the CL files, the machine, the settings of a set-up, the zero among them, and what is clamped and cuts
     there.
 
-    Raises
-    ------
-    InputError
-        If the project cannot be read, has hooks, or it is not clear which set-up is meant.
+    Raises ``InputError`` if the project cannot be read, has hooks, or it is not clear which set-up is meant.
     """
     loaded = load_project(project)
     if loaded.hooks:

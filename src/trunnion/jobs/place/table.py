@@ -26,10 +26,7 @@ def standing_on(
 
     ``remarks`` gets warnings about meshes, and one where no table is stated. None: there is nothing to judge.
 
-    Raises
-    ------
-    InputError
-        If a mesh cannot be used, or the text of a stock is none.
+    Raises ``InputError`` if a mesh cannot be used, or the text of a stock is none.
     """
     points = [*_outlines(stock, part, remarks)]
     if not points:

@@ -40,17 +40,10 @@ def with_reached_feeds(
 ) -> Program:
     """Return the program with the feeds that the axes reach.
 
-    Parameters
-    ----------
-    program
-        With the greatest feeds.
-    run
-        Of that program; None: no reader knows the control.
+    program  with the greatest feeds
+    run      of that program; None: no reader knows the control
 
-    Raises
-    ------
-    InputError
-        If nothing can read the program back.
+    Raises ``InputError`` if nothing can read the program back.
     """
     if run is None:
         raise InputError(

@@ -40,10 +40,7 @@ def operation_times(program: Program, verification: Verification | None) -> list
 def write_times(files: OutputFiles, program: Program, seconds: Sequence[float]) -> None:
     """Write times in place of their tokens into all files of a program.
 
-    Parameters
-    ----------
-    seconds
-        Of each operation, in their order; token 0 is the sum of all, token k the k-th.
+    seconds  of each operation, in their order; token 0 is the sum of all, token k the k-th
     """
     times = [sum(seconds), *seconds]
     capitals = program.effective_setting("comments") == "capitals"

@@ -99,10 +99,7 @@ def load_toolpaths(
 
     ``changed`` returns what becomes of them once they are read.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used, or there is none.
+    Raises ``InputError`` if a file cannot be used, or there is none.
     """
     toolpaths = as_toolpaths(
         cl,
@@ -165,12 +162,9 @@ def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]
 def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT) -> PlannedProgram:
     """Plan a program and check that it can be written, and may.
 
-    Raises
-    ------
-    InputError
-        When the control cannot be told what the toolpaths ask for.
-    RefusedError
-        When the program must not run and ``force`` is off.
+    Raises ``InputError`` when the control cannot be told what the toolpaths ask for.
+
+    Raises ``RefusedError`` when the program must not run and ``force`` is off.
     """
     cut = [
         (toolpath.file, operation.name)
@@ -227,10 +221,7 @@ def _leaning_operations(planned: Plan, most: float | None) -> list[Problem]:
 def new_problems(program: Program, observer: Observer, known: Sequence[Problem] = ()) -> list[Problem]:
     """Warnings about a program that are not known yet; they have been reported, also where there are errors.
 
-    Raises
-    ------
-    InputError
-        When the control cannot be told what the program says.
+    Raises ``InputError`` when the control cannot be told what the program says.
     """
     problems = [problem for problem in merge_repeated(check_program(program)) if problem not in known]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]

@@ -112,17 +112,11 @@ class PostJob:
     def subprograms(self, files: OutputFiles, path: Path | None) -> SubprogramOutput | None:
         """How the program is divided into files; None: it is a single file.
 
-        Parameters
-        ----------
-        files
-            Takes the subprograms.
-        path
-            Of the main program; None: it is not written to a file.
+        files  takes the subprograms
+        path   of the main program; None: it is not written to a file
 
-        Raises
-        ------
-        InputError
-            If the control has no subprograms, there is no folder for them, or the settings contradict each other.
+        Raises ``InputError`` if the control has no subprograms, there is no folder for them, or the settings contradict
+        each other.
         """
         size = number_setting(self.settings, "split")
         if self.settings.get("programs", "one") == "one":
@@ -155,10 +149,7 @@ def prepare(
 ) -> PostJob:
     """Check the settings of a post, and make the job of it.
 
-    Raises
-    ------
-    InputError
-        With every setting that the control does not have or that makes no sense.
+    Raises ``InputError`` with every setting that the control does not have or that makes no sense.
     """
     control = load_control(machine.control)
     check_reading(machine)
@@ -178,10 +169,7 @@ def prepare(
 def _with_numbers(control: Control, asked: str | None) -> Control:
     """Return the control with the setting ``numbers``; None: as its definition says.
 
-    Raises
-    ------
-    InputError
-        If operations alone are to have numbers, and the control needs one before each block.
+    Raises ``InputError`` if operations alone are to have numbers, and the control needs one before each block.
     """
     numbers = control.block_numbers
     if asked == "operations" and not numbers.letter:
@@ -198,10 +186,7 @@ def _with_numbers(control: Control, asked: str | None) -> Control:
 def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control:
     """Return the control with the setting ``first_number``.
 
-    Raises
-    ------
-    InputError
-        If it is no whole number, or if there are no subprograms with numbers.
+    Raises ``InputError`` if it is no whole number, or if there are no subprograms with numbers.
     """
     first = number_setting(settings, "first_number")
     if first is None:
@@ -226,10 +211,7 @@ def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control
 def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:
     """Return the options of the planner, of settings that ``check_settings`` has checked.
 
-    Raises
-    ------
-    InputError
-        If a number is none or out of range, or the settings contradict the control or each other.
+    Raises ``InputError`` if a number is none or out of range, or the settings contradict the control or each other.
     """
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:

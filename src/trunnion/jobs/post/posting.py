@@ -87,7 +87,7 @@ def post(
     settings
         As ``--set`` takes them, by the same keys: ``{"title": "BLADE", "zero": (0, 0, 80), "tcp": "off"}``; see
         docs/commands.md.
-    units, dialect, zero, tool_length, feed, max_tilt
+    units, dialect, zero, tool_length, feed, max_tilt, edited
         Settings, too; ``units`` is the setting ``cl_units``.
     strict
         Raise an error for unknown CL statements even if the definition says what becomes of them, and for what the

@@ -20,10 +20,7 @@ def as_clamped(
 ) -> tuple[list[Toolpath], PostJob]:
     """Toolpaths of the part as it is clamped, and the job with the notices that the head of the program has of it.
 
-    Raises
-    ------
-    InputError
-        If a CL file states that it is clamped otherwise.
+    Raises ``InputError`` if a CL file states that it is clamped otherwise.
     """
     stated = stated_clamping(toolpaths)
     clamping = clamped_after(stated, angles, toolpaths[0].file)

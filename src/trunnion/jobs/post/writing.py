@@ -28,10 +28,7 @@ from trunnion.verification import Check, Verification
 def write_and_read_back(posting: Posting, plan: Callable[[], PlannedProgram]) -> WrittenProgram:
     """Plan a program, write it and read it back; the reader gets ready during the plan and follows the writer.
 
-    Raises
-    ------
-    InputError
-        If its reader cannot follow it.
+    Raises ``InputError`` if its reader cannot follow it.
     """
     files, job, divided = posting.target.files, posting.job, posting.subprograms is not None
     reading = read_back_while_writing(files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside)
@@ -52,25 +49,14 @@ def read_back_while_writing(
     Reading afterwards lengthens the post of a million points by a seventh (2.60 to 2.96 s on the machine where this was
     measured). The run is that of the bytes in the file, as if it had begun when the file was complete.
 
-    Parameters
-    ----------
-    files
-        Where the program is written.
-    machine
-        Runs it.
-    encoding
-        Of its texts.
-    divided
-        The program calls subprograms: the run waits for all files, as calls stand before what they call.
-    beside
-        Files of subprograms that exist already and that its templates call.
+    files     where the program is written
+    machine   runs it
+    encoding  of its texts
+    divided   the program calls subprograms: the run waits for all files, as calls stand before what they call
+    beside    files of subprograms that exist already and that its templates call
 
-    Yields
-    ------
-    progress
-        Receives how much of the file can be read.
-    run
-        Complete soon after the block has ended; None: no reader knows the control.
+    progress  receives how much of the file can be read
+    run       complete soon after the block has ended; None: no reader knows the control
     """
     progress = WriteProgress()
     with ThreadPoolExecutor(1) as executor:
@@ -113,20 +99,12 @@ def write(
 ) -> tuple[OperationStart, ...]:
     """Write a program, and return where its operations begin.
 
-    Parameters
-    ----------
-    program
-        Checked by ``trunnion.output.validation.check_program``.
-    sink
-        Takes the bytes of the main program.
-    progress
-        Receives how much of them can be read back.
-    subprograms
-        How the program is divided into files; None: it is a single file.
-    observer
-        Receives the progress, in points.
-    passages
-        Takes where texts of the user's templates stand.
+    program      checked by ``trunnion.output.validation.check_program``
+    sink         takes the bytes of the main program
+    progress     receives how much of them can be read back
+    subprograms  how the program is divided into files; None: it is a single file
+    observer     receives the progress, in points
+    passages     takes where texts of the user's templates stand
     """
     rows, done = sum(len(motion.operation.moves) for motion in program.motions), 0
     with observer.progress("writing", rows, "points") as advance:

@@ -104,10 +104,7 @@ class Case:
         They count then as what this project has posted, as after a clone of somebody else's. Programs that are gone
         are removed only if they are as a post has written them.
 
-        Raises
-        ------
-        TrunnionError
-            If a file cannot be written, or one that is read has changed since.
+        Raises ``TrunnionError`` if a file cannot be written, or one that is read has changed since.
         """
         project = self._project
         assert self.error is None, "what must not run is never accepted"
@@ -151,10 +148,7 @@ class Accepted:
 def find_cases(place: Path) -> list[Path]:
     """Return the projects of a folder and of all below it, in order; or the one project that is named.
 
-    Raises
-    ------
-    InputError
-        If there is none, or no such folder.
+    Raises ``InputError`` if there is none, or no such folder.
     """
     if not place.is_dir():
         if place.suffix == ".toml":

@@ -53,17 +53,10 @@ def check_project(
 ) -> tuple["SimulationResult | None", list[SetupFindings]]:
     """Carry out the checks of a project.
 
-    Returns
-    -------
-    simulation
-        None: it is not asked for.
-    found
-        Of every set-up of the project, in their order.
+    simulation  none: it is not asked for
+    found       of every set-up of the project, in their order
 
-    Raises
-    ------
-    InputError
-        When a file of the simulation or a released program cannot be used.
+    Raises ``InputError`` when a file of the simulation or a released program cannot be used.
     """
     checks = project.checks
     found = [list[Problem]() for _ in project.posted]

@@ -28,16 +28,10 @@ def left_over_setups(
 ) -> list[Problem]:
     """Return the warnings.
 
-    Parameters
-    ----------
-    project
-        Without ``into``: what is posted elsewhere leaves nothing.
-    written
-        All files that the project writes now: programs, subprograms and papers.
-    told
-        Programs that stay and are told of already.
-    used
-        Files that the project reads: a program that it has among them (``programs``) stays with its papers.
+    project  without ``into``: what is posted elsewhere leaves nothing
+    written  all files that the project writes now: programs, subprograms and papers
+    told     programs that stay and are told of already
+    used     files that the project reads: a program that it has among them (``programs``) stays with its papers
     """
     if project.into is not None:
         return []

@@ -51,21 +51,14 @@ class OperationProgram:
 def operation_programs(toolpaths: Sequence[Toolpath], job: PostJob, output: Path) -> list[OperationProgram]:
     """Return the programs of the operations that move, in their order, numbered from 1.
 
-    Parameters
-    ----------
-    toolpaths
-        Of one program, in their order.
-    job
-        Of that program.
-    output
-        ``top.mpf`` gives ``top_1_ROUGH.mpf``, ``top_2_FINISH.mpf`` and so on.
+    toolpaths  of one program, in their order
+    job        of that program
+    output     ``top.mpf`` gives ``top_1_ROUGH.mpf``, ``top_2_FINISH.mpf`` and so on
 
-    Raises
-    ------
-    InputError
-        If a setting is for an operation that there is none of, or nothing moves.
-    RefusedError
-        If an operation leaves something on that the next one goes on with, or is in a coordinate system of its own.
+    Raises ``InputError`` if a setting is for an operation that there is none of, or nothing moves.
+
+    Raises ``RefusedError`` if an operation leaves something on that the next one goes on with, or is in a coordinate
+    system of its own.
     """
     moving = [(path, own) for path in toolpaths for own in path.operations if len(own.moves)]
     if not moving:
@@ -89,15 +82,9 @@ def operation_programs(toolpaths: Sequence[Toolpath], job: PostJob, output: Path
 def check_tools(motions: Sequence[Motion], job: PostJob, file: str) -> list[Problem]:
     """Hold the tools of operations against each other as in one program: the operator puts them into one magazine.
 
-    Returns
-    -------
-    list
-        Warnings of tools that have several names.
+    list  warnings of tools that have several names
 
-    Raises
-    ------
-    RefusedError
-        If operations call one tool and state different ones.
+    Raises ``RefusedError`` if operations call one tool and state different ones.
     """
     program = Program(job.machine, job.control, motions, job.printed, file, own_settings=job.own_settings)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers

@@ -163,10 +163,7 @@ def _judged(posting: ProjectPosting, posted: Sequence[PostedPrograms]) -> _Found
 def _reported(posting: ProjectPosting, found: _Found) -> list[Problem]:
     """Report warnings, and return them.
 
-    Raises
-    ------
-    RefusedError
-        If there are errors.
+    Raises ``RefusedError`` if there are errors.
     """
     refused = [problem for problem in found.problems if problem.severity is Severity.ERROR]
     warnings = [problem for problem in found.problems if problem.severity is Severity.WARNING]

@@ -80,10 +80,7 @@ class ProjectPosting:
 def post_setups(posting: ProjectPosting) -> list[PostedPrograms]:
     """Post every set-up: one that is refused does not hide what is wrong with the next ones.
 
-    Raises
-    ------
-    TrunnionError
-        With what is wrong with all of them.
+    Raises ``TrunnionError`` with what is wrong with all of them.
     """
     project, posted, errors = posting.project, list[PostedPrograms](), list[TrunnionError]()
     for setup in project.setups:

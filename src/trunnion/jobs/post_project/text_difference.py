@@ -50,10 +50,7 @@ class TextDifference:
 def text_difference(old: Path, new: Path) -> TextDifference | None:
     """Compare two texts; None where they are the same, byte for byte.
 
-    Raises
-    ------
-    OSError
-        If a file cannot be read.
+    Raises ``OSError`` if a file cannot be read.
     """
     with old.open("rb") as before, new.open("rb") as after:
         first, context = _first_difference(before, after)

@@ -53,10 +53,8 @@ def is_project(path: Path) -> bool:
 def read_project(path: Path, elsewhere: Collection[str] = ()) -> SimulationInput:
     """Read a project to be simulated; it may leave out the arguments that are given ``elsewhere``.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, with every mistake in it and its line; or if programs that it posts are not there.
+    Raises ``InputError`` if it cannot be read, with every mistake in it and its line; or if programs that it posts are
+    not there.
     """
     return read_whole(path, elsewhere, is_posted=False).simulation
 
@@ -64,10 +62,7 @@ def read_project(path: Path, elsewhere: Collection[str] = ()) -> SimulationInput
 def load_project(path: Path) -> Project:
     """Read a project to be posted: the programs need not be there yet, and a stock only where it is simulated.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or posts nothing; with every mistake in it and its line.
+    Raises ``InputError`` if it cannot be read, or posts nothing; with every mistake in it and its line.
     """
     return read_whole(path, (), is_posted=True)
 

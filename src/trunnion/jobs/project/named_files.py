@@ -22,10 +22,7 @@ def project_files(given: Iterable[FilePath], elsewhere: Collection[str] = ()) ->
     """All files that the projects among some files name, none of which may be written over; the rest as for
     ``read_project``.
 
-    Raises
-    ------
-    InputError
-        If a project cannot be read.
+    Raises ``InputError`` if a project cannot be read.
     """
     projects = [
         read_whole(Path(each), ("machine", "stock", *elsewhere), is_posted=False)
@@ -40,10 +37,7 @@ def project_inputs(project: Project) -> list[FilePath]:
     """All files that a project leads to and that are read, but for programs that it posts itself: those that it
     extends, those that it names, and what its machines and tool libraries lead to.
 
-    Raises
-    ------
-    InputError
-        If a machine or a library cannot be read.
+    Raises ``InputError`` if a machine or a library cannot be read.
     """
     setups = [
         replace(each, programs=() if posted else each.programs)
@@ -62,10 +56,7 @@ def project_inputs(project: Project) -> list[FilePath]:
 def library_files(libraries: Iterable[FilePath]) -> list[FilePath]:
     """Return the files of tool libraries, with all that those in TOML extend.
 
-    Raises
-    ------
-    InputError
-        If one in TOML cannot be read.
+    Raises ``InputError`` if one in TOML cannot be read.
     """
     named = list(libraries)
     extended = (library_table(Path(each)).files() for each in named if str(each).lower().endswith(".toml"))

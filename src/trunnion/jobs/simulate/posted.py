@@ -53,10 +53,8 @@ _MOST_PLACES: Final = 50
 def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput:
     """Return what is to be simulated; programs, and how the part is clamped, are not known yet.
 
-    Raises
-    ------
-    InputError
-        If it names what is none, the project has several set-ups or is for another machine, or has no stock.
+    Raises ``InputError`` if it names what is none, the project has several set-ups or is for another machine, or has no
+    stock.
     """
     given = with_present_names(given) if isinstance(given, Mapping) else {"project": given}
     project = given.get("project")
@@ -91,10 +89,7 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
 def simulated_as_clamped(given: SimulationInput, clamping: Clamping) -> SimulationInput:
     """Return what is simulated with a part that is clamped so.
 
-    Raises
-    ------
-    InputError
-        If a project states that it is clamped otherwise.
+    Raises ``InputError`` if a project states that it is clamped otherwise.
     """
     setup = given.setups[0]
     for name, angle in (("turn", clamping.turn), ("tilt", clamping.tilt)):
@@ -198,10 +193,7 @@ def simulate_posted(
 ) -> SimulationResult:
     """Simulate the program that was posted; its run has the names of files as messages call them.
 
-    Raises
-    ------
-    InputError
-        If nobody reads it, a file cannot be used, or nothing says the form of a tool.
+    Raises ``InputError`` if nobody reads it, a file cannot be used, or nothing says the form of a tool.
     """
     if run is None:
         raise InputError(argument_problem("simulation", Wording("SIM115", "program_not_read")))

@@ -48,10 +48,7 @@ _MISSING: Final = np.array([[1.0, 0.70, 0.40], [0.85, 0.05, 0.10]])
 def write_simulation_report(found: SimulationResult, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
     """Write what a simulation found: a page that works offline (``.html``), or data (``.json``).
 
-    Raises
-    ------
-    InputError
-        When the name ends otherwise, the file cannot be written, or it is one of ``inputs``.
+    Raises ``InputError`` when the name ends otherwise, the file cannot be written, or it is one of ``inputs``.
     """
     place = check_report_name(file)
     read = [*inputs, *(each for each in found.programs if Path(each).is_file())]

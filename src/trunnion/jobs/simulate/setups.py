@@ -44,10 +44,7 @@ def prepare_setup(
 ) -> PreparedSetup:
     """Read all that a set-up needs; facets of exact surfaces are off them by ``deviation`` at most, mm.
 
-    Raises
-    ------
-    InputError
-        When a file or an argument cannot be used, or nothing says the form of a tool.
+    Raises ``InputError`` when a file or an argument cannot be used, or nothing says the form of a tool.
     """
     machine = as_machine(given.machine)
     readers.reader_of(machine)

@@ -18,10 +18,8 @@ from trunnion.simulation.cutting.shares import JoinedShares, Share
 def simulate_share(nc: FilePath, share: Share, arguments: SimulateArguments, observer: Observer) -> bytes:
     """Cut the tiles of a share with a program.
 
-    Raises
-    ------
-    InputError
-        As ``trunnion.simulate``; and if the simulation has several set-ups, or ends at the first finding.
+    Raises ``InputError`` as ``trunnion.simulate``; and if the simulation has several set-ups, or ends at the first
+    finding.
     """
     return cut_setup_share(as_simulation_input(nc, arguments), share, observer)
 
@@ -31,11 +29,8 @@ def join_shares(
 ) -> SimulationResult:
     """Put all shares of a simulation together.
 
-    Raises
-    ------
-    InputError
-        As ``simulate_share``.
-    DamagedShareError
-        If the shares are not as they were made.
+    Raises ``InputError`` as ``simulate_share``.
+
+    Raises ``DamagedShareError`` if the shares are not as they were made.
     """
     return simulate_setups(as_simulation_input(nc, arguments), observer, JoinedShares(shares))

@@ -104,10 +104,7 @@ def simulate(
 def as_simulation_input(nc: FilePath | Run | Iterable[FilePath | Run], given: SimulateArguments) -> SimulationInput:
     """Return what is simulated: arguments of ``simulate`` by their names.
 
-    Raises
-    ------
-    InputError
-        If they contradict each other, or what a project would state is missing.
+    Raises ``InputError`` if they contradict each other, or what a project would state is missing.
     """
     own: dict[str, Any] = {**taken(SimulateArguments, "simulate", given)}
     until, whole = own.pop("until"), {name: own.pop(name) for name in _WHOLE}

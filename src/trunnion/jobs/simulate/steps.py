@@ -36,12 +36,9 @@ _FACETS: Final = 0.25
 def simulate_setups(given: SimulationInput, observer: Observer, shares: JoinedShares | None = None) -> SimulationResult:
     """Read everything, then cut the stock in one set-up after another; ``shares`` are those of ``cut_setup_share``.
 
-    Raises
-    ------
-    InputError
-        When a file or an argument cannot be used, or nothing says the form of a tool.
-    DamagedShareError
-        If the shares cannot be used.
+    Raises ``InputError`` when a file or an argument cannot be used, or nothing says the form of a tool.
+
+    Raises ``DamagedShareError`` if the shares cannot be used.
     """
     with told_with_places(given.places):
         if shares is not None:
@@ -59,10 +56,8 @@ def simulate_setups(given: SimulationInput, observer: Observer, shares: JoinedSh
 def cut_setup_share(given: SimulationInput, share: Share, observer: Observer) -> bytes:
     """Read everything, and cut some tiles of the stock: the bytes that ``shares.JoinedShares`` takes.
 
-    Raises
-    ------
-    InputError
-        As ``simulate_setups``; and if there are several set-ups, or it is to end at the first finding.
+    Raises ``InputError`` as ``simulate_setups``; and if there are several set-ups, or it is to end at the first
+    finding.
     """
     with told_with_places(given.places):
         _check_sharing(given)

@@ -42,34 +42,19 @@ def record(
 ) -> "RecordingSummary":
     """Record what a machine, or a twin, shows by OPC UA, until the time is over or Ctrl-C.
 
-    Parameters
-    ----------
-    address
-        Of its server, ``opc.tcp://HOST:PORT/…``.
-    output
-        The file, ``.csv`` or ``.parquet``. One that exists is never written over.
-    nodes
-        What is recorded: ``"cnc"``, ``"sinumerik"``, ``"heidenhain"``, or a file (.toml).
-    seconds
-        How long; None: until Ctrl-C.
-    rate
-        Milliseconds between two looks of the server at its variables, 5 to 60000.
-    secure
-        Sign and encrypt; the certificate of the client is made on first use.
-    trust
-        Fingerprint (SHA-1) of the server's certificate; needed with ``secure``.
-    user, password
-        Empty: anonymous. A password is sent on a secure channel alone.
-    ready
-        Is called with the names of the columns when recording begins.
-    observer
-        Is told when the connection breaks and when it is there again.
+    address         of its server, ``opc.tcp://HOST:PORT/…``
+    output          the file, ``.csv`` or ``.parquet``. One that exists is never written over
+    nodes           what is recorded: ``"cnc"``, ``"sinumerik"``, ``"heidenhain"``, or a file (.toml)
+    seconds         how long; None: until Ctrl-C
+    rate            milliseconds between two looks of the server at its variables, 5 to 60000
+    secure          sign and encrypt; the certificate of the client is made on first use
+    trust           fingerprint (SHA-1) of the server's certificate; needed with ``secure``
+    user, password  empty: anonymous. A password is sent on a secure channel alone
+    ready           is called with the names of the columns when recording begins
+    observer        is told when the connection breaks and when it is there again
 
-    Raises
-    ------
-    InputError
-        When an argument cannot be used, the machine cannot be connected to, the file exists or cannot be written, or
-        the extra ``twin`` is not installed.
+    Raises ``InputError`` when an argument cannot be used, the machine cannot be connected to, the file exists or cannot
+    be written, or the extra ``twin`` is not installed.
     """
     check_observer(observer)
     found: Any = {**taken(RecordArguments, "record", given)}
@@ -89,10 +74,7 @@ def record(
 def machine_feed(address: str, *, observer: Observer = SILENT, **given: Unpack[LiveArguments]) -> "MachineFeed":
     """Return a machine that can be listened to; arguments as for ``record``.
 
-    Raises
-    ------
-    InputError
-        When an argument cannot be used, or the extra ``twin`` is not installed.
+    Raises ``InputError`` when an argument cannot be used, or the extra ``twin`` is not installed.
     """
     check_address(address)
     found = taken(LiveArguments, "record", given)
@@ -113,10 +95,7 @@ def machine_feed(address: str, *, observer: Observer = SILENT, **given: Unpack[L
 def check_address(address: object) -> None:
     """Refuse what is no address of an OPC UA server, and one with a password in it.
 
-    Raises
-    ------
-    InputError
-        If it is none.
+    Raises ``InputError`` if it is none.
     """
     cure = "write opc.tcp://HOST:PORT/…, as the server names it"
     try:
@@ -133,10 +112,7 @@ def check_address(address: object) -> None:
 def read_recording(file: FilePath) -> Recording:
     """Read a recording of a machine, CSV or Parquet.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be used, or with its mistakes.
+    Raises ``InputError`` if the file cannot be used, or with its mistakes.
     """
     return read_file(check_path("file", file))
 
@@ -144,10 +120,7 @@ def read_recording(file: FilePath) -> Recording:
 def as_recording(recorded: object) -> Recording:
     """Return a recording, or that of a file.
 
-    Raises
-    ------
-    InputError
-        If it is neither.
+    Raises ``InputError`` if it is neither.
     """
     return recorded if isinstance(recorded, Recording) else read_file(check_path("recorded", recorded))
 

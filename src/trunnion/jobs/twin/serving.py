@@ -61,40 +61,25 @@ class TwinArguments(SetUpArguments, total=False):
 def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[TwinArguments]) -> None:
     """Serve an NC program as the machine that runs it, by OPC UA and MTConnect, until Ctrl-C.
 
-    Parameters
-    ----------
-    nc
-        The program, or its run.
-    machine
-        The machine that runs it: a name, a path or a ``Machine``.
-    subprograms
-        Files of the subprograms that it calls. No others are opened.
-    zero, tool_length
-        As for ``verify``. Without them slides count from the workpiece zero, and no travel of theirs is watched.
-    speed
-        Times real time, 0.1 to 1000; None: as fast as clients can follow.
-    loop
-        The program starts anew when it has ended.
-    rate
-        Milliseconds between two samples, 5 to 60000; every end of a block is told besides.
-    hold
-        The program waits for a client to start it.
-    host
-        An address of this computer. On another than its own (127.0.0.1) clients need a user of ``users``, and channels
-        are encrypted; MTConnect stays on this computer.
-    port, adapter_port
-        Ports of OPC UA and MTConnect; 0: a free one. ``adapter_port`` None: no MTConnect.
-    users
-        File of users; None: that in the user's folder.
-    ready
-        Is called with the addresses when clients can connect.
+    nc                  the program, or its run
+    machine             the machine that runs it: a name, a path or a ``Machine``
+    subprograms         files of the subprograms that it calls. No others are opened
+    zero, tool_length   as for ``verify``. Without them slides count from the workpiece zero, and no travel of theirs is
+                        watched
+    speed               times real time, 0.1 to 1000; None: as fast as clients can follow
+    loop                the program starts anew when it has ended
+    rate                milliseconds between two samples, 5 to 60000; every end of a block is told besides
+    hold                the program waits for a client to start it
+    host                an address of this computer. On another than its own (127.0.0.1) clients need a user of
+                        ``users``, and channels are encrypted; MTConnect stays on this computer
+    port, adapter_port  ports of OPC UA and MTConnect; 0: a free one. ``adapter_port`` None: no MTConnect
+    users               file of users; None: that in the user's folder
+    ready               is called with the addresses when clients can connect
 
-    Raises
-    ------
-    InputError
-        When a file or an argument cannot be used, a port is taken, or the extra ``twin`` is not installed.
-    RefusedError
-        When the program has errors: a machine would not run it.
+    Raises ``InputError`` when a file or an argument cannot be used, a port is taken, or the extra ``twin`` is not
+    installed.
+
+    Raises ``RefusedError`` when the program has errors: a machine would not run it.
     """
     import_extra("asyncua", "twin")
     from trunnion.twin.serving import Ports, run_until_ended, serve_program
@@ -136,19 +121,12 @@ def write_device_xml(
 ) -> None:
     """Write the device model of a twin for an MTConnect agent.
 
-    Parameters
-    ----------
-    nc, machine, subprograms, zero, tool_length
-        As for ``serve_twin``: they say in which coordinates slides are told.
-    output
-        The file, ``.xml``. An older one is replaced when the new one is complete.
+    nc, machine, subprograms, zero, tool_length: as for ``serve_twin``: they say in which coordinates slides are told
+    output: the file, ``.xml``. An older one is replaced when the new one is complete
 
-    Raises
-    ------
-    InputError
-        When a file or an argument cannot be used.
-    RefusedError
-        When the program has errors.
+    Raises ``InputError`` when a file or an argument cannot be used.
+
+    Raises ``RefusedError`` when the program has errors.
     """
     place = check_output_name("output", output, (".xml",), "a device model is XML")
     program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
@@ -167,12 +145,9 @@ def twin_program(
 ) -> TwinProgram:
     """Read a program, run it, and give it its times; arguments as for ``serve_twin``.
 
-    Raises
-    ------
-    InputError
-        When a file or an argument cannot be used.
-    RefusedError
-        When the program has errors.
+    Raises ``InputError`` when a file or an argument cannot be used.
+
+    Raises ``RefusedError`` when the program has errors.
     """
     placed = set_up_machine(as_machine(machine), zero, tool_length)
     if not isinstance(nc, Run) and is_cl_file(path := check_path("nc", nc)):
@@ -196,10 +171,7 @@ def is_loopback(host: str) -> bool:
 def users_file(users: FilePath | None = None) -> Path:
     """Return the file of users: the given one, or that in the user's folder.
 
-    Raises
-    ------
-    InputError
-        If none is given, and the user has no folder.
+    Raises ``InputError`` if none is given, and the user has no folder.
     """
     if users is not None:
         return check_path("users", users)
@@ -209,10 +181,7 @@ def users_file(users: FilePath | None = None) -> Path:
 def add_twin_user(name: str, password: str, *, operator: bool = True, users: FilePath | None = None) -> Path:
     """Add a user to the file of users, who operates a twin or only looks; returns the file.
 
-    Raises
-    ------
-    InputError
-        If name or password cannot be taken, or the file cannot be written.
+    Raises ``InputError`` if name or password cannot be taken, or the file cannot be written.
     """
     from trunnion.twin.opcua.users import Role, write_user
 

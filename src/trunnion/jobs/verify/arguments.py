@@ -18,10 +18,7 @@ DEFAULT_TOLERANCE: Final = 0.001
 def checked(given: VerifyArguments) -> VerifyArguments:
     """Return the arguments as the stages take them.
 
-    Raises
-    ------
-    InputError
-        For the first that makes no sense, or that changes CL files where there are none.
+    Raises ``InputError`` for the first that makes no sense, or that changes CL files where there are none.
     """
     has_cl = not isinstance(given["cl"], tuple | list) or bool(given["cl"])
     check_choice("frame", given["frame"], ("first", "absolute"))

@@ -29,10 +29,7 @@ _READ_CHORD: Final = 0.001
 def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> ExpectedValues:
     """Return what the program is expected to be; without CL files it may have any work offset and edge.
 
-    Raises
-    ------
-    InputError
-        If a work offset is none of the control's, or that of an operation which there is not.
+    Raises ``InputError`` if a work offset is none of the control's, or that of an operation which there is not.
     """
     usual = default_settings(on.control)
     settings = {"work_offset": "G54", **usual}

@@ -20,21 +20,12 @@ def expected_values(
 ) -> ExpectedValues:
     """Return what a program is expected to be.
 
-    Parameters
-    ----------
-    control
-        None: programs for the machine can be read but not written.
-    machine
-        Runs the program.
-    settings
-        In force in it. Without a work offset or an edge, it may have any.
-    own_settings
-        In force in single operations, by their names.
+    control       None: programs for the machine can be read but not written
+    machine       runs the program
+    settings      in force in it. Without a work offset or an edge, it may have any
+    own_settings  in force in single operations, by their names
 
-    Raises
-    ------
-    InputError
-        If a work offset is none of the control's.
+    Raises ``InputError`` if a work offset is none of the control's.
     """
     every = _operation_settings(settings, machine)
     rapid_feed = float(settings["rapid_feed"]) if settings.get("rapid_feed") else None

@@ -47,10 +47,7 @@ class ReadProgram:
 def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments, observer: Observer) -> ReadProgram:
     """Read a program and its CL files.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used, or a CL file states that its part is clamped otherwise.
+    Raises ``InputError`` if a file cannot be used, or a CL file states that its part is clamped otherwise.
     """
     toolpaths = as_toolpaths(given["cl"], given["units"], given["strict"], observer, given["dialect"])
     run = as_run(nc, on.machine, given["subprograms"])

@@ -69,10 +69,7 @@ def add_report(
 ) -> None:
     """Write a report into a file that appears later; with what a simulation found, if there was one.
 
-    Raises
-    ------
-    InputError
-        When the verification has no columns.
+    Raises ``InputError`` when the verification has no columns.
     """
     if len(verification.seconds) != len(verification.run):
         raise InputError(Problem(name, 0, Wording("ARG130", "verified_without_columns")))

@@ -68,10 +68,8 @@ def view_program(
 ) -> ViewedProgram:
     """Read and verify a program, or post CL files as one, also where it must not run: its head then says why.
 
-    Raises
-    ------
-    InputError
-        When a file cannot be used, no reader knows the control, or CL files and NC programs stand together.
+    Raises ``InputError`` when a file cannot be used, no reader knows the control, or CL files and NC programs stand
+    together.
     """
     subprograms, hooks = check_paths("subprograms", given["subprograms"]), check_paths("hooks", given["hooks"])
     are_cl = [is_cl_file(file) for file in files]
@@ -127,19 +125,11 @@ def _cl_texts(cl: ToolpathLike | Iterable[ToolpathLike]) -> dict[str, str]:
 def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the arguments of a view that a project states for one of its set-ups, with those that are given instead.
 
-    Parameters
-    ----------
-    path
-        The project.
-    setup
-        Name or number of the set-up, from 1; None: the only one.
-    given
-        Arguments of ``trunnion.write_view``; empty ones are not given.
+    path   the project
+    setup  name or number of the set-up, from 1; None: the only one
+    given  arguments of ``trunnion.write_view``; empty ones are not given
 
-    Raises
-    ------
-    InputError
-        If the project cannot be read, or does not have the set-up, or it has several programs.
+    Raises ``InputError`` if the project cannot be read, or does not have the set-up, or it has several programs.
     """
     stated = {name: value for name, value in given.items() if value not in (None, (), [], "")}
     project = read_project(path, tuple(stated))

@@ -40,10 +40,7 @@ class LiveMachine:
     def check(self) -> None:
         """Connect once, to find out that the machine is there and shows its axes.
 
-        Raises
-        ------
-        InputError
-            If it cannot be connected to, or does not show all axes.
+        Raises ``InputError`` if it cannot be connected to, or does not show all axes.
         """
 
         async def connect() -> None:
@@ -97,10 +94,7 @@ class LiveMachine:
 def machine_content(machine: MachineLike, title: str, **given: Any) -> ViewContent:
     """Return what a page shows of a machine without a program; arguments as ``prepare_view`` has them.
 
-    Raises
-    ------
-    InputError
-        When a file or an argument cannot be used.
+    Raises ``InputError`` when a file or an argument cannot be used.
     """
     named = as_machine(machine)
     with tempfile.TemporaryDirectory() as folder:

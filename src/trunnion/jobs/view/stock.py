@@ -38,10 +38,7 @@ _MOST: Final = 200
 def view_simulation(machine: Machine, **given: Any) -> SimulationInput | None:
     """Return what is to be simulated, before any work; None without stock.
 
-    Raises
-    ------
-    InputError
-        If an argument needs stock and there is none, or says nothing.
+    Raises ``InputError`` if an argument needs stock and there is none, or says nothing.
     """
     if given["stock"] is not None:
         return simulation_input(given, machine)
@@ -60,10 +57,8 @@ def with_stock(
 ) -> ViewContent:
     """Simulate a program and add what comes out to what its page shows.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be used, nothing says the form of a tool, or the stock is too large for a picture.
+    Raises ``InputError`` if a file cannot be used, nothing says the form of a tool, or the stock is too large for a
+    picture.
     """
     run = verification.run
     found = simulate_posted(given, named_run(run, run.files[0]), toolpaths, observer)

@@ -35,10 +35,7 @@ def prepare_view(
 ) -> ViewContent:
     """Read a program, run and verify it, and put together what a page shows; arguments as ``write_view``.
 
-    Raises
-    ------
-    InputError
-        When a file or an argument cannot be used, or no reader knows the control.
+    Raises ``InputError`` when a file or an argument cannot be used, or no reader knows the control.
     """
     stated: dict[str, Any] = {**taken(ViewArguments, "view", given)}
     against, against_machine, setup, settings = (stated.pop(name) for name in _OF_VIEW)

@@ -135,6 +135,9 @@ async def _channel(space: Space, program: TwinProgram) -> None:
     space.show("block.number", _STRING, f"{path}.ActProgramLine")
     await space.variable(f"{path}.ActProgramFileOffset", CNC, _UINT32)
     space.show("block.line", _UINT32, f"{path}.ActProgramFileOffset")
+    await space.historize("program.feed", f"{path}.ActFeedrate")
+    await space.historize("block.line", f"{path}.ActProgramFileOffset", _UINT32)
+    await space.historize("state.program", f"{path}.ActProgramStatus", _INT32)
     for name in ("ActFeedrate", "CmdFeedrate"):
         await space.unit(f"{path}.{name}", "H81", 0.0, 1e6)
     for name in ("ActOverride", "CmdOverride"):

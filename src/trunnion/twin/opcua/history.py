@@ -1,4 +1,4 @@
-"""The history of some numbers, for clients that read what was: the last hundred thousand changes of each."""
+"""The history of some values, for clients that read what was: the last hundred thousand changes of each."""
 
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
@@ -8,7 +8,7 @@ from asyncua import ua
 from asyncua.server.history import HistoryStorageInterface
 
 from trunnion.arrays import Floats, Ints
-from trunnion.twin.opcua.values import published
+from trunnion.twin.opcua.values import PublishedValue, published
 
 #: Values that are kept of a node, and values in one answer.
 KEPT: Final = 100_000
@@ -20,7 +20,8 @@ _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 class NumberHistory:
     """The last values of a number; older ones are forgotten. Times are microseconds since 1970, ascending."""
 
-    def __init__(self, kept: int = KEPT) -> None:
+    def __init__(self, kept: int = KEPT, kind: ua.VariantType = ua.VariantType.Double) -> None:
+        self._kind = kind
         self._times, self._values = np.zeros(kept, np.int64), np.zeros(kept)
         self._kept, self._count = kept, 0
 
@@ -29,6 +30,10 @@ class NumberHistory:
         place = self._count % self._kept
         self._times[place], self._values[place] = time, value
         self._count += 1
+
+    def told(self, value: float, moment: datetime) -> PublishedValue:
+        """Return a value of it as clients get it: of its own type."""
+        return published(value if self._kind is ua.VariantType.Double else int(value), self._kind, moment)
 
     def between(self, first: int, last: int) -> tuple[Ints, Floats]:
         """Return times and values from ``first`` to ``last``, both of them included, in order."""
@@ -73,7 +78,7 @@ class TwinHistory(HistoryStorageInterface):
         most = min(nb_values, _MOST_IN_ANSWER) if nb_values > 0 else _MOST_IN_ANSWER
         more = _moment(int(times[most])) if len(times) > most and most != nb_values else None
         found = zip(times[:most].tolist(), values[:most].tolist(), strict=True)
-        return [published(value, ua.VariantType.Double, _moment(time)) for time, value in found], more
+        return [history.told(value, _moment(time)) for time, value in found], more
 
     async def new_historized_node(self, node_id: ua.NodeId, period: timedelta | None, count: int = 0) -> None:
         """Histories are made with the address space, not while it is served."""

@@ -17,6 +17,7 @@ _MONITORING: Final = f"{MACHINE}.Monitoring"
 #: Numbers of types in the NodeSet.
 _MACHINE_TYPE, _TOOL_LIST, _TOOL, _CHANNEL, _SPINDLE = 13, 44, 50, 16, 22
 _JOB_LIST, _JOB_TYPE, _PROGNOSIS_LIST, _JOB_END = 30, 29, 2, 37
+_PROGRAM: Final = 59
 _MACHINES_FOLDER, _ITEM_STATE = 1001, 1002
 
 #: States of the state machines for programs and jobs: numbers of their nodes and of the states.
@@ -125,6 +126,17 @@ async def _production(space: Space, program: TwinProgram) -> None:
     space.show("state.runs_planned", _UINT32, f"{_JOB}.RunsPlanned")
     space.show("state.completed", _UINT32, f"{_JOB}.RunsCompleted")
     _show_state(space, f"{_JOB}.State", "job")
+    await _programs(space, program)
+
+
+async def _programs(space: Space, program: TwinProgram) -> None:
+    """List the programs of the job: the main program, and the subprograms that it calls."""
+    listed = space.node(f"{_JOB}.ProductionPrograms")
+    for number, name in enumerate(program.files, 1):
+        path = f"{_JOB}.ProductionPrograms.Program{number}"
+        await space.add(listed, path, name, MACHINE_TOOL, (MACHINE_TOOL, _PROGRAM))
+        await space.put(f"{path}.Name", name, _STRING)
+        await space.put(f"{path}.NumberInList", number, _UINT16)
 
 
 async def _prognoses(space: Space, program: TwinProgram) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
 from asyncua import ua
@@ -17,6 +17,8 @@ from trunnion.twin.opcua.values import PublishedValue, published
 _UNKNOWN: Final = ua.StatusCode(ua.StatusCodes.BadWaitingForInitialData)
 
 _NOTHING: Final = object()
+
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 
 
 @dataclass(slots=True)
@@ -52,7 +54,7 @@ class Publisher:
         self._targets: dict[str, list[_Target]] = {}
         for (key, kind), shown in space.shown.items():
             variables = [nodes[node].attributes[ua.AttributeIds.Value] for node in shown.nodes]
-            histories = [history.numbers.setdefault(node, NumberHistory()) for node in shown.historized]
+            histories = [history.numbers.setdefault(node, NumberHistory(kind=kind)) for node in shown.historized]
             self._targets.setdefault(key, []).append(_Target(kind, variables, histories))
 
     async def show(self, columns: Columns, stamps: Sequence[datetime], microseconds: Sequence[int]) -> None:
@@ -73,4 +75,4 @@ class Publisher:
         """Publish one value."""
         for target in self._targets.get(key, ()):
             if value != target.last:
-                await target.show(value, stamp, 0)
+                await target.show(value, stamp, (stamp - _EPOCH) // timedelta(microseconds=1))

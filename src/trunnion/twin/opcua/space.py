@@ -105,7 +105,19 @@ class Space:
         """
         kind = of if isinstance(of, ua.NodeId) else ua.NodeId(of[1], self.index(of[0]))
         name_of = ua.QualifiedName(name, self.index(uri))
-        return await parent.add_object(self.id_of(path), name_of, objecttype=kind, instantiate_optional=False)
+        made = await parent.add_object(self.id_of(path), name_of, objecttype=kind, instantiate_optional=False)
+        await self._remove_placeholders(made)
+        return made
+
+    async def _remove_placeholders(self, node: Node) -> None:
+        """Remove what stands in a type for objects of any name: the library makes an object of it."""
+        for child in await node.get_children():
+            if child.nodeid.NamespaceIndex != self.own:
+                continue
+            if (await child.read_browse_name()).Name.startswith("<"):
+                await self.server.delete_nodes([child], recursive=True)
+            else:
+                await self._remove_placeholders(child)
 
     async def folder(self, parent: Node, path: str, name: str, uri: str = TWIN) -> Node:
         """Add an object without a type of its own."""
@@ -158,13 +170,13 @@ class Space:
                 raise KeyError(node.to_string())
         self.shown.setdefault((key, kind), Shown()).nodes += nodes
 
-    async def historize(self, key: str, path: str) -> None:
+    async def historize(self, key: str, path: str, kind: ua.VariantType = ua.VariantType.Double) -> None:
         """Keep the history of a number for clients that read it from a variable."""
         access = ua.DataValue(ua.Variant(_READ | _HISTORY, ua.VariantType.Byte))
         for attribute in (ua.AttributeIds.AccessLevel, ua.AttributeIds.UserAccessLevel):
             await self.node(path).write_attribute(attribute, access)
         await self.node(path).write_attribute(ua.AttributeIds.Historizing, ua.DataValue(ua.Variant(True)))
-        self.shown[key, ua.VariantType.Double].historized.append(self.id_of(path))
+        self.shown[key, kind].historized.append(self.id_of(path))
 
     async def writable(self, path: str) -> None:
         """Let clients write a variable."""

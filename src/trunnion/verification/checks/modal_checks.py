@@ -12,6 +12,7 @@ from trunnion.verification.checks.low_rapids import low_rapids
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
+from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
 
@@ -37,6 +38,7 @@ def check_modal_state(context: Context) -> Check:
     places += low_rapids(context)
     places += wide_tolerances(context)
     places += _without_units(context)
+    places += _cuts_from_unknown_places(context)
     places += compensated_askew(context)
     places += compensated_blind(context)
     if not any(event.kind == "end" for event in run.events):
@@ -48,6 +50,14 @@ def check_modal_state(context: Context) -> Check:
     at_cuts = "feed" if isinstance(context, ComparedContext) else "feed and spindle"
     good = f"{at_cuts} at every cut, TCP off at home, no rapids below the retract height, program end present"
     return check_from_places("modal", "modal state", places, good)
+
+
+def _cuts_from_unknown_places(context: Context) -> Iterator[Place]:
+    """Yield the first cut at a height, or beside a line, that no block states."""
+    rows = cuts_from_unknown_places(context.run)
+    if len(rows):
+        text = "cuts from a position of the machine, before all linear axes are stated in the workpiece again"
+        yield context.place(int(rows[0]), 0.0, text)
 
 
 def _without_units(context: Context) -> Iterator[Place]:

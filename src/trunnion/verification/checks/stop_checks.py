@@ -2,13 +2,14 @@
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import Flags
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
 from trunnion.verification.checks.restated_modes import RestatedModes
@@ -61,7 +62,7 @@ def check_stops(context: ComparedContext) -> Check:
     for stop in _stops_outside_holes(context):
         found[context.matching.nc.count_before(stop.event.before_row)].append(stop)
     restarts = RestatedModes(context.run)
-    places: list[Place] = []
+    places: list[Place] = [*_changes_in_holes(context)]
     own: list[_FoundStop] = []
     for pair in sorted(expected.keys() | found.keys()):
         places += _compare(context, restarts, pair, expected[pair], found[pair])
@@ -110,16 +111,29 @@ def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_Expected
 
 
 def _stops_outside_holes(context: ComparedContext) -> list[_FoundStop]:
-    """Dwells and stops of the program itself, without those that belong to a hole."""
+    """Dwells of the program itself, without those that belong to a hole, and all its stops: a hole may have none."""
     stops = [_FoundStop(place, event) for place, event in enumerate(context.run.events) if event.kind in _NAMES]
-    if not stops:
-        return []
-    holes = match_holes(context.run, context.expected)
+    inside = _in_holes(context, [stop.event for stop in stops]).tolist()
+    return [stop for stop, in_hole in zip(stops, inside, strict=True) if not in_hole or stop.event.kind != "dwell"]
+
+
+def _changes_in_holes(context: ComparedContext) -> Iterator[Place]:
+    """Yield the tool changes while the tool is in a hole."""
+    changes = [event for event in context.run.events if event.kind == "tool_change"]
+    for event, in_hole in zip(changes, _in_holes(context, changes).tolist(), strict=True):
+        if in_hole:
+            yield context.place_of_event(event, 0.0, "changes the tool in a hole")
+
+
+def _in_holes(context: ComparedContext, events: Sequence[RunEvent]) -> Flags:
+    """Which events happen while the tool is in a hole, (k,)."""
+    holes = match_holes(context.run, context.expected) if events else []
+    if not holes:
+        return np.zeros(len(events), np.bool_)
     first, end = np.array([hole.first for hole in holes]), np.array([hole.end for hole in holes])
-    rows = np.array([stop.event.before_row for stop in stops])
+    rows = np.array([event.before_row for event in events])
     hole = np.searchsorted(first, rows) - 1  # the last one that begins before the row
-    inside = (hole >= 0) & (rows < end[hole]) if holes else np.zeros(len(rows), np.bool_)
-    return [stop for stop, in_hole in zip(stops, inside.tolist(), strict=True) if not in_hole]
+    return np.asarray((hole >= 0) & (rows < end[hole]))
 
 
 def _compare(

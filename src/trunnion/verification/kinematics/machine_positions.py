@@ -60,6 +60,22 @@ class MachinePositions:
             found[:, column] = rows < ends[np.searchsorted(begins, rows, "right") - 1]
         return found
 
+    def left_at_machine(self, rows: Ints) -> Flags:
+        """Which axes stand after rows where a block in machine coordinates has put them, (k, 5) bool.
+
+        None if their positions are those of the workpiece too.
+        """
+        found = np.zeros((len(rows), self._width), np.bool_)
+        for column, (begins, ends) in self._spans.items():
+            last = np.searchsorted(begins, rows, "right") - 1
+            found[:, column] = (last > 0) & (rows < ends[last])
+        return found
+
+    @staticmethod
+    def stated_from(run: Run, word: ProgrammedWord, first: int) -> int:
+        """Return the first row from ``first`` on that states a slide in the workpiece; n if there is none."""
+        return _next_in_workpiece(run, word, first)
+
     def crossed(self, rows: Ints) -> Flags:
         """Which rows move a slide between the two kinds of coordinates: nobody knows how far, (k,) bool."""
         return np.asarray((self.at(rows) != self.at(rows - 1)).any(axis=1))

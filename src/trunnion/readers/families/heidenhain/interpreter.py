@@ -326,6 +326,8 @@ class HeidenhainInterpreter(FlowInterpreter):
             if name not in ("X", "Y", "Z"):
                 raise KlartextError(Wording("NC210", "cc_takes_no", name=name))
             axis = "XYZ".index(name)
+            if axis == control.plane_axis:
+                raise KlartextError(Wording("NC220", "pole_outside_plane", axis=name))
             pole[axis] = value * control.length_unit + (pole[axis] if mode is PositionMode.INCREMENTAL else 0.0)
         control.pole = pole
 

@@ -1,0 +1,32 @@
+"""Cuts that begin where nobody knows how far the tool has gone.
+
+In:     a run.
+Out:    their rows.
+
+A slide that went to a position of the machine, or to the end of its travel, stands nowhere in the workpiece that
+follows from the program, unless workpiece zero and tool length are known. Until the program states it again, a block
+that leaves it out cuts at an unknown height.
+"""
+
+import numpy as np
+
+from trunnion.arrays import Ints
+from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.kinematics.machine_positions import MachinePositions
+from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
+
+
+def cuts_from_unknown_places(run: Run) -> Ints:
+    """Return the cuts whose start is not known, and which leave out the slide that is not."""
+    cuts = np.flatnonzero((run.kind != Kind.RAPID) & ((run.programmed & int(POSITION_WORDS)) != 0))
+    cuts = cuts[~run.state.machine_frame.at(cuts)] if len(cuts) else cuts
+    if not len(cuts):
+        return np.zeros(0, np.int64)
+    unknown = MachinePositions.of(run).left_at_machine(cuts).any(axis=1)
+    for event in run.events:
+        row = event.before_row
+        if event.kind != "retract" or (row < len(run) and run.state.machine_frame[row]):
+            continue  # a retract whose way is known is a motion in machine coordinates
+        unknown |= (cuts >= row) & (cuts < MachinePositions.stated_from(run, ProgrammedWord.Z, row))
+    return np.asarray(cuts[unknown], np.int64)

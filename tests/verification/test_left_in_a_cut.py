@@ -1,0 +1,69 @@
+"""A program that leaves the part in the midst of a cut, or stops in a hole, is no proven one."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.verifying import check
+from trunnion import verify
+
+CASES = Path(__file__).parents[1] / "data" / "cases"
+
+
+def changed(folder: Path, name: str, old: str, new: str) -> Path:
+    """Return a copy of a program in which one line is another."""
+    text = (CASES / name).read_text()
+    assert f"\n{old}\n" in text
+    file = folder / name
+    file.write_text(text.replace(f"\n{old}\n", f"\n{new}\n" if new else "\n"))
+    return file
+
+
+@pytest.mark.parametrize(
+    ("left", "fault"),
+    [
+        ("M242", True),
+        ("G290 Z-50.", True),
+        ("G290 Z-50.\nZ9.", False),  # stated again
+        ("", False),
+    ],
+)
+def test_no_cut_goes_on_where_the_way_of_a_slide_is_not_known(left: str, fault: bool, tmp_path: Path) -> None:
+    program = changed(tmp_path, "m242_in_cut.nc", "M242\nN950 Y13.", f"{left}\nN950 Y13." if left else "N950 Y13.")
+    for cl in ((), (CASES / "C.cls",)):
+        found = check(verify(program, machine="hs664rt", cl=cl), "modal")
+        assert any("cuts from a position of the machine" in place.text for place in found.places) is fault
+
+
+@pytest.mark.parametrize(
+    ("machine", "lines", "fault"),
+    [
+        ("matsuura_mx330", "G53 G0 Z0.\nG1 X9. F100.", True),
+        ("matsuura_mx330", "G91 G28 Z0.\nG90 G1 X9. F100.", True),
+        ("matsuura_mx330", "G91 G30 Z0.\nG90 G1 X9. F100.", True),
+        ("matsuura_mx330", "G53 G0 Z0.\nG0 Z5.\nG1 X9. F100.", False),
+        ("yl569", "SUPA G0 Z0 D0\nG1 X9 F100", True),
+        ("yl569", "SUPA G0 Z0 D0\nG0 Z5 D1\nG1 X9 F100", False),
+        ("linuxcnc_5axis", "G53 G0 Z0\nG1 X9 F100", True),
+        ("linuxcnc_5axis", "G28\nG1 X9 F100", True),
+    ],
+)
+def test_every_family_states_a_position_again(machine: str, lines: str, fault: bool, tmp_path: Path) -> None:
+    program = tmp_path / "a.nc"
+    head = (
+        "%\nO1\nG21 G90 G54\n"
+        if machine == "matsuura_mx330"
+        else "G71 G90 G54\n"
+        if machine == "yl569"
+        else "G21 G90 G54\n"
+    )
+    program.write_text(f"{head}S100 M3\nG0 X1. Y1.\nG0 Z5.\nG1 Z-1. F100.\n{lines}\nM30\n")
+    found = check(verify(program, machine=machine), "modal")
+    assert any("cuts from a position of the machine" in place.text for place in found.places) is fault
+
+
+@pytest.mark.parametrize(("word", "fault"), [("M0", True), ("M1", True), ("M60", True), ("T4 M6", True), ("", False)])
+def test_nothing_stops_in_a_hole_made_by_motion(word: str, fault: bool, tmp_path: Path) -> None:
+    program = changed(tmp_path, "stop_in_hole_made_by_motion.nc", "M0", word)
+    found = check(verify(program, machine="linuxcnc_5axis", cl=CASES / "B.cls"), "stops")
+    assert bool(found.places) is fault
