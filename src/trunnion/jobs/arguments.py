@@ -275,7 +275,7 @@ def _check(option: Option, value: Any) -> None:
         kind.check(value)
     except WrongValueError as error:
         what, _, cure = str(error).partition("; ")
-        raise InputError(argument_problem(option.name, what, cure, code="ARG140")) from None
+        raise InputError(argument_problem(option.name, Wording("ARG140", "of_kind", what=what, cure=cure))) from None
 
 
 def with_present_names(given: Mapping[str, Any]) -> dict[str, Any]:

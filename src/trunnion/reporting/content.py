@@ -24,6 +24,7 @@ from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
 from trunnion.reporting.recorded_content import RecordedContent, recorded_content
+from trunnion.reporting.remarks import RemarkGroup, remark_groups
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
@@ -64,6 +65,7 @@ class ReportContent:
     tip: Annotated[tuple[TipExtent, ...], Figure(within="extents")] = ()
     axes: Annotated[tuple[AxisExtent, ...], Figure(within="extents")] = ()
     units: Annotated[tuple[str, ...], Figure("program_units", after="made")] = ()
+    remarks: Annotated[tuple[RemarkGroup, ...], Figure(after="checks")] = ()
     simulation: Annotated[
         SimulationContent | None, Figure(take=attrgetter("data"), is_optional=True, after="operations")
     ] = None
@@ -110,6 +112,7 @@ def collect_content(
         simulation=simulation,
         recorded=recorded_content(verification),
         clamping=verification.clamping,
+        remarks=remark_groups(verification.remarks),
     )
 
 

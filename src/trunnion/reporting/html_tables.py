@@ -18,6 +18,7 @@ from trunnion.reporting.html_text import (
     format_range,
     with_unit,
 )
+from trunnion.reporting.remarks import RemarkGroup
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification.results import Check, Place, State
@@ -40,7 +41,14 @@ def page_body(content: ReportContent) -> str:
     """Return the page from its body tag up to the plots."""
     tables = (_operation_table(content), _tool_table(content), _decisions(content), _extents(content), _used(content))
     simulated = "" if content.simulation is None else simulation_section(content.simulation)
-    parts = (_title(content), _checks(content.checks), _worst_places(content.checks), simulated, *tables)
+    parts = (
+        _title(content),
+        _checks(content.checks),
+        _remarks(content.remarks),
+        _worst_places(content.checks),
+        simulated,
+        *tables,
+    )
     return "<body>\n<main>\n" + "".join(parts)
 
 
@@ -93,6 +101,22 @@ def _checks(checks: Sequence[Check]) -> str:
         for check in checks
     ]
     return _section("Checks", _table(("Result", "Check", "#Worst", "#Limit", "Summary"), rows, "tight"))
+
+
+def _remarks(remarks: Sequence[RemarkGroup]) -> str:
+    """Return the warnings, each thing once."""
+    rows = [
+        f"<tr><td>{remark.severity}</td><td>{escape(remark.text)}{_cure(remark.cure)}</td>"
+        f"<td><bdi>{escape(remark.file)}</bdi>{f':{remark.line}' if remark.line else ''}</td>"
+        f"<td>{escape(remark.code)}</td><td class=n>{remark.count}</td></tr>"
+        for remark in remarks
+    ]
+    headings = ("", "What", "First at", "Code", "#Times")
+    return _section("Warnings", _table(tuple(head or "-" for head in headings), rows, "tight")) if rows else ""
+
+
+def _cure(text: str) -> str:
+    return f"<br><small>{escape(text)}</small>" if text else ""
 
 
 def _result(check: Check) -> str:

@@ -8,7 +8,7 @@ from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation, SpindleOff, SpindleOn
+from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation, SpindleOff, SpindleOn
 from trunnion.output.program import Program
 
 
@@ -112,11 +112,28 @@ def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
     ]
 
 
+def _is_of_holes(operation: Operation) -> bool:
+    """Whether an operation makes holes by cycles, and cuts nothing between them."""
+    between, is_open = np.ones(len(operation.moves), np.bool_), False
+    for event in operation.events:
+        if isinstance(event, CycleOn | CycleOff):
+            is_open = isinstance(event, CycleOn)
+            between[event.row :] = not is_open
+    cuts = operation.moves.kind != Kind.RAPID
+    return not between.all() and not bool((cuts & between).any())
+
+
 def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
     """Warn of an operation without a tolerance, if its templates print one."""
     operation = motion.operation
     given = operation.intol is not None and operation.outtol is not None
-    if given or not _prints_tolerance(program, motion) or program.effective_setting("tolerance", operation):
+    # Holes are made along a line: no tolerance of the path counts in them.
+    if (
+        given
+        or _is_of_holes(operation)
+        or not _prints_tolerance(program, motion)
+        or program.effective_setting("tolerance", operation)
+    ):
         return []
     fallback = program.effective_setting("fallback_tolerance", operation)
     return [

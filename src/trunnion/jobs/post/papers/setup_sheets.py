@@ -23,6 +23,7 @@ from trunnion.output.tool_calls import ToolCalls
 from trunnion.reporting.content import collect_content
 from trunnion.reporting.html_text import format_number
 from trunnion.reporting.path_drawing import DrawnBody, path_drawing
+from trunnion.reporting.remarks import remark_groups
 from trunnion.reporting.setup_sheet import (
     SetupSheet,
     SheetFile,
@@ -246,9 +247,9 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     if inserted:
         texts = "; ".join(dict.fromkeys(inserted))
         yield f"Texts that the CL file inserts, whose effect beyond the path is not proven: {texts[:300]}"
-    warnings = [problem for problem in result.problems if problem.severity is Severity.WARNING]
-    for problem in warnings[:_MOST_WARNINGS]:
-        yield f"Warning: {problem.what}"
+    warnings = remark_groups(problem for problem in result.problems if problem.severity is Severity.WARNING)
+    for remark in warnings[:_MOST_WARNINGS]:
+        yield f"Warning: {remark.text}" + (f" (and {remark.count - 1} more like it)" if remark.count > 1 else "")
     if len(warnings) > _MOST_WARNINGS:
         yield f"and {len(warnings) - _MOST_WARNINGS} warnings more, which the post has printed"
     for problem in result.problems:

@@ -195,6 +195,9 @@ class OffsetInterpreter(CallInterpreter):
         """G68: rotate in the working plane, or with I J K about any axis."""
         control = self.control
         angle = block.take("R")
+        across = "XYZ"[control.plane_axis]
+        if across in block.words and not {"I", "J", "K"} & block.words.keys():
+            self._note(Wording("NC213", "unused_word", word=across), Severity.ERROR)
         centre = _changed(control.programmed_position, self._point(block))
         direction = [block.take(letter) for letter in "IJK"]
         axis = np.zeros(3)

@@ -244,6 +244,8 @@ class HeidenhainInterpreter(FlowInterpreter):
 
     def _stop(self, active: ActiveProgram, rest: str) -> None:
         block = read_block(words(rest), active.parameters)
+        if block.axes:
+            raise KlartextError(Wording("NC210", "stop_takes_no_axes", name=next(iter(block.axes))))
         self._m_functions.execute_before_motion(block)
         self.control.add_event("stop")
         self._m_functions.execute_after_motion(block)

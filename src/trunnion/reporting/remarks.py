@@ -1,0 +1,50 @@
+"""Warnings as a report has them: each thing once, with how often it was said.
+
+In:     the problems that a job told.
+Out:    groups, in the order in which they were first told.
+
+Text from outside is cleaned here of characters that no file can hold.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from trunnion.errors import Problem
+from trunnion.reporting.text import clean
+from trunnion.results import OptionalLine, OptionalText
+
+
+@dataclass(frozen=True, slots=True)
+class RemarkGroup:
+    """What was told ``count`` times, with text and place of the first time; ``code`` is that of its message."""
+
+    severity: str
+    code: OptionalText
+    text: str
+    cure: OptionalText
+    file: OptionalText
+    line: OptionalLine
+    count: int
+
+
+def remark_groups(problems: Iterable[Problem]) -> tuple[RemarkGroup, ...]:
+    """Return the groups of problems that say the same of several places."""
+    groups: dict[tuple[str, str, str], list[Problem]] = {}
+    for problem in problems:
+        kind = problem.wording.variant or problem.what
+        groups.setdefault((str(problem.severity), problem.code, kind), []).append(problem)
+    return tuple(_group(each) for each in groups.values())
+
+
+def _group(problems: list[Problem]) -> RemarkGroup:
+    first = problems[0]
+    return RemarkGroup(
+        severity=str(first.severity),
+        code=first.code,
+        text=clean(first.what),
+        cure=clean(first.cure),
+        file=clean(Path(first.file).name),
+        line=first.line,
+        count=len(problems),
+    )
