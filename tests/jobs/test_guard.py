@@ -134,5 +134,46 @@ def test_a_definition_that_machines_name_is_not_written_over(folder: Path) -> No
         assert Path(name).read_bytes() == before
 
 
+def test_what_a_manifest_lists_is_not_written_over(folder: Path) -> None:
+    post = ["post", "part.cls", "--machine", "yl569", "--output", "own.mpf", "--manifest", "own.json"]
+    assert main([*post, "--listing", "own.lst", "--sheet", "own.html"]) == 0
+    for name in ("own.mpf", "own.lst", "own.html", "own.json", "part.cls"):
+        before = Path(name).read_bytes()
+        assert main(["verify", "own.json", "--json", name]) == 2
+        assert Path(name).read_bytes() == before
+    assert main(["verify", "own.json", "--json", "other.json"]) == 0
+
+
+def test_what_a_batch_reads_and_a_new_definition_are_not_written_over(folder: Path) -> None:
+    Path("many").mkdir()
+    shutil.copy("part.cls", "many/part.cls")
+    before = Path("part.cls").read_bytes()
+    batch = ["batch", "many", "--action", "post", "--machine", "yl569", "--results", "made", "--workers", "1"]
+    assert main([*batch, "--json", "many/part.cls"]) == 2
+    assert Path("many/part.cls").read_bytes() == before
+    for name in ("fresh.toml", "trunnion-machine.schema.json"):
+        assert main(["new", "fresh", "--like", "yl569", "--json", name]) == 2
+        assert not Path(name).exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--machine", "yl569", "--machine", "dmu65"], "has two values, yl569 and dmu65"),
+        (["--machine", "yl569", "--output", "x" * 500], "longer than the name of a file can be"),
+        (["--machine", ""], "names no file"),
+        (
+            ["--machine", "yl569", "--output", "new.mpf", "--tool-length", "-5"],
+            "--tool-length: error: tool_length is '-5'",
+        ),
+    ],
+)
+def test_a_line_that_cannot_be_meant_is_refused(
+    words: list[str], says: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert code_of(["post", "part.cls", *words]) == 2
+    assert says in capsys.readouterr().err
+
+
 def test_a_line_of_every_command_is_understood() -> None:
     assert all(good_line(job) for job in JOBS.values())

@@ -71,7 +71,7 @@ def test_post_names_the_waits_of_templates_and_counts_them(tmp_path: Path) -> No
     assert all("a dwell of 2:00:00 h" in problem.what for problem in posted.problems)
     assert posted.verification is not None
     stops = {check.key: check for check in posted.verification.checks}["stops"]
-    assert stops.summary == "1 stops; 3 dwells of 6:00:00 h and 3 stops of the program's own between operations"
+    assert stops.summary == "1 stop; 3 dwells of 6:00:00 h and 3 stops of the program's own between operations"
     assert posted.text is not None
     assert "TAKES ROUGH TOP 2:00:0" in posted.text
 

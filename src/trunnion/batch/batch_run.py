@@ -15,6 +15,7 @@ from trunnion.batch.summary import check_summary, write_summary
 from trunnion.batch.worker_task import Action
 from trunnion.batch.workers import Workers
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.files import check_outputs
 from trunnion.jobs.arguments import taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath
@@ -52,7 +53,9 @@ class BatchArguments(TypedDict, total=False):
     summary: FilePath | None
 
 
-def run_batch(jobs: FilePath, *, observer: Observer = SILENT, **given: Unpack[BatchArguments]) -> BatchResult:
+def run_batch(
+    jobs: FilePath, *, observer: Observer = SILENT, written: Sequence[FilePath] = (), **given: Unpack[BatchArguments]
+) -> BatchResult:
     """Post, convert, verify or simulate many files; what is done already is not done again.
 
     Parameters
@@ -96,6 +99,8 @@ def run_batch(jobs: FilePath, *, observer: Observer = SILENT, **given: Unpack[Ba
         File of a table of all files, ``.sqlite`` or ``.parquet``.
     observer
         Receives the progress, in files; in tasks where some files are divided.
+    written
+        Files that the caller writes besides: they, and the summary, must be none of those that the jobs read.
 
     Returns
     -------
@@ -129,6 +134,7 @@ def run_batch(jobs: FilePath, *, observer: Observer = SILENT, **given: Unpack[Ba
         check_summary(summary)
     team = _team(found, observer)
     batch = _batch(path, stated, results)
+    _check_written([*([] if summary is None else [summary]), *written], path, batch)
     place = results if results is not None else batch.results
     if place is None:
         raise InputError(argument_problem("results", Wording("ARG130", "missing")))
@@ -154,6 +160,14 @@ def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Ba
     action, patterns = Action(stated.pop("action")), stated.pop("files", ())
     inside = results if results is not None and "://" not in str(results) else None
     return folder_batch(path, action, stated, None if inside is None else Path(inside), patterns)
+
+
+def _check_written(written: Sequence[FilePath], jobs: Path, batch: Batch) -> None:
+    """Refuse to write over a file that the jobs read, or two outputs into one."""
+    if written:
+        shared = (file for job in batch.jobs for file in job.shared.values())
+        names = (batch.folder / name for job in batch.jobs for name in job.files)
+        check_outputs(written, [*([] if jobs.is_dir() else [jobs]), *shared, *names])
 
 
 def _team(

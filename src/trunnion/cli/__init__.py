@@ -67,9 +67,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # Windows consoles and pipes are not UTF-8 by default
             stream.reconfigure(encoding="utf-8", errors="replace")
-    given = parse(sys.argv[1:] if argv is None else argv)
     try:
-        code = _carry_out(given)
+        code = _carry_out(parse(sys.argv[1:] if argv is None else argv))
     except TrunnionError as error:
         from trunnion.cli.wording import error_lines
 

@@ -43,7 +43,12 @@ def run(given: Given) -> int:
         raise InputError(argument_problem(name, Wording("ARG130", "tls_without_scheduler")))
     files = (None if value is None else Path(value) for value in tls)
     try:
-        result = run_batch(**given.arguments(), tls=Tls(*files) if any(tls) else None, observer=_Terminal())
+        result = run_batch(
+            **given.arguments(),
+            tls=Tls(*files) if any(tls) else None,
+            written=[] if given.json in (None, "-") else [given.json],
+            observer=_Terminal(),
+        )
     except KeyboardInterrupt:
         tell("the batch goes on where it was stopped when it is run again")
         raise

@@ -7,12 +7,12 @@ from trunnion.builder.saved_file import is_file_name
 from trunnion.cli.results import print_result, show
 from trunnion.definitions.value_marks import marked_values
 from trunnion.errors import InputError, Problem
-from trunnion.files import atomic_file
+from trunnion.files import atomic_file, check_outputs
 from trunnion.jobs.job import Given
 from trunnion.machines import load_machine
 from trunnion.machines.loading import check_is_shipped, shipped_machines
 from trunnion.messages import Wording
-from trunnion.schemas import put_beside, schema_text
+from trunnion.schemas import file_name, put_beside, schema_text
 from trunnion.wording import counted
 
 
@@ -26,6 +26,8 @@ def new(given: Given) -> int:
         raise InputError(Problem(given.name, 0, Wording("FIL340", "name_of_shipped_machine", stem=file.stem)))
     if file.exists() or file.is_symlink():
         raise InputError(Problem(str(file), 0, Wording("FIL250", "definition_exists")))
+    streams = [] if given.json in (None, "-") else [given.json]
+    check_outputs([file, file.with_name(file_name("machine")), *streams], [])
     text = definition_like(load_machine(given.like), file.stem)
     with atomic_file(file) as sink:
         sink.write(text.encode())

@@ -28,7 +28,8 @@ def _folders(given: Given) -> Iterator[Path]:
         value = given.values[option.name]
         for name in value if isinstance(value, list) else [value]:
             if isinstance(name, str) and name not in ("", "-") and "\0" not in name:
-                yield from _of_name(option, name)
+                with suppress(OSError):  # a name that no file can have is refused where it is opened
+                    yield from _of_name(option, name)
 
 
 def _of_name(option: Option, name: str) -> Iterator[Path]:

@@ -17,6 +17,7 @@ from trunnion.files import check_outputs
 from trunnion.jobs.inputs.input_files import definition_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, load_machine
 from trunnion.jobs.job import STDIN, Given
+from trunnion.jobs.post.papers.manifests import files_of_manifest
 from trunnion.jobs.project.file import load_project
 from trunnion.jobs.project.named_files import library_files, project_files, project_inputs
 from trunnion.jobs.result_output import check_output_name
@@ -131,6 +132,14 @@ def _of_impellers(names: Iterable[str]) -> Iterator[FilePath]:
         yield from [name, *read_impeller(Path(name)).files]
 
 
+def _of_manifests(names: Iterable[str]) -> Iterator[FilePath]:
+    """Programs, and manifests with the files beside them that they list."""
+    for name in names:
+        yield name
+        if name.endswith(".json"):
+            yield from files_of_manifest(name)
+
+
 def _named(names: Iterable[str]) -> Iterator[FilePath]:
     """Names of shipped lists, or files."""
     yield from (name for name in names if Path(name).suffix)
@@ -147,7 +156,7 @@ LEADS: Final[dict[str, Callable[[list[Any]], Iterable[FilePath]]]] = {
     "posted": _of_posted,
     "stock": _of_stocks,
     "impeller": _of_impellers,
-    "manifest": lambda files: files,
+    "manifest": _of_manifests,
     "jobs": _named,
     "named": _named,
 }

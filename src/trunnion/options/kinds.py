@@ -4,6 +4,7 @@ Each kind has one message, whichever front it is read by: ``parse`` takes a text
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -186,6 +187,19 @@ class Setting:
         return value
 
 
+#: Bytes that the name of a file has on no system.
+_TOO_LONG: Final = 256
+
+
+def _file_name(text: str) -> str:
+    """Return the name of a file, unless there can be none of that name."""
+    if not text:
+        raise WrongValueError("'' names no file; write its path")
+    if any(len(part.encode("utf-8", "replace")) >= _TOO_LONG for part in re.split(r"[/\\]", text)):
+        raise WrongValueError(f"{text[:40]!r}… is longer than the name of a file can be; write a shorter one")
+    return text
+
+
 @dataclass(frozen=True, slots=True)
 class FileIn:
     """A file that is read.
@@ -200,7 +214,7 @@ class FileIn:
 
     def parse(self, text: str) -> Any:
         """Its name."""
-        return text
+        return _file_name(text)
 
     def check(self, value: object) -> Any:
         """Return the name itself; the library judges whether it can be read."""
@@ -227,7 +241,7 @@ class FileOut:
 
     def parse(self, text: str) -> Any:
         """Its name."""
-        return text
+        return _file_name(text)
 
     def check(self, value: object) -> Any:
         """Return the name itself; ``jobs.guard`` judges whether it can be written."""

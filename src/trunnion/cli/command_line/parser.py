@@ -52,9 +52,9 @@ def parse(words: Sequence[str]) -> Given:
         _fail_command(job, _no_option(wrong, job))
     found, unknown = _parser(job).parse_known_args(rest)
     if unknown:
-        cure = "repeat an option before each of its values, and put a value with blanks in quotes"
-        _fail_command(job, f"{unknown[0]!r} is one argument too many; {cure}")
+        _fail_command(job, f"{unknown[0]!r} is one argument too many; {_one_too_many(rest, unknown[0], job)}")
     values = vars(found)
+    values.pop(_GIVEN, None)
     for option in job.options:
         if option.setting and values[option.name]:
             _add_setting(job, option, values)
@@ -64,11 +64,24 @@ def parse(words: Sequence[str]) -> Given:
     return given
 
 
+def _one_too_many(words: list[str], word: str, job: Job) -> str:
+    """Return the cure for an argument that nothing takes."""
+    before = words[words.index(word) - 1] if word in words else ""
+    bare = next((each.flag for each in job.flags if each.many is Many.BARE and before == f"{each.flag}=-"), "")
+    if bare:
+        return f"the file of {bare} has a name in .json, or write {bare}={word}"
+    return "repeat an option before each of its values, and put a value with blanks in quotes"
+
+
 def _add_setting(job: Job, option: Option, values: dict[str, Any]) -> None:
     """Put an option that stands for a setting among the settings."""
     if option.setting in dict(values["settings"]):
         _fail_command(job, f"{option.flag} and --set {option.setting}=… are the same: give one of them")
     values["settings"] = [*values["settings"], (option.setting, values[option.name])]
+
+
+#: Values of options that have one, by their names, while a command line is parsed.
+_GIVEN: Final = "given once"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -106,6 +119,8 @@ def _details(option: Option) -> dict[str, Any]:
         return {**found, "action": _AddSetting}
     if option.many is Many.REPEAT:
         return {**found, "action": "append"}
+    if option.many is Many.ONE and option.flag:
+        found["action"] = _Once
     if option.many is Many.LIST:
         found["action"] = "extend"
     if option.many in _NARGS:
@@ -123,6 +138,16 @@ def _type(option: Option) -> Callable[[str], Any]:
             raise argparse.ArgumentTypeError(str(error)) from None
 
     return parsed
+
+
+class _Once(argparse.Action):
+    """Takes a value; another one after it is refused, for the first would be lost."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
+        given: dict[str, Any] = vars(namespace).setdefault(_GIVEN, {})
+        if given.setdefault(self.dest, values) != values:
+            raise argparse.ArgumentError(self, f"has two values, {given[self.dest]} and {values}; write one")
+        setattr(namespace, self.dest, values)
 
 
 class _AddSetting(argparse.Action):
@@ -207,5 +232,7 @@ def _fail(where: str, message: str) -> NoReturn:
 
 
 def _print(text: str) -> NoReturn:
-    print(text, end="")
+    from trunnion.cli.results import print_result  # no command but help needs it here
+
+    print_result(text, end="")
     raise SystemExit(0)

@@ -17,7 +17,7 @@ from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
-from trunnion.wording import format_duration
+from trunnion.wording import counted, format_duration
 
 _NAMES: Final = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional stops"}
 
@@ -70,7 +70,7 @@ def check_stops(context: ComparedContext) -> Check:
             asked_for = {stop.place for stop in _asked_for(context.run, found[pair], expected[pair])}
             own += [stop for stop in found[pair] if stop.place not in asked_for]
     count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _NAMES}
-    good = ", ".join(f"{count[kind]} {name}" for kind, name in _NAMES.items() if count[kind])
+    good = ", ".join(counted(count[kind], name.removesuffix("s")) for kind, name in _NAMES.items() if count[kind])
     good = (good or "the CL file has none") + _own_stops(context.run, own)
     title = "stops and dwells as the CL file says"
     return check_from_places("stops", title, places, good)

@@ -234,6 +234,21 @@ def verify_manifest(manifest: FilePath, *, cl: Sequence[FilePath] = ()) -> Manif
     return ManifestCheck(tuple(found), data.get("may_run") is True, others)
 
 
+def files_of_manifest(manifest: FilePath) -> list[Path]:
+    """Return the files beside a manifest that it lists, and those that have the names of its CL files; none if it is
+    no manifest, which whoever reads it says.
+    """
+    path = check_path("manifest", manifest)
+    try:
+        data = _read(path)
+        inputs = data.get("inputs")
+        stated = _entries(path, inputs if isinstance(inputs, dict) else {}, "cl")
+        names = [entry.get("name") for entry in (*_entries(path, data, "files"), *stated)]
+    except InputError:
+        return []
+    return [path.with_name(name) for name in names if isinstance(name, str) and _is_plain(name)]
+
+
 def _check_whole(path: Path, data: dict[str, Any], files: Sequence[ManifestFile]) -> None:
     """Raise ``InputError`` for a manifest from which something was taken, or that contradicts itself."""
     programs = [file.name for file in files if file.what == "program"]
