@@ -83,10 +83,11 @@ def examples(folder: Path) -> list[Machine]:
 
 
 def test_every_example_of_the_reference_is_a_machine(tmp_path: Path) -> None:
-    changed, bodies, words, declares, worded, whole = examples(tmp_path)
+    changed, bodies, words, declares, worded, kept, whole = examples(tmp_path)
     assert [body.name for body in bodies.bodies[-2:]] == ["head", "vise"]
     assert words.cl_words["SHOPCL/1"] == "COOLNT/AIR"
     assert "G234" in worded.control.table("reading").table("words")
+    assert kept.control.table("reading").table("variables")
     assert "M202" in declares.control.table("known")
     assert (changed.axis("B").low, changed.workpiece_zero) == (-5.0, (0.0, 0.0, 62.5))
     assert whole.names == ("C", "A", "X", "Y", "Z")

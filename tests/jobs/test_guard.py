@@ -162,10 +162,6 @@ def test_what_a_batch_reads_and_a_new_definition_are_not_written_over(folder: Pa
         (["--machine", "yl569", "--machine", "dmu65"], "has two values, yl569 and dmu65"),
         (["--machine", "yl569", "--output", "x" * 500], "longer than the name of a file can be"),
         (["--machine", ""], "names no file"),
-        (
-            ["--machine", "yl569", "--output", "new.mpf", "--tool-length", "-5"],
-            "--tool-length: error: tool_length is '-5'",
-        ),
     ],
 )
 def test_a_line_that_cannot_be_meant_is_refused(

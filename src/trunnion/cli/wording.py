@@ -30,7 +30,7 @@ class CommandWords(Words):
 
     def setting(self, name: str, value: str) -> str:
         """Return a setting with a value."""
-        return f"{_setting_options()[name]} {value}" if name in _setting_options() else f"--set {name}={value}"
+        return f"--set {name}={value}"
 
     def argument(self, name: str, value: str) -> str:
         """Return an option with a value."""
@@ -46,7 +46,7 @@ _WORDS: Final = CommandWords()
 
 def problem_line(problem: Problem) -> str:
     """Return a problem as the command line prints it."""
-    called = _setting_options().get(problem.setting) or (_option(problem.argument) if problem.argument else "")
+    called = _option(problem.argument) if problem.argument else ""
     return in_command_words(problem.line_of_text(_WORDS, called))
 
 
@@ -57,12 +57,6 @@ def error_lines(error: TrunnionError) -> str:
 
 def _option(argument: str) -> str:
     return _options().get(argument, "--" + argument.replace("_", "-"))
-
-
-@cache
-def _setting_options() -> dict[str, str]:
-    """Return the options that stand for settings, by these."""
-    return {option.setting: option.flag for job in JOBS.values() for option in job.options if option.setting}
 
 
 @cache

@@ -200,6 +200,8 @@ def _planned_tilted(
 def _beyond_travel(run: Run) -> Iterator[Problem]:
     """Positions in machine coordinates that no place of the part brings into the travel."""
     for found in positions_beyond_travel(run):
+        if run.machine.axes[found.column].is_rotary:  # where it stands follows from the path, which is judged by turn
+            continue
         file = run.files[run.state.file[found.row]]
         yield Problem(
             file,
