@@ -180,6 +180,8 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
         if not block.cuts or re.match(r"^\d+ C", block.code):
             continue
         values = {word[1]: float(word[2]) for word in block.words}
+        said = [word for each in blocks[:k] for word in re.findall(r"\bG4[012]\b|\bR[0LR]\b", each.code)]
+        compensated = bool(said) and said[-1] not in ("G40", "R0")
         for kind, text in language.inserted.items():
             is_arc = re.search(language.arc, block.code) is not None
             stands = any(abs(block.before.get(letter, 0.0)) > 0.01 for letter in values if letter in "XYZ")
@@ -191,7 +193,9 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 "a lift in the cut": "Z" not in values,
                 "home in the cut": "Z" not in values and not block.cycle,
                 "another feed in the cut": not re.search(r"\bF\d", block.code),
-                "compensation in the cut": not is_arc,
+                "compensation in the cut": not is_arc and not compensated,
+                "an offset over another": abs(block.before.get("X", 9e9)) > 0.01,
+                "a shift in the cut": "X" in values,
                 "the spindle stops in the cut": block.spindle,
                 "the spindle turns back in the cut": block.spindle,
                 "TCP off in the cut": block.tcp,
@@ -232,15 +236,15 @@ def _replaced(blocks: list[Block], language: Language) -> Iterator[Edit]:
         for k, block in enumerate(blocks):
             if kind == "rapid at feed" and not block.rapids:
                 continue
-            if kind in ("a tenth of the feed", "ten times the feed") and _is_for_tapping(blocks, k):
+            if kind in ("a tenth of the feed", "ten times the feed") and _is_before_own_feed(blocks, k):
                 continue
             for line in _substituted(block, pattern, new):
                 yield Edit(kind, k + 1, _with(blocks, k, line))
 
 
-def _is_for_tapping(blocks: list[Block], k: int) -> bool:
-    """Whether a feed stands alone before a cycle that moves by its pitch."""
-    return not blocks[k].words and any("CYCLE84(" in block.code for block in blocks[k : k + 2])
+def _is_before_own_feed(blocks: list[Block], k: int) -> bool:
+    """Whether a feed stands alone before a cycle that has its own."""
+    return not blocks[k].words and any(re.search(r"CYCLE8[45]\(", block.code) for block in blocks[k : k + 2])
 
 
 def _cut_words(blocks: list[Block], language: Language) -> Iterator[Edit]:
