@@ -145,9 +145,11 @@ def test_verify_notices_the_wrong_unit(units: str, control: str, folder: Path) -
     if units == INCH and word.startswith("G"):
         faulty |= {re.sub(rf"(?<=[ \n]){word} ", "", text), re.sub(rf"^[^\n]*{word} [^\n]*\n", "", text, flags=re.M)}
     assert text not in faulty
+    # The program posted stays as it was written: a file edited by hand is not replaced by the next.
+    edited = folder / "edited.nc"
     for wrong in faulty:
-        program.write_text(wrong, encoding="utf-8")
-        assert not trunnion.verify(program, machine=pair.file, cl=folder / "part.cls").passed
+        edited.write_text(wrong, encoding="utf-8")
+        assert not trunnion.verify(edited, machine=pair.file, cl=folder / "part.cls").passed
 
 
 @pytest.mark.parametrize("control", IN_INCHES)
