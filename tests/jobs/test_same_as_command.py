@@ -65,11 +65,12 @@ def test_a_program_is_the_same_and_so_is_its_proof(name: str, tmp_path: Path, ca
     assert (code, result.passed) == (0, True)
     assert stream.getvalue() == out
     assert result.verification is not None
+    assert result.standing is not None
     remarks = [problem_line(remark) for toolpath in result.toolpaths for remark in toolpath.remarks]
     others = [problem_line(problem) for problem in result.problems][len(remarks) :]
     decisions = [in_command_words(str(decision)) for decision in result.decisions]
     found = result.verification
-    proof = [*check_lines(found), *place_lines(found, failed_only=True), found.standing.told]
+    proof = [*check_lines(found), *place_lines(found, failed_only=True), result.standing.told]
     printed = err.decode().splitlines()
     assert printed[: len(remarks) + len(decisions)] == [*remarks, *(decisions or [""])][: len(remarks) + len(decisions)]
     assert [line for line in printed if line][len(remarks) + len(decisions) :] == [*others, *proof]
