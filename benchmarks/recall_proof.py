@@ -24,7 +24,7 @@ MACHINES = {
     "Sinumerik": "yl569", "Heidenhain": "dmu65", "Fanuc": "matsuura_mx330", "Haas": "haas_umc750",
     "LinuxCNC": "xyzac_trt", "Fidia": "hs664rt",
 }  # fmt: skip
-CL_FILES = sorted((ROOT / "tests" / "data" / "recall").glob("*.cls"))
+CL_FILES = sorted((ROOT / "tests" / "data" / "cases").glob("*.cls"))
 
 
 def programs(folder: Path) -> Iterator[tuple[str, Path, Path]]:

@@ -384,7 +384,7 @@ def test_what_the_path_does_not_show_is_compared(
     part: str, old: str, new: str, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     program, other = tmp_path / "one.nc", tmp_path / "two.nc"
-    cl = TESTS / "data" / "recall" / f"{part}.cls"
+    cl = TESTS / "data" / "cases" / f"{part}.cls"
     assert main(["post", str(cl), "--machine", "matsuura_mx330", "--output", str(program)]) == 0
     text = program.read_text(encoding="utf-8")
     assert old in text

@@ -30,7 +30,7 @@ def changed(folder: Path, name: str, old: str, new: str) -> Path:
 )
 def test_no_cut_goes_on_where_the_way_of_a_slide_is_not_known(left: str, fault: bool, tmp_path: Path) -> None:
     program = changed(tmp_path, "m242_in_cut.nc", "M242\nN950 Y13.", f"{left}\nN950 Y13." if left else "N950 Y13.")
-    for cl in ((), (CASES / "C.cls",)):
+    for cl in ((), (CASES / "tilted.cls",)):
         found = check(verify(program, machine="hs664rt", cl=cl), "modal")
         assert any("cuts from a position of the machine" in place.text for place in found.places) is fault
 
@@ -65,5 +65,5 @@ def test_every_family_states_a_position_again(machine: str, lines: str, fault: b
 @pytest.mark.parametrize(("word", "fault"), [("M0", True), ("M1", True), ("M60", True), ("T4 M6", True), ("", False)])
 def test_nothing_stops_in_a_hole_made_by_motion(word: str, fault: bool, tmp_path: Path) -> None:
     program = changed(tmp_path, "stop_in_hole_made_by_motion.nc", "M0", word)
-    found = check(verify(program, machine="linuxcnc_5axis", cl=CASES / "B.cls"), "stops")
+    found = check(verify(program, machine="linuxcnc_5axis", cl=CASES / "holes.cls"), "stops")
     assert bool(found.places) is fault

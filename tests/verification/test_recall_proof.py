@@ -9,7 +9,7 @@ import trunnion
 from tests.support.locations import TESTS
 from tests.support.recall_proof.edits import Edit, harmful, sound
 
-CL_FILES = TESTS / "data" / "recall"
+CL_FILES = TESTS / "data" / "cases"
 MACHINES = {
     "Sinumerik": "yl569", "Heidenhain": "dmu65", "Fanuc": "matsuura_mx330", "Haas": "haas_umc750",
     "LinuxCNC": "xyzac_trt", "Fidia": "hs664rt",

@@ -47,6 +47,7 @@ class Block:
     spindle: bool = False
     coolant: bool = False
     feed: str = ""
+    cycle: bool = False
     tcp: bool = False
     plane: bool = False
 
@@ -59,10 +60,15 @@ class Block:
 def blocks_of(text: str, language: Language) -> list[Block]:
     """The lines of a program with what is in force before each of them."""
     found, at, moving, feed, spindle, coolant = list[Block](), dict[str, float](), "", "", False, False
-    tcp = plane = False
+    tcp = plane = cycle = False
     for line in text.splitlines():
         code = re.sub(language.comment, lambda match: " " * len(match[0]), line)
         block = Block(line, code, dict(at), spindle=spindle, coolant=coolant, feed=feed, tcp=tcp, plane=plane)
+        if re.search(r"\bG8[1-9]\b|\bG73\b|\bG74\b", code):
+            cycle = True
+        elif re.search(r"\bG80\b", code):
+            cycle = False
+        block.cycle = cycle
         tcp = (tcp or bool(re.search(language.tcp, code))) and not re.search(language.no_tcp, code)
         plane = (plane or bool(re.search(language.plane, code))) and not re.search(language.no_plane, code)
         away = re.search(language.away, code) is not None
@@ -78,7 +84,7 @@ def blocks_of(text: str, language: Language) -> list[Block]:
                 at.pop(word[1], None)
             else:
                 at[word[1]] = float(word[2])
-        if feeds := re.findall(r"\bF(\d+\.?\d*)", code):
+        if (feeds := re.findall(r"\bF(\d+\.?\d*)", code)) and not re.search(r"\bG0?4\b", code):
             feed = feeds[-1]
         for word in re.findall(r"\bM0?([345789])(?!\d)", code):
             spindle = word in "34" if word in "345" else spindle
@@ -145,7 +151,8 @@ def _orders(blocks: list[Block], language: Language) -> Iterator[Edit]:
         if block.cuts and moves:
             yield Edit("a cut left out", k + 1, _with(blocks, k))
             following = blocks[k + 1] if k + 1 < len(blocks) else None
-            if following and following.cuts and _code(following) != _code(block):
+            centre = " CC " in block.code or (following is not None and " CC " in following.code)
+            if following and following.cuts and not centre and _code(following) != _code(block):
                 text = _with(blocks, k, following.line)
                 lines = text.splitlines()
                 lines[k + 1] = block.line
@@ -181,6 +188,8 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 **dict.fromkeys(_SCALING, abs(values.get("X", 0.0)) > 0.01),
                 "incremental from here": stands,
                 "coolant off in the cut": block.coolant,
+                "a lift in the cut": "Z" not in values,
+                "home in the cut": "Z" not in values and not block.cycle,
                 "another feed in the cut": not re.search(r"\bF\d", block.code),
                 "compensation in the cut": not is_arc,
                 "the spindle stops in the cut": block.spindle,

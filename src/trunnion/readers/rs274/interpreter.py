@@ -83,6 +83,8 @@ class Rs274Interpreter(Interpreter[A]):
             if parts.text.startswith("%"):
                 self._percent(active)
             elif parts.text and not (parts.block_skip and self._options.skip):
+                if parts.block_skip:
+                    self.control.add_event("block_skip")
                 self._execute_block(active, line, parts.text)
         except BlockError as error:
             self._report_block(error)

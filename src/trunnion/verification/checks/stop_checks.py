@@ -14,6 +14,7 @@ from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
 from trunnion.verification.checks.restated_modes import RestatedModes
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
+from trunnion.verification.checks.skip_faults import skip_faults
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
@@ -72,7 +73,8 @@ def check_stops(context: ComparedContext) -> Check:
     count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _NAMES}
     good = ", ".join(counted(count[kind], name.removesuffix("s")) for kind, name in _NAMES.items() if count[kind])
     good = (good or "the CL file has none") + _own_stops(context.run, own)
-    title = "stops and dwells as the CL file says"
+    places += skip_faults(context)
+    title = "stops, dwells and block skip as the CL file says"
     return check_from_places("stops", title, places, good)
 
 

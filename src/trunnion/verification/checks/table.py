@@ -111,7 +111,7 @@ _TITLES: Final = {
     "tool": "tools as the CL file says",
     "coolant": "coolant as the CL file says",
     "compensation": "radius compensation as the CL file says",
-    "stops": "stops and dwells as the CL file says",
+    "stops": "stops, dwells and block skip as the CL file says",
     "home": "retracts to the machine's home",
     "holes": "holes as the cycles of the CL file ask",
 }

@@ -71,11 +71,6 @@ class MachinePositions:
             found[:, column] = (last > 0) & (rows < ends[last])
         return found
 
-    @staticmethod
-    def stated_from(run: Run, word: ProgrammedWord, first: int) -> int:
-        """Return the first row from ``first`` on that states a slide in the workpiece; n if there is none."""
-        return _next_in_workpiece(run, word, first)
-
     def crossed(self, rows: Ints) -> Flags:
         """Which rows move a slide between the two kinds of coordinates: nobody knows how far, (k,) bool."""
         return np.asarray((self.at(rows) != self.at(rows - 1)).any(axis=1))

@@ -14,7 +14,7 @@ from trunnion.arrays import Ints
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.kinematics.machine_positions import MachinePositions
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
+from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, names_no_axis
 
 
 def cuts_from_unknown_places(run: Run) -> Ints:
@@ -28,5 +28,12 @@ def cuts_from_unknown_places(run: Run) -> Ints:
         row = event.before_row
         if event.kind != "retract" or (row < len(run) and run.state.machine_frame[row]):
             continue  # a retract whose way is known is a motion in machine coordinates
-        unknown |= (cuts >= row) & (cuts < MachinePositions.stated_from(run, ProgrammedWord.Z, row))
+        unknown |= (cuts >= row) & (cuts < _next_with_z(run, row))
     return np.asarray(cuts[unknown], np.int64)
+
+
+def _next_with_z(run: Run, first: int) -> int:
+    """Return the first row that says Z; n if there is none. In a plane and under TCP another word leaves it there."""
+    programmed = run.programmed[first:]
+    says = ((programmed & int(ProgrammedWord.Z)) != 0) | names_no_axis(programmed)
+    return first + int(np.argmax(says)) if says.any() else len(run)

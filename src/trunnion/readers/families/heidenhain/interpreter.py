@@ -120,6 +120,8 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._note(Wording("NC210", "block_before_goes_new_begins"), Severity.ERROR)
             self._finish_block(active)
             self.control.line = line
+        if parts.block_skip and not self._options.skip:
+            self.control.add_event("block_skip")
         if parts.block_skip and self._options.skip:
             parts = Line(parts.number, True, "", parts.comment, False)
         if not self._block_parts:

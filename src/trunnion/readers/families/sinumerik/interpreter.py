@@ -104,6 +104,8 @@ class SinumerikInterpreter(WordInterpreter):
         if len(words) > MAX_LENGTH:
             self._note(Wording("NC214", "long_block_not_executed", most=MAX_LENGTH), Severity.ERROR)
             return
+        if stripped.startswith("/"):
+            self.control.add_event("block_skip")
         tokens = tokenize(words)
         at = self._read_line_start(tokens)
         try:
