@@ -22,8 +22,9 @@ from trunnion.options.kinds import Choice, Number, Switch
 #: What the command line has of a simulation in the same run, and the library in ``simulation``.
 _OF_SIMULATION: Final = {"simulate", "project", *(each.name for each in (*BODIES, *CUTTING))}
 
-#: Arguments that only the library has, besides those of all: an address of a machine that moves is up to the command.
-_LIBRARY: Final = {"observer", *LIBRARY}
+#: Arguments that only the library has, besides those of all: an address of a machine that moves is up to the command,
+#: and the files that a command writes besides those of its batch.
+_LIBRARY: Final = {"observer", "written", *LIBRARY}
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from tests.support.golden_controls import CASES as CONTROL_CASES
 from tests.support.locations import FIDIA, FIDIA_HEAD, GOLDEN, HEADS, YL569
 from trunnion.cli import main
 from trunnion.cli.wording import in_command_words, problem_line
-from trunnion.verification import place_lines, time_lines
+from trunnion.verification import check_lines, place_lines, time_lines
 
 Capture = pytest.CaptureFixture[bytes]
 
@@ -65,10 +65,12 @@ def test_a_program_is_the_same_and_so_is_its_proof(name: str, tmp_path: Path, ca
     assert (code, result.passed) == (0, True)
     assert stream.getvalue() == out
     assert result.verification is not None
+    assert result.standing is not None
     remarks = [problem_line(remark) for toolpath in result.toolpaths for remark in toolpath.remarks]
     others = [problem_line(problem) for problem in result.problems][len(remarks) :]
     decisions = [in_command_words(str(decision)) for decision in result.decisions]
-    proof = [*map(str, result.checks), *place_lines(result.verification, failed_only=True)]
+    found = result.verification
+    proof = [*check_lines(found), *place_lines(found, failed_only=True), result.standing.told]
     printed = err.decode().splitlines()
     assert printed[: len(remarks) + len(decisions)] == [*remarks, *(decisions or [""])][: len(remarks) + len(decisions)]
     assert [line for line in printed if line][len(remarks) + len(decisions) :] == [*others, *proof]
@@ -93,7 +95,7 @@ def test_a_verification_is_the_same(with_cl: bool, capfdbinary: Capture) -> None
     command = ["verify", str(program), "--machine", "yl569", "--span", "1", *(["--cl", str(cl)] if with_cl else [])]
     code = main(command)
     found = trunnion.verify(program, machine="yl569", cl=[cl] if with_cl else (), span=1.0, columns=False)
-    lines = [*map(str, found.checks), *place_lines(found), *time_lines(found)]
+    lines = [*check_lines(found), *place_lines(found), *time_lines(found), found.standing.told]
     assert capfdbinary.readouterr().out.decode().splitlines() == lines
     assert (code, found.passed) == (1, False)
 

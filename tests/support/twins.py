@@ -28,8 +28,9 @@ class ServedTwin:
 @contextmanager
 def served(program: Path, *options: str, home: Path | None = None, within: Sequence[str] = ()) -> Iterator[ServedTwin]:
     """Serve a program on free ports until the end of the block; ``within``: by the command that runs it elsewhere."""
-    command = [*within, sys.executable, "-m", "trunnion", "twin", str(program), "--machine", "yl569", "--port", "0"]
-    command += ["--adapter-port", "0", *options]
+    command = [*within, sys.executable, "-m", "trunnion", "twin", str(program), "--machine", "yl569", *options]
+    for port in {"--port", "--adapter-port"}.difference(options):
+        command += [port, "0"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
     if home is not None:
         environment |= {"XDG_DATA_HOME": str(home), "LOCALAPPDATA": str(home)}

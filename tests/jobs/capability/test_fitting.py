@@ -157,8 +157,8 @@ def test_machines_that_all_fail_are_told_by_the_exit_code(tmp_path: Path, capfd:
     ("arguments", "what"),
     [
         (["--tool-length", "abc"], "--tool-length: error: is 'abc'; write MM"),
-        (["--turns", "0.001"], "--turns: error: is 0.001; give degrees between them, 0.1 to 360"),
-        (["--turns", "0"], "--turns: error: is 0.0; give degrees between them, 0.1 to 360"),
+        (["--turns", "0.001"], "--turns: error: 0.001 is not a step of turns; write degrees, 0.1 to 360, such as 5"),
+        (["--turns", "0"], "--turns: error: 0.0 is not a step of turns; write degrees, 0.1 to 360, such as 5"),
         (["--machines", ","], "--machines: error: is ','; give all, or names or files of machines"),
         (["--zero", "1,2,3"], "--zero: error: is for an NC program; name its machine with --machine NAME"),
     ],

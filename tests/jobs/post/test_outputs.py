@@ -281,7 +281,7 @@ def test_a_program_that_fails_its_proof_leaves_its_report_alone(folder: Path) ->
     assert (Path("p.mpf").exists(), Path("r.json").exists()) == (False, True)
     trunnion.post("part.cls", machine=machine, output="p.mpf", report="forced.json", force=True)
     refused, forced = (json.loads(Path(name).read_text())["checks"] for name in ("r.json", "forced.json"))
-    assert [(each["key"], each["passed"]) for each in refused] == [(each["key"], each["passed"]) for each in forced]
+    assert [(each["key"], each["state"]) for each in refused] == [(each["key"], each["state"]) for each in forced]
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")

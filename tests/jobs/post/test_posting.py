@@ -255,8 +255,8 @@ def test_a_program_that_planning_refuses_has_its_report(tmp_path: Path, suffix: 
         return
     data = json.loads(text)
     (check,) = data["checks"]
-    assert (data["passed"], data["program"], check["passed"], data["motions"]) == (
-        False, str(tmp_path / "far.mpf"), False, 0
+    assert (data["passed"], data["program"], check["state"], data["motions"]) == (
+        False, str(tmp_path / "far.mpf"), "FAIL", 0
     )  # fmt: skip
     assert check["places"][0]["cl_line"] == line
     assert data["columns"]["nc_line"] == []

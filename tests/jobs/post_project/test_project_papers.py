@@ -107,7 +107,7 @@ def test_papers_appear_with_the_programs_or_not_at_all(tmp_path: Path, monkeypat
     with pytest.raises(trunnion.RefusedError) as refused:
         trunnion.post_project(path)
     assert contents(tmp_path) == before
-    (more,) = (each for each in refused.value.problems if "findings here; the first 1 are told" in each.what)
+    (more,) = (each for each in refused.value.problems if "findings here; the first 1 are reported" in each.what)
     assert more.cure.startswith('mend these first; or post with simulate = "warn"'), "no program is there to simulate"
 
 

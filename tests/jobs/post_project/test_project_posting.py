@@ -1,5 +1,6 @@
 """Projects are posted as a whole: every program proven and judged, all of them there, or none."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -74,9 +75,9 @@ def test_a_project_of_subprograms_and_one_of_a_program_each(tmp_path: Path) -> N
     assert "T=1" in second, "the tool that the operation before has loaded"
     assert "S4000" in second
     assert all(each.passed and each.toolpaths[0].operations for each in found.results)
-    # Posted again they are replaced; a file of that name that no post has written is not.
+    # Posted again they are replaced; one that was edited since is not.
     path.with_name("top_1_FACE.mpf").write_text("EDITED")
-    assert "would be replaced, although no post has written it" in problems(path)[0]
+    assert "was edited since it was written, and would be replaced" in problems(path)[0]
     assert path.with_name("top_1_FACE.mpf").read_text() == "EDITED"
     path.with_name("top_1_FACE.mpf").unlink()
     path.with_name("top.cls").write_text(operation("FACE"))
@@ -116,7 +117,7 @@ def test_programs_of_operations_take_the_settings_of_their_operation(tmp_path: P
     assert "TRAORI" in second
     assert "Z60." in second, "counted from the absolute zero"
     path.write_text(path.read_text().replace("SLOT 2:tcp", "SLOT:tcp"))
-    assert "settings.mode is set for operation SLOT, and there is none" in problems(path)[0]
+    assert "settings.mode is set for operation SLOT, and the program has none of that name" in problems(path)[0]
 
 
 def test_numbered_programs_of_operations_count_on(tmp_path: Path) -> None:
@@ -237,8 +238,15 @@ def test_a_project_replaces_only_what_posts_have_written(tmp_path: Path) -> None
         assert found.startswith(f"{file}: error: would be replaced, although no post has written it as it is")
         assert file.read_text() == "MINE"
         file.write_bytes(before)
-    written[0].write_text("OF A CLONE")  # a program is replaced by a program, wherever it comes from
-    assert "OF A CLONE" not in trunnion.post_project(path).files[0].read_text()
+    written[0].write_text("EDITED")
+    assert "was edited since it was written, and would be replaced" in problems(path)[0]
+    assert written[0].read_text() == "EDITED"
+    clone = tmp_path / "clone"  # a program is replaced by a program that comes from elsewhere
+    clone.mkdir()
+    for file in (path, tmp_path / "top.cls", written[0]):
+        shutil.copy(file, clone)
+    (clone / path.name).write_text(PROJECT)
+    assert "EDITED" not in trunnion.post_project(clone / path.name).files[0].read_text()
     path.write_text((PROJECT + papers).replace("top.mpf", "notes.txt"))
     (tmp_path / "notes.txt").write_text("MINE")
     assert "notes.txt: error: would be replaced" in problems(path)[0]

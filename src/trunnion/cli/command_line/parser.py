@@ -145,7 +145,8 @@ class _Once(argparse.Action):
 
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
         given: dict[str, Any] = vars(namespace).setdefault(_GIVEN, {})
-        if given.setdefault(self.dest, values) != values:
+        # Compared in lists, which take a value for equal to itself: one that is no number is not.
+        if [given.setdefault(self.dest, values)] != [values]:
             raise argparse.ArgumentError(self, f"has two values, {given[self.dest]} and {values}; write one")
         setattr(namespace, self.dest, values)
 

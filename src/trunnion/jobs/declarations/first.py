@@ -65,7 +65,7 @@ _CONTROLS: Final = job(
 
 _BUILD: Final = job(
     "build", "set up the definition of a machine, in a browser",
-    Option("file", "", FileIn("MACHINE.toml"), "definition; none: a new one", many=Many.MAYBE, default=""),
+    Option("file", "", FileIn("MACHINE.toml"), "definition; none: a new one", many=Many.MAYBE),
     SERVING,
     run="build:run",
     examples=[

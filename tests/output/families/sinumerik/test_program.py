@@ -122,8 +122,15 @@ def test_other_planes_are_used_only_where_the_tools_length_stays_in_z(
     assert not any(line.startswith(("G18", "G19")) for line in post(text))
     assert post(text, "--set", "zero=0,0,0", "--set", "tool_length=80"), "proven with a tool"
     own = tmp_path / "own.toml"
-    own.write_text('extends = "yl569"\n[control.arcs]\nabout = "XYZ"\n', encoding="utf-8")
+    planes = 'extends = "yl569"\n[control.arcs]\nabout = "XYZ"\n'
+    own.write_text(planes, encoding="utf-8")
+    code, _, err = post.all(text, machine=str(own))
+    assert code
+    assert "the tip is elsewhere with a longer tool" in err
+    own.write_text(planes + "[control.reading]\nlength_along_z = true\n", encoding="utf-8")
     assert motion(post(text, machine=str(own)))[2] == block
+    with_tool = post(text, "--set", "zero=0,0,0", "--set", "tool_length=80", machine=str(own))
+    assert motion(with_tool)[2] == block
 
 
 def test_a_helix_of_several_turns_says_how_many_more(post: Post) -> None:

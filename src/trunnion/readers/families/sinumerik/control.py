@@ -90,7 +90,9 @@ class SinumerikControl(VirtualControl):
 
     @property
     def _length_axis(self) -> int:
-        return self.plane_axis if self.modal.edge.current > 0 else -1
+        if self.modal.edge.current <= 0:
+            return -1
+        return 2 if self._settings.length_along_z else self.plane_axis
 
     def set_edge(self, edge: int) -> None:
         """Select the edge (D word) whose offsets hold."""
@@ -139,13 +141,14 @@ class SinumerikControl(VirtualControl):
 
     def _machine_move(self, axes: Mapping[str, AxisWord], bits: int, circle: bool) -> None:
         """Move to positions of the machine axes; machine data say whether the length of an edge in force counts."""
-        along, edge = "XYZ"[self.plane_axis], int(self.modal.edge.current)
-        if along in axes and edge > 0:
+        axis, edge = self._length_axis, int(self.modal.edge.current)
+        along = "XYZ"[axis]
+        if axis >= 0 and along in axes:
             value, mode = axes[along]
             if not self._settings.machine_positions:
                 self.note(Wording("NC224", "machine_position_with_length", axis=along, edge=edge), Severity.ERROR)
             elif self._settings.machine_positions == WITH_LENGTH and not self._is_incremental(mode):
-                value += float(self._length_offset[self.plane_axis]) / self.length_unit
+                value += float(self._length_offset[axis]) / self.length_unit
                 axes = {**axes, along: (value, mode)}
         super()._machine_move(axes, bits, circle)
 

@@ -23,11 +23,13 @@ class Settings:
 
     cycles_along_tool  cycles turn the frame along the tool while TCP is on
     machine_positions  ``WITH_LENGTH`` or ``WITHOUT_LENGTH``; empty: the definition does not say
+    length_along_z     the tool length counts along Z in every working plane (SD42940 = 17), not across the plane
     variables          values of variables that the control has when a program starts
     """
 
     cycles_along_tool: bool = False
     machine_positions: str = ""
+    length_along_z: bool = False
     variables: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -37,6 +39,7 @@ def settings_of(machine: Machine) -> Settings:
     settings = Settings(
         cycles_along_tool=table.flag("cycles_along_tool", False),
         machine_positions=table.text("machine_positions", "", one_of=("", WITH_LENGTH, WITHOUT_LENGTH)),
+        length_along_z=table.flag("length_along_z", False),
         variables=read_variables(table, _VARIABLE, "R100"),
     )
     table.report_unread_keys()
