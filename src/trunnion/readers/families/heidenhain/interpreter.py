@@ -125,8 +125,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         if parts.block_skip and self._options.skip:
             parts = Line(parts.number, True, "", parts.comment, False)
         if not self._block_parts:
-            self._block_start = line, parts.number
-            self._block_length = 0
+            self._block_start, self._block_length = (line, parts.number), 0
         if parts.statement:
             self._block_parts.append(parts.statement)
             self._block_length += len(parts.statement)
