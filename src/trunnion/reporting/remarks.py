@@ -29,11 +29,11 @@ class RemarkGroup:
 
 
 def remark_groups(problems: Iterable[Problem]) -> tuple[RemarkGroup, ...]:
-    """Return the groups of problems that say the same of several places."""
-    groups: dict[tuple[str, str, str], list[Problem]] = {}
+    """Return the groups of problems that say the same of several places of a file or tool."""
+    groups: dict[tuple[str, str, str, str], list[Problem]] = {}
     for problem in problems:
         kind = problem.wording.variant or problem.what
-        groups.setdefault((str(problem.severity), problem.code, kind), []).append(problem)
+        groups.setdefault((str(problem.severity), problem.code, kind, problem.file), []).append(problem)
     return tuple(_group(each) for each in groups.values())
 
 
