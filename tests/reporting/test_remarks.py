@@ -8,7 +8,7 @@ import trunnion
 from tests.support.locations import YL569
 from tests.support.reports import blade
 from trunnion.errors import Problem, Severity
-from trunnion.messages import Wording
+from trunnion.messages import Wording, foreign
 from trunnion.reporting import write_report
 from trunnion.reporting.remarks import remark_groups
 
@@ -24,6 +24,16 @@ def test_what_is_said_of_fifteen_places_is_one_line_with_a_count() -> None:
     groups = remark_groups([*problems[:7], other, *problems[7:]])
     assert [(group.count, group.line, group.code) for group in groups] == [(15, 1, "CTL530"), (1, 3, "")]
     assert groups[1].text == "another\ufffd thing"
+
+
+def test_what_differs_in_a_part_that_is_a_text_of_its_own_is_not_the_same() -> None:
+    found = ("gouge: tool 2, part", "collision: part, shank", "gouge: tool 2, part")
+    wordings = [Wording("PRJ210", "simulation_finds", finding=foreign(each)) for each in found]
+    groups = remark_groups(Problem("a.mpf", 1, each, severity=Severity.WARNING) for each in wordings)
+    assert [(each.text, each.count) for each in groups] == [
+        ("the simulation finds: gouge: tool 2, part", 2),
+        ("the simulation finds: collision: part, shank", 1),
+    ]
 
 
 def test_page_and_data_have_every_warning(tmp_path: Path) -> None:

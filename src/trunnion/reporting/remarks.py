@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.reporting.text import clean
 from trunnion.results import OptionalLine, OptionalText
 
@@ -30,11 +31,17 @@ class RemarkGroup:
 
 def remark_groups(problems: Iterable[Problem]) -> tuple[RemarkGroup, ...]:
     """Return the groups of problems that say the same of several places of a file or tool."""
-    groups: dict[tuple[str, str, str, str], list[Problem]] = {}
+    groups: dict[tuple[str, str, str, tuple[str, ...]], list[Problem]] = {}
     for problem in problems:
-        kind = problem.wording.variant or problem.what
-        groups.setdefault((str(problem.severity), problem.code, kind, problem.file), []).append(problem)
+        kind = (str(problem.severity), problem.code, problem.file, _kind(problem.wording))
+        groups.setdefault(kind, []).append(problem)
     return tuple(_group(each) for each in groups.values())
+
+
+def _kind(wording: Wording) -> tuple[str, ...]:
+    """Return what is said, whatever it is said of: which text it is, and which texts stand in it."""
+    inner = (value for _, value in wording.parameters if isinstance(value, Wording))
+    return (wording.variant or wording.what, *(name for each in inner for name in _kind(each)))
 
 
 def _group(problems: list[Problem]) -> RemarkGroup:

@@ -17,7 +17,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Project
 from trunnion.jobs.verify.comparing import diff
-from trunnion.messages import Wording, phrase
+from trunnion.messages import Wording, foreign, phrase
 from trunnion.model.run import Run
 from trunnion.verification import durations
 from trunnion.wording import format_duration
@@ -161,8 +161,9 @@ def _simulate(
 
 def _found(simulated: "SimulationResult", remedy: Wording) -> Iterator[Problem]:
     """Yield what a set-up must not do, each at its program and line; the ``remedy`` says how to see more of it."""
+    # Each finding is a text of its own: papers that join what says the same must not hide a collision behind a gouge.
     for finding in simulated.findings[:_MOST_TOLD]:
-        yield Problem(finding.file, finding.line, Wording("PRJ210", "simulation_finds", finding=finding))
+        yield Problem(finding.file, finding.line, Wording("PRJ210", "simulation_finds", finding=foreign(str(finding))))
     if len(simulated.findings) > _MOST_TOLD:
         yield Problem(
             simulated.programs[0],
