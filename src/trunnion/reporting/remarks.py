@@ -30,10 +30,10 @@ class RemarkGroup:
 
 
 def remark_groups(problems: Iterable[Problem]) -> tuple[RemarkGroup, ...]:
-    """Return the groups of problems that say the same of several places."""
-    groups: dict[tuple[str, str, tuple[str, ...]], list[Problem]] = {}
+    """Return the groups of problems that say the same of several places of a file or tool."""
+    groups: dict[tuple[str, str, str, tuple[str, ...]], list[Problem]] = {}
     for problem in problems:
-        kind = (str(problem.severity), problem.code, _kind(problem.wording))
+        kind = (str(problem.severity), problem.code, problem.file, _kind(problem.wording))
         groups.setdefault(kind, []).append(problem)
     return tuple(_group(each) for each in groups.values())
 

@@ -58,14 +58,15 @@ def beside(program: Path, family: str) -> list[Path]:
 
 
 def judge_program(
-    data: bytes, folder: Path, key: str = "yl569", limit: int = LIMIT, family: str = "sinumerik_840d"
+    data: bytes, folder: Path, key: str | Machine = "yl569", limit: int = LIMIT, family: str = "sinumerik_840d"
 ) -> Run | None:
     """Run bytes as a program in a prepared folder; None if it is refused."""
     path = folder / ("MAIN.MPF" if family == "sinumerik_840d" else "MAIN.H")
     path.write_bytes(data)
     try:
         with no_warnings():
-            run = run_program(path, machine(key), subprograms=beside(path, family), family=family, step_limit=limit)
+            on = machine(key) if isinstance(key, str) else key
+            run = run_program(path, on, subprograms=beside(path, family), family=family, step_limit=limit)
     except InputError as error:
         _check_error(error, folder)
         return None

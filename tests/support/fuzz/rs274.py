@@ -7,6 +7,7 @@ from typing import Final
 
 from tests.support.fuzz import oracle, pieces
 from tests.support.locations import GOLDEN
+from trunnion.machines import Machine
 from trunnion.model.run import Run
 
 _NUMBERS: Final = (
@@ -35,7 +36,7 @@ class Language:
     pieces: Mapping[str, Sequence[str]]
     sound: tuple[bytes, ...]
 
-    def judge(self, data: bytes, folder: Path, key: str = "", limit: int = oracle.LIMIT) -> Run | None:
+    def judge(self, data: bytes, folder: Path, key: str | Machine = "", limit: int = oracle.LIMIT) -> Run | None:
         """Run bytes as a program; None if it is refused."""
         return oracle.judge_program(data, folder, key or self.machines[0], limit, self.family)
 
