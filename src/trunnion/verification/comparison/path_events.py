@@ -16,7 +16,7 @@ from trunnion.model.run import Run, RunEvent
 from trunnion.model.spindle_work import SpindleHole, SpindleTask
 
 #: What every control has, and messages call it.
-_OF_ALL: Final = {"stop": "stop", "optional_stop": "optional stop", "dwell": "dwell", "block_skip": "block skip"}
+_OF_ALL: Final = {"stop": "stop", "optional_stop": "optional stop", "dwell": "dwell"}
 
 _TASKS: Final = {
     SpindleTask.STOP: "a bore that is left with the spindle standing",
