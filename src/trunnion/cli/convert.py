@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from trunnion.cli.cl_files import result_stem
-from trunnion.cli.results import show, tell
+from trunnion.cli.printing import tell
+from trunnion.cli.results import show
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
 from trunnion.cli.terminal_text import warning_line
 from trunnion.controls import load_control

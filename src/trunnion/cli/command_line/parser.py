@@ -8,12 +8,12 @@ from typing import Any, Final, NoReturn
 
 from trunnion.cli.command_line.help_texts import command_help, overview
 from trunnion.cli.command_line.post_mistakes import post_mistake
+from trunnion.cli.printing import print_result
 from trunnion.cli.terminal_text import error_line, warning_line
 from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS
 from trunnion.options.kinds import Setting, Switch, WrongValueError
 from trunnion.options.option import Many, Option
-from trunnion.version import __version__
 from trunnion.wording import nearest_word
 
 #: The code of a command line that cannot be understood, and that of an option with an earlier name.
@@ -33,14 +33,12 @@ _LINE_OF_ALL: Final = "trunnion --help lists them"
 def parse(words: Sequence[str]) -> Given:
     """Return the command and what it was given.
 
-    Ends the process after ``--help`` and ``--version``, and with exit code 2 where it cannot be understood.
+    Ends the process after ``--help``, and with exit code 2 where it cannot be understood.
     """
     if not words:
         _fail("trunnion", f"name a command; {_LINE_OF_ALL}")
     if words[0] in ("-h", "--help"):
         _print(overview())
-    if words[0] == "--version":
-        _print(f"trunnion {__version__}\n")
     if words[0] not in JOBS:
         near = nearest_word(words[0], JOBS)
         _fail("trunnion", f"{words[0]!r} is no command; {f'did you mean {near}? ' if near else ''}{_LINE_OF_ALL}")
@@ -233,7 +231,5 @@ def _fail(where: str, message: str) -> NoReturn:
 
 
 def _print(text: str) -> NoReturn:
-    from trunnion.cli.results import print_result  # no command but help needs it here
-
     print_result(text, end="")
     raise SystemExit(0)
