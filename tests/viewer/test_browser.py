@@ -369,12 +369,15 @@ def test_two_machines_go_along_one_tool_path(tmp_path: Path, browser: Browser) -
         found = np.array(poses)
         np.testing.assert_allclose(found[:, 0], found[:, 1], atol=2e-3)
         assert page.locator("#listing-b .line.current").count() == 1
-        page.locator("#scrub").evaluate("it => { it.value = 0.4; it.dispatchEvent(new Event('input')); }")
+        page.locator("#scrub").evaluate(
+            "it => { it.value = 0.4; for (const kind of ['input', 'change']) it.dispatchEvent(new Event(kind)); }"
+        )
         tips = page.evaluate("[page.space, page.twin.space].map(space => space.shownTool().tip)")
         assert np.linalg.norm(np.subtract(*tips)) < 1.0
         line = page.evaluate("page.twin.program.line[page.twin.twos[40]]")
         page.evaluate("line => page.twin.onLine(line)", line)
         assert page.evaluate("page.row === page.twin.ones[40] && page.twin.row === page.twin.twos[40]")
+        page.wait_for_function("() => !page.space.isMoving && !page.twin.space.isMoving")
         check_picture(browser, page.screenshot(), "viewer-against.png")
         assert errors == []
 
