@@ -149,8 +149,8 @@ def read_machine(table: Table, key: str) -> Machine:
         cl_words=cl_words,
         bodies=bodies,
         spindle_point_is_stated="gauge_point_mm" in spindle,
-        unmeasured=tuple(map(str, marked_in(table.content, MARKS))),
-        assumed=tuple(map(str, marked_in(table.content, ASSUMED))),
+        unmeasured=tuple(marked_in(table.content, MARKS)),
+        assumed=tuple(marked_in(table.content, ASSUMED)),
         demands=demands,
     )
 

@@ -18,11 +18,13 @@ class TwinAddresses:
     opcua        address of the OPC UA server
     mtconnect    host and port of the MTConnect adapter; empty: there is none
     fingerprint  of the server's certificate (SHA-1, as clients show it); empty: there is none
+    not_measured  values of the definition that positions and times stand on, though nobody has measured them
     """
 
     opcua: str
     mtconnect: str
     fingerprint: str
+    not_measured: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +70,8 @@ async def serve_program(
         await server.start()
         if adapter is not None:
             await adapter.begin()
-        ready(TwinAddresses(server.address, adapter.address if adapter else "", server.fingerprint))
+        shdr = adapter.address if adapter else ""
+        ready(TwinAddresses(server.address, shdr, server.fingerprint, program.not_measured))
         await twin.run(started=started)
     finally:
         if adapter is not None:

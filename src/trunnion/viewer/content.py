@@ -20,6 +20,7 @@ from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.simulation.collisions.bodies import Body, BodyKind, machine_bodies, tool_bodies
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
+from trunnion.verification import stand_lines
 from trunnion.verification.comparison import Alignment
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
@@ -134,7 +135,8 @@ def view_content(
 def proof_scene(verification: Verification) -> dict[str, Any]:
     """Return what the page says of the proof."""
     checks = [{"key": one.key, "state": one.state, "summary": one.told} for one in verification.checks]
-    return {"checks": checks, "standing": verification.standing.told}
+    stands = list(stand_lines(verification.checks))
+    return {"checks": checks, "standing": verification.standing.told, "stands": stands}
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
