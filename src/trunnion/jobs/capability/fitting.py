@@ -217,7 +217,7 @@ def _toolpaths(
     if subprograms or zero is not None:
         name = "subprograms" if subprograms else "zero"
         raise InputError(argument_problem(name, Wording("ARG130", "only_for_programs")))
-    toolpaths = as_toolpaths(files, None, False, observer)
+    toolpaths = as_toolpaths(files, observer)
     if not any(len(operation.moves) for path in toolpaths for operation in path.operations):
         raise InputError(argument_problem("files", Wording("ARG130", "no_motion_in_files")))
     for toolpath in toolpaths:
