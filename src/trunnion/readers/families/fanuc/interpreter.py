@@ -23,7 +23,7 @@ from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader
 from trunnion.readers.rs274.expressions import BlockError
-from trunnion.readers.rs274.interpreter import MOTIONS
+from trunnion.readers.rs274.interpreter import LINEAR, MOTIONS
 from trunnion.readers.rs274.word_table import Word
 
 
@@ -40,6 +40,8 @@ class FanucInterpreter(CycleInterpreter):
         self._blocks_ahead = 0
         # G23: the areas that G22 forbids are not watched.
         self._limits_off = False
+        # The row from which radius compensation begins or ends; -1: no motion waits for that.
+        self._compensates_from = -1
         self._needs_number = self.control.settings.needs_program_number
         self._nurbs = NurbsBlocks(self.control)
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
@@ -176,6 +178,9 @@ class FanucInterpreter(CycleInterpreter):
         radius = block.take("D")
         if radius is not None and 0 <= radius < 1e6:
             modal.radius.set(row, int(radius))
+        if self._compensates_from == row and MOTIONS.get(self.motion_code, 0) > LINEAR:
+            self._compensates_from = -1
+            self._note(Wording("NC210", "compensation_switched_on_arc"), Severity.ERROR)
 
     def _close_block(self, block: Block) -> None:
         assign(self._variables, block)
@@ -222,6 +227,12 @@ class FanucInterpreter(CycleInterpreter):
 
     def _end_modal_macro(self, word: Word, block: Block) -> None:
         self._stack[-1].modal = None
+
+    def _compensation(self, word: Word, block: Block) -> None:
+        before = self.control.modal.compensation.current
+        super()._compensation(word, block)
+        if bool(before) != bool(word.sets):
+            self._compensates_from = self.control.row
 
     def _begin_compensation(self, block: Block) -> None:
         self._check_look_ahead()
