@@ -8,7 +8,7 @@ import gc
 import logging
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import NoReturn
 
@@ -46,7 +46,7 @@ def run_and_exit() -> NoReturn:
         sys.stdout.flush()
     except OSError as error:
         if code == 0 and not isinstance(error, BrokenPipeError):
-            print(Problem("stdout", 0, Wording("FIL230", "stdout_broken", reason=error.strerror)), file=sys.stderr)
+            print(Problem("stdout", 0, Wording("FIL230", "stdout_broken", strerror=error.strerror)), file=sys.stderr)
         code = code or 2
     sys.stderr.flush()
     os._exit(code)
@@ -91,10 +91,18 @@ def _carry_out(given: Given) -> int:
         from trunnion.cli.stopped_jobs import settle_stopped_jobs
 
         settle_stopped_jobs(given)
-    if not given.job.guards and any(given.values[each.name] is not None for each in outputs(given.job.options)):
-        from trunnion.jobs.guard import guard
+    if any(given.values[each.name] is not None for each in outputs(given.job.options)):
+        from trunnion.jobs.guard import check_names, guard
 
-        given.read = guard(given)
+        if given.job.guards:
+            check_names(given)
+        else:
+            given.read = guard(given)
     module, _, name = given.job.run.partition(":")
-    code: int = getattr(import_module(module), name)(given)
-    return code
+    run: Callable[[Given], int] = getattr(import_module(module), name)
+    if not given.typed:
+        return run(given)
+    from trunnion.jobs.inputs.settings import reported_as_arguments
+
+    with reported_as_arguments({setting: option.name for setting, option in given.typed.items()}):
+        return run(given)

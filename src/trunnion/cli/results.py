@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
+from trunnion.files.places import of_full_disk
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording
 from trunnion.results import as_json, to_data
@@ -36,9 +37,9 @@ def print_result(*lines: str, end: str = "\n") -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise InputError(
-            Problem("stdout", 0, Wording("FIL230", "stdout_takes_no_more", reason=error.strerror or error))
-        ) from None
+        reason = error.strerror or error
+        wording = of_full_disk(error) or Wording("FIL230", "stdout_takes_no_more", strerror=reason)
+        raise InputError(Problem("stdout", 0, wording)) from None
 
 
 def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:

@@ -15,7 +15,7 @@ from trunnion.hooks.calling import Hooks
 from trunnion.hooks.files import load_hooks
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
-from trunnion.jobs.arguments import PostArguments, taken
+from trunnion.jobs.arguments import PostArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles
 from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
@@ -152,7 +152,8 @@ def post(
     >>> result
     PostResult(passed=True, 30 motions)
     """
-    return post_beside(cl, machine, given, observer=observer)
+    with reported_by_arguments("post", given):
+        return post_beside(cl, machine, given, observer=observer)
 
 
 def post_beside(
