@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.locations import GOLDEN, YL569
+from trunnion.cl.read import AS_IT_SAYS
 from trunnion.cli import main
 from trunnion.cli.cl_files import begin_reading
 from trunnion.errors import InputError
@@ -64,7 +65,7 @@ def test_numba_is_imported_before_what_would_import_it_many_calls_deeper() -> No
 
 def test_toolpaths_come_in_order_and_are_not_kept() -> None:
     with ThreadPoolExecutor(1) as executor:
-        coming = begin_reading(FILES, None, False, executor)
+        coming = begin_reading(FILES, AS_IT_SAYS, executor)
         (first,) = next(coming)
         assert first.file == FILES[0]
         gone = weakref.ref(first.operations[0].moves.tip)
@@ -76,7 +77,7 @@ def test_toolpaths_come_in_order_and_are_not_kept() -> None:
 
 def test_a_file_that_cannot_be_read_is_said_where_its_toolpath_is_wanted(tmp_path: Path) -> None:
     with ThreadPoolExecutor(1) as executor:
-        coming = begin_reading([str(tmp_path / "none.cls"), *FILES], None, False, executor)
+        coming = begin_reading([str(tmp_path / "none.cls"), *FILES], AS_IT_SAYS, executor)
         with pytest.raises(InputError, match="file not found"):
             next(coming)
 

@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Final, Literal, TypedDict, Unpack
 
-from trunnion.batch.cluster import DaskWorkers, Tls
+from trunnion.batch.cluster import DaskWorkers, Scheduler, Tls
 from trunnion.batch.jobs import Batch, folder_batch
 from trunnion.batch.jobs_file import load_batch
 from trunnion.batch.places import units_of
@@ -208,6 +208,5 @@ def _team(
             raise InputError(argument_problem(name, Wording("ARG130", "processes_computer_workers")))
     if wait is not None and not wait > 0.0:
         raise InputError(argument_problem("wait", Wording("ARG140", "is_or_give", wait=wait)))
-    return lambda store: (
-        lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url, wait=wait, observer=observer)
-    )
+    dask = Scheduler(scheduler, tls or Tls(), wait=wait)
+    return lambda store: lambda _: DaskWorkers(dask, work, writing=store.worker_url, observer=observer)

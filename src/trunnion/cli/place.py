@@ -16,7 +16,7 @@ from trunnion.jobs.place.bodies import BodiesInput
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, BodyDistance, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
@@ -165,6 +165,8 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
         if not found.region.is_box:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+    if found.not_measured:
+        yield f"  {phrase('stands_on', values=found.not_measured)}"
 
 
 def _table(found: Placement, best: PartPlace) -> Iterator[str]:

@@ -14,7 +14,7 @@ from trunnion.jobs.post.papers.manifests import verify_manifest
 from trunnion.jobs.verify.reports import add_report, write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.messages import Wording
-from trunnion.verification import Verification, check_lines, place_lines, time_lines
+from trunnion.verification import Verification, check_lines, place_lines, stand_lines, time_lines
 from trunnion.wording import counted, one_line
 
 #: Fewer errors do not suggest that the program is for another control.
@@ -38,7 +38,8 @@ def run(given: Given) -> int:
     if hint := _control_hint(verification):
         tell(hint)
     lines = (
-        *check_lines(verification), *place_lines(verification), *time_lines(verification), verification.standing.told,
+        *check_lines(verification), *place_lines(verification), *time_lines(verification),
+        *stand_lines(verification.checks), verification.standing.told,
     )  # fmt: skip
     show(given, lambda: _report_data(verification), lines)
     if given.report is not None:

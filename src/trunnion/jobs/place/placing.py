@@ -17,6 +17,7 @@ from trunnion.jobs.place.inputs import read_input
 from trunnion.jobs.place.orientations import orientations
 from trunnion.jobs.place.table import standing_on
 from trunnion.machines import Machine
+from trunnion.machines.unmeasured import POSITIONS, ValueKind, corners, unmeasured_values
 from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import clamped_after
 from trunnion.placing.body_distances import touch_warnings
@@ -28,6 +29,12 @@ from trunnion.placing.placement import Placement
 #: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
 _COLLISION_TURNS: Final = 15.0
 
+#: What the place stands on besides, by its goal.
+_OF_GOALS: Final = {
+    Goal.TIME: (ValueKind.RAPID, ValueKind.ACCELERATION),
+    Goal.OVERSPEED: (ValueKind.RAPID,),
+    Goal.COLLISIONS: (ValueKind.BODIES,),
+}
 
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
@@ -137,12 +144,30 @@ def place(
     search = PlaceSearch(loaded, read.rows, Goal(goal), grid, standing, None if bodies is None else bodies.guard)
     with observer.progress("placing", len(grid), "turns") as advance:
         found = search.find(advance)
-    found = replace(found, remarks=tuple(problems), toolpaths=read.toolpaths, clamping=read.clamping)
+    found = replace(
+        found, remarks=tuple(problems), toolpaths=read.toolpaths, clamping=read.clamping,
+        not_measured=_not_measured(loaded, found),
+    )  # fmt: skip
     if bodies is None or goal == Goal.COLLISIONS:
         return found
     touching = touch_warnings(found)
     observer.problems(touching)
     return replace(found, remarks=(*found.remarks, *touching))
+
+
+def _not_measured(machine: Machine, found: Placement) -> tuple[str, ...]:
+    """Return the values that nobody has measured, and that the place stands on."""
+    kinds = {*POSITIONS, ValueKind.TRAVEL, *_OF_GOALS.get(Goal(found.goal), ())}
+    if found.table is not None:
+        kinds.add(ValueKind.TABLE)
+    joints = None
+    if found.best is not None:
+        ranges = {each.axis: (each.least_mm, each.greatest_mm) for each in found.best.axes}
+        ranges |= {each.axis: (each.least_deg, each.greatest_deg) for each in found.best.rotary}
+        joints = corners(machine, ranges)
+    # The zero is what is looked for: it is the place that stands on the geometry, not the position of a tip.
+    placed = replace(machine, workpiece_zero=machine.workpiece_zero or (0.0, 0.0, 0.0))
+    return tuple(map(str, unmeasured_values(placed, kinds, joints)))
 
 
 def unknown_length(machine: Machine) -> list[Problem]:

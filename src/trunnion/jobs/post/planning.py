@@ -13,7 +13,7 @@ from trunnion.errors import InputError, Problem, RefusedError, Severity, argumen
 from trunnion.files.places import file_identity, file_on_disk
 from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
-from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.inserts import insert_problems
@@ -103,14 +103,7 @@ def load_toolpaths(
 
     Raises ``InputError`` if a file cannot be used, or there is none.
     """
-    toolpaths = as_toolpaths(
-        cl,
-        job.settings.get("cl_units"),
-        strict,
-        observer,
-        job.settings.get("dialect"),
-        number_setting(job.settings, "spline_tolerance"),
-    )
+    toolpaths = as_toolpaths(cl, observer, cl_reading(job.settings, strict))
     if job.control.units == INCH:
         _check_units_of(toolpaths)
     if not toolpaths:

@@ -127,13 +127,17 @@ export class Page {
 
   #fillFindings() {
     const list = element("findings");
-    const open = this.scene.checks.filter((check) => check.state !== "ok");
     element("standing").textContent = this.scene.standing;
     element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
-    for (const check of open) {
+    for (const check of this.scene.checks.filter((one) => one.state !== "ok")) {
       const line = document.createElement("li");
       line.textContent = `${check.key}: ${check.state}: ${check.summary}`;
-      list.append(line);
+      (check.state === "FAIL" ? list : element("unchecked")).append(line);
+    }
+    for (const text of this.scene.stands) {
+      const line = document.createElement("li");
+      line.textContent = text;
+      element("unchecked").append(line);
     }
     this.scene.findings.forEach((each) => {
       const line = document.createElement("li"), button = document.createElement("button");

@@ -211,7 +211,8 @@ class FanucInterpreter(CycleInterpreter):
         on = word.sets and self._numbers_length(block)
         control.set_mode("length", word.text, control.length_active, on)
         control.set_length(on)
-        if on and control.plane_axis != 2:  # parameter 5001 says whether G43 counts across the plane or along Z
+        # Parameter 5001 says whether G43 counts across the plane or along Z.
+        if on and control.plane_axis != 2 and not control.settings.length_along_z:
             control.record_length(control.plane_axis)
         if word.text == "G44":
             self._note(Wording("NC220", "g44_tool_length_other_sign"), Severity.ERROR)
