@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from trunnion.cli.cl_files import result_stem
-from trunnion.cli.results import show, tell, tell_problem
+from trunnion.cli.printing import tell, tell_problem
+from trunnion.cli.results import show
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
 from trunnion.cli.wording import problem_line
 from trunnion.controls import load_control

@@ -255,6 +255,10 @@ class FileOut:
         """Its name."""
         return _file_name(text)
 
+    def ends_so(self, name: str) -> bool:
+        """Whether a name has one of the endings, or is that of stdout."""
+        return not self.endings or name == "-" or name.lower().endswith(tuple(self.endings))
+
     def check(self, value: object) -> Any:
         """Return the name itself; ``jobs.guard`` judges whether it can be written."""
         return value

@@ -8,13 +8,13 @@ from typing import Any, Final, NoReturn
 
 from trunnion.cli.command_line.help_texts import command_help, overview, signature
 from trunnion.cli.command_line.post_mistakes import post_mistake
+from trunnion.cli.printing import print_result
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS
 from trunnion.messages import Wording
 from trunnion.options.kinds import Setting, Switch, WrongValueError
 from trunnion.options.option import Many, Option
-from trunnion.version import __version__
 from trunnion.wording import nearest_word
 
 #: An option in a line, and a list of numbers that begins like one.
@@ -31,14 +31,12 @@ _GIVEN: Final = "given once"
 def parse(words: Sequence[str]) -> Given:
     """Return the command and what it was given.
 
-    Ends the process after ``--help`` and ``--version``, and with exit code 2 where it cannot be understood.
+    Ends the process after ``--help``, and with exit code 2 where it cannot be understood.
     """
     if not words:
         _fail("trunnion", Wording("ARG120", "no_command"))
     if words[0] in ("-h", "--help"):
         _print(overview())
-    if words[0] == "--version":
-        _print(f"trunnion {__version__}\n")
     if words[0] not in JOBS:
         _fail("trunnion", _no_command(words[0]))
     job = JOBS[words[0]]
@@ -297,7 +295,5 @@ def _say(where: str, wording: Wording, severity: Severity) -> None:
 
 
 def _print(text: str) -> NoReturn:
-    from trunnion.cli.results import print_result  # no command but help needs it here
-
     print_result(text, end="")
     raise SystemExit(0)
