@@ -9,8 +9,8 @@ from tests.support.locations import YL569
 from tests.support.reports import blade
 from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording, foreign
-from trunnion.reporting import write_report
 from trunnion.reporting.remarks import remark_groups
+from trunnion.reporting.write import write_report
 
 
 def warning(line: int, operation: str) -> Problem:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 from trunnion.arrays import Floats
 from trunnion.cli.cl_reading import as_read
-from trunnion.cli.results import print_result, show, tell
+from trunnion.cli.printing import print_result, tell
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, load_machine
@@ -61,8 +62,8 @@ def run(given: Given) -> int:
         goal=given.goal,
         turns=given.only_turns or given.turns,
         tilts=(_FREE_STEP if given.free else given.tilts) or (),
-        zero=given.zero or settings.get("zero"),
-        tool_length=length,
+        zero=given.zero,
+        tool_length=given.tool_length,
         settings=settings,
         subprograms=given.subprograms,
         hooks=given.hooks,

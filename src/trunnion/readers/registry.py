@@ -65,6 +65,8 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     reader: FamilyReader = load_reader(name)
     if reader.offsets_of is not None:
         reader = replace(reader, work_offsets=reader.offsets_of(machine))
+    if reader.words_of is not None:
+        reader = replace(reader, words_without_path=reader.words_of(machine))
     return reader
 
 
