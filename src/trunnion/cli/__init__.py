@@ -8,7 +8,7 @@ import gc
 import logging
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, NoReturn
 
@@ -51,7 +51,7 @@ def run_and_exit() -> NoReturn:
         sys.stdout.flush()
     except OSError as error:
         if code == 0 and not isinstance(error, BrokenPipeError):
-            print(Problem("stdout", 0, Wording("FIL230", "stdout_broken", reason=error.strerror)), file=sys.stderr)
+            print(Problem("stdout", 0, Wording("FIL230", "stdout_broken", strerror=error.strerror)), file=sys.stderr)
         code = code or 2
     sys.stderr.flush()
     os._exit(code)
@@ -103,10 +103,20 @@ def _carry_out(given: "Given") -> int:
         from trunnion.cli.stopped_jobs import settle_stopped_jobs
 
         settle_stopped_jobs(given)
-    if not given.job.guards and any(given.values[each.name] is not None for each in outputs(given.job.options)):
+    written = [each for each in outputs(given.job.options) if given.values[each.name] is not None]
+    if written and not given.job.guards:
         from trunnion.jobs.guard import guard
 
         given.read = guard(given)
+    elif any(isinstance(each.kind, FileOut) and not each.kind.ends_so(given.values[each.name]) for each in written):
+        from trunnion.jobs.guard import check_names  # imports much that a command may want in another order
+
+        check_names(given)
     module, _, name = given.job.run.partition(":")
-    code: int = getattr(import_module(module), name)(given)
-    return code
+    run: Callable[[Given], int] = getattr(import_module(module), name)
+    if not given.typed:
+        return run(given)
+    from trunnion.jobs.inputs.settings import reported_as_arguments
+
+    with reported_as_arguments({setting: option.name for setting, option in given.typed.items()}):
+        return run(given)

@@ -32,6 +32,8 @@ def print_result(*lines: str, end: str = "\n") -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise InputError(
-            Problem("stdout", 0, Wording("FIL230", "stdout_takes_no_more", reason=error.strerror or error))
-        ) from None
+        from trunnion.files.places import of_full_disk  # most that is printed finds its place
+
+        reason = error.strerror or error
+        wording = of_full_disk(error) or Wording("FIL230", "stdout_takes_no_more", strerror=reason)
+        raise InputError(Problem("stdout", 0, wording)) from None

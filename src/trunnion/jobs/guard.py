@@ -16,7 +16,7 @@ from typing import Any, Final
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls
 from trunnion.errors import InputError, argument_problem
-from trunnion.files import check_outputs
+from trunnion.files import check_outputs, resolve_output
 from trunnion.jobs.inputs.input_files import definition_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, load_machine
 from trunnion.jobs.job import STDIN, Given
@@ -43,11 +43,21 @@ def guard(given: Given) -> list[FilePath]:
     files = [(option, file) for option, file in written if file != _STDOUT]
     if not files:
         return []
-    for option, file in files:
-        _check_name(option, file)
     read = list(files_read(given))
     check_outputs([file for _, file in files], read)
+    check_names(given)
     return read
+
+
+def check_names(given: Given) -> None:
+    """Refuse an output whose name ends as something else does than what is written.
+
+    Raises ``InputError`` for the first one.
+    """
+    for option in outputs(given.job.options):
+        file = given.values[option.name]
+        if file is not None and file != _STDOUT and not _takes_folder(option, file):
+            _check_name(option, file)
 
 
 def files_read(given: Given) -> Iterator[FilePath]:
@@ -80,7 +90,7 @@ def _check_name(option: Option, file: str) -> None:
         from trunnion.simulation.meshes.writing import check_mesh_name
 
         check_mesh_name(file)
-    if kind.endings:
+    if kind.endings and not (len(kind.endings) == 1 and resolve_output(file).is_stream):
         check_output_name(option.name, file, kind.endings, kind.why)
 
 

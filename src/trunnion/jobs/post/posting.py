@@ -13,7 +13,7 @@ from typing import Final, Unpack
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
-from trunnion.jobs.arguments import PostArguments, taken
+from trunnion.jobs.arguments import PostArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles
 from trunnion.jobs.inputs.hooked import loaded_hooks
 from trunnion.jobs.inputs.input_files import cl_files, machine_files
@@ -151,7 +151,8 @@ def post(
     >>> result
     PostResult(passed=True, 30 motions)
     """
-    return post_beside(cl, machine, given, observer=observer)
+    with reported_by_arguments("post", given):
+        return post_beside(cl, machine, given, observer=observer)
 
 
 def post_beside(

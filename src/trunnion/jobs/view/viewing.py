@@ -7,7 +7,7 @@ from typing import Any, Final, Unpack
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import atomic_file
-from trunnion.jobs.arguments import ViewArguments, taken
+from trunnion.jobs.arguments import ViewArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.bodies import KnownTools, known_tools
 from trunnion.jobs.inputs.reading import FilePath, as_machine
@@ -46,7 +46,8 @@ def prepare_view(
         files = check_paths("nc", stated.pop("nc"))
     elif setup is not None:
         raise InputError(argument_problem("setup", Wording("PAG111", "setup_without_project")))
-    content, run = _prepared(files, settings, observer, **stated)
+    with reported_by_arguments("view", given):
+        content, run = _prepared(files, settings, observer, **stated)
     if against is None:
         if against_machine is not None:
             raise InputError(argument_problem("against_machine", Wording("PAG111", "machine_without_program")))
@@ -109,7 +110,7 @@ def write_view(
         it if it is another. What differs is marked, as ``trunnion.diff`` compares programs.
     setup
         Name or number of a project's set-up, if it has several.
-    settings, units, dialect
+    settings, units, dialect, strict
         For CL files, as for ``post``.
     cl
         Its CL files: the page then names the CL line of each block, and what the proof finds.
