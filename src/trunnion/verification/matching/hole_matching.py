@@ -189,9 +189,7 @@ def _find_plunge(run: Run, hole: Hole, at: int, limit: int, skipped: int) -> int
     return None
 
 
-def _motion_hole(
-    run: Run, expected: ExpectedPath, index: int, plunge: int, at: int, leaving: set[int]
-) -> MatchedHole:
+def _motion_hole(run: Run, expected: ExpectedPath, index: int, plunge: int, at: int, leaving: set[int]) -> MatchedHole:
     """Return the hole that row ``plunge`` begins to drill; rows before ``at`` belong to holes before it.
 
     leaving  as ``_leaving_rows`` returns them

@@ -235,7 +235,10 @@ def test_without_tcp_there_is_nothing_but_planes(folder: Path) -> None:
 
 def test_a_cut_past_the_end_of_a_turn_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program = tmp_path / "tilted.nc"
-    assert main(["post", str(TESTS / "data" / "cases" / "tilted.cls"), "--machine", "hs664rt", "--output", str(program)]) == 0
+    assert (
+        main(["post", str(TESTS / "data" / "cases" / "tilted.cls"), "--machine", "hs664rt", "--output", str(program)])
+        == 0
+    )
     text, err = program.read_text(encoding="utf-8"), capsys.readouterr().err
     line = 1 + next(k for k, block in enumerate(text.splitlines()) if block.endswith("A-42.732 C0."))
     assert f":{line}: warning: C passes the end of its turn in the cut" in err

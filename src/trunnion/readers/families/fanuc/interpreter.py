@@ -12,6 +12,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
+from trunnion.readers.control.virtual_control import LINEAR
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
@@ -23,7 +24,7 @@ from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader
 from trunnion.readers.rs274.expressions import BlockError
-from trunnion.readers.rs274.interpreter import LINEAR, MOTIONS
+from trunnion.readers.rs274.interpreter import MOTIONS
 from trunnion.readers.rs274.word_table import Word
 
 

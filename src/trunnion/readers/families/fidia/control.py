@@ -22,7 +22,6 @@ from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
 
-
 #: Words with which a block goes to a place.
 _PLACE: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
 
