@@ -317,9 +317,7 @@ class UrlStore:
             Problem(
                 self.label,
                 0,
-                Wording("BAT130", "does_not_take", error=error)
-                if is_full
-                else Wording("BAT130", "does_not_take_results", error=error),
+                Wording("BAT130", "does_not_take" if is_full else "does_not_take_results", error=error),
             )
         )
 
