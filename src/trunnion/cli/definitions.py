@@ -4,9 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path, PurePath
 from typing import Any, Final
 
+from trunnion.cli.checked_files import checked_data, checked_file
 from trunnion.cli.controls import control_lines
 from trunnion.cli.machine_text import machine_data, machine_lines, machine_list
 from trunnion.cli.results import print_result, show
+from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
@@ -61,10 +63,15 @@ def machines(given: Given) -> int:
 
 
 def check(given: Given) -> int:
-    """Validate the definition of a machine with its control, or of a control, and show what it means.
+    """Validate the definition of a machine with its control, or of a control, and show what it means; or another file.
 
     Every mistake comes at once.
     """
+    other = checked_file(given.file)
+    if other is not None:
+        Terminal().problems(other.remarks)
+        show(given, lambda: checked_data(other), [f"{given.file}: good: {other.text}"])
+        return 0
     if given.file in shipped_controls() or is_control_file(Path(given.file)):
         _check_control_file(given.file)
         control = describe_control(given.file)
@@ -90,7 +97,7 @@ def _check_control_file(file: str) -> None:
     table = load_control_table(file)
     machine = stand_in(file, table)
     checks = (lambda: load_control(table), lambda: check_reading(machine), lambda: check_statements(machine))
-    _raise(all_problems(checks))
+    _raise(all_problems(checks, table.sources))
 
 
 def _check_is_known(name: str) -> None:
