@@ -10,6 +10,7 @@ from tests.support.locations import YL569
 from tests.support.verifying import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
 from trunnion.errors import InputError, Severity
 from trunnion.machines import Machine, load_machine
+from trunnion.messages import foreign
 from trunnion.verification import check_lines
 from trunnion.verification.results import Check, State, Verification
 
@@ -65,7 +66,7 @@ def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured
 
 def test_overruled_errors_do_not_pass(verified: Verifier) -> None:
     found = verified(PROGRAM)
-    problem = trunnion.Problem("a.cls", 1, "axis X would leave its travel", severity=Severity.ERROR)
+    problem = trunnion.Problem("a.cls", 1, foreign("axis X would leave its travel"))
     assert found.standing.passed
     assert not replace(found, remarks=(problem,)).standing.passed
 

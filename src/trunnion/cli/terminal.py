@@ -7,8 +7,8 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
 
+from trunnion.cli.printing import tell, tell_problem
 from trunnion.cli.progress import progress
-from trunnion.cli.results import tell, tell_problem
 from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import InputError, Problem
 from trunnion.files import EarlierJob, resolve_output

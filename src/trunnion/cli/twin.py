@@ -4,7 +4,7 @@ import getpass
 import sys
 from typing import TYPE_CHECKING
 
-from trunnion.cli.results import print_result
+from trunnion.cli.printing import print_result
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 from trunnion.twin.mtconnect.adapter import MTConnectAdapter
 from trunnion.twin.opcua.outlet import OpcUaOutlet
 from trunnion.twin.opcua.server import Security, TwinServer
-from trunnion.twin.playback import Playback
 from trunnion.twin.running import Twin
-from trunnion.twin.snapshots import TwinProgram
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +37,9 @@ class Ports:
 
 
 async def serve_program(
-    program: TwinProgram,
-    playback: Playback,
+    twin: Twin,
     ports: Ports,
     *,
-    period: float,
     security: Security | None,
     started: bool,
     ready: Callable[[TwinAddresses], None],
@@ -52,12 +48,10 @@ async def serve_program(
 
     Parameters
     ----------
-    program, playback
-        What runs, and its clock.
+    twin
+        The program, its clock and its samples.
     ports
         Where it is served.
-    period
-        Seconds between two samples.
     security
         Who may use it; None: anybody on this computer.
     started
@@ -65,9 +59,9 @@ async def serve_program(
     ready
         Is called when clients can connect.
     """
-    twin = Twin(program, playback, period)
+    program = twin.program
     server = TwinServer(program, twin, ports.opcua, ports.host, security)
-    publisher = await server.prepare(playback.speed)
+    publisher = await server.prepare(twin.playback.speed)
     twin.outlets.append(OpcUaOutlet(program, server, publisher, twin.clock()))
     adapter = MTConnectAdapter(program, ports.mtconnect) if ports.mtconnect is not None else None
     if adapter is not None:

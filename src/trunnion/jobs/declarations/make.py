@@ -4,6 +4,7 @@ from typing import Final
 
 from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.jobs.job import Job, job
+from trunnion.messages import phrase
 from trunnion.options.groups import (
     BODIES,
     CLAMPING,
@@ -122,11 +123,11 @@ _PLACE: Final = job(
     Option(
         "goal", "--goal", Choice(GOALS, "GOAL"),
         "what the best place is best for: margin to the limits, travel of rotary axes or slides, time, fewest blocks"
-        " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions); by default margin",
+        " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions)",
         default="margin",
     ),
     Option(
-        "turns", "--turns", angle("a step of turns", 0.1, 360.0, "5"),
+        "turns", "--turns", angle(phrase("kind_step_of_turns"), 0.1, 360.0, "5"),
         "try the part at every so many degrees about Z, counter-clockwise seen from above (from +Z), and more finely"
         " around the best; by default 5, with several tilts or the goal collisions 15", either="turns",
     ),
@@ -148,7 +149,7 @@ _PLACE: Final = job(
     ZERO.but(help="the present workpiece zero on the machine, mm, to compare with"),
     TOOL_LENGTH,
     SETTINGS.but(help="for CL files, as post has it; may be repeated"),
-    READING_AS_SETTINGS.but(strict={"own": True}),
+    READING_AS_SETTINGS,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that the programs call; no others are opened"),
     BODIES.but(

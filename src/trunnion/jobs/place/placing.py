@@ -7,10 +7,10 @@ from typing import Final, Unpack
 import numpy as np
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem
-from trunnion.jobs.arguments import PlaceArguments, taken
+from trunnion.jobs.arguments import PlaceArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine
-from trunnion.jobs.inputs.settings import as_texts, set_up_machine
+from trunnion.jobs.inputs.settings import apply_setup, as_texts, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.bodies import BodiesInput, read_bodies, stated_lengths
 from trunnion.jobs.place.inputs import read_input
@@ -71,7 +71,7 @@ def place(
     tool_length
         Of the tool, gauge point to tip, mm; by default that of the definition, or of each tool its own where the CL
         files state all of them, or 0.
-    settings, units, dialect
+    settings, units, dialect, strict
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
         Files of the subprograms that NC programs call.
@@ -115,9 +115,10 @@ def place(
     goal, turns = check_choice("goal", stated["goal"], GOALS), stated["turns"]
     grid = orientations(_COLLISION_TURNS if turns is None and goal == Goal.COLLISIONS else turns, stated["tilts"])
     texts = as_texts(stated["settings"])
-    zero = texts.pop("zero", None) if stated["zero"] is None else stated["zero"]
-    tool_length = texts.get("tool_length") if stated["tool_length"] is None else stated["tool_length"]
-    loaded = set_up_machine(as_machine(machine), zero, tool_length)
+    given_too = {name for name in ("zero", "tool_length") if given.get(name) is not None}
+    of_setup = {str(name): texts[name] for name in ("zero", "tool_length") if name in texts and name not in given_too}
+    texts.pop("zero", None)
+    loaded = set_up_machine(apply_setup(as_machine(machine), of_setup), stated["zero"], stated["tool_length"])
     if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
         raise InputError(argument_problem("machine", Wording("PLC130", "no_limits", machine=loaded.key)))
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
@@ -126,7 +127,8 @@ def place(
         stated["fixtures"], stated["part"], stated["stock"], stated["tools"], stated["tool_libraries"], stated["unit"]
     )
     standing = standing_on(loaded, among.stock, among.part, remarks)
-    read = read_input(files, loaded, texts, stated, observer, tilts_by_size)
+    with reported_by_arguments("place", given):
+        read = read_input(files, loaded, texts, stated, observer, tilts_by_size)
     for tilt in tilts_by_size:  # what could not be said in the head of a program is told before it is searched
         clamped_after(read.clamping, (0.0, tilt), read.rows.stretches[0].file)
     bodies = None
