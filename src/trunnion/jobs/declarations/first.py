@@ -29,7 +29,6 @@ _CHECK: Final = job(
     run="definitions:check",
     examples=[
         ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
-        ("trunnion check dmu65", "a shipped one"),
         ("trunnion check part.toml", "a project, a tool library, an impeller or a file of jobs"),
     ],
 )  # fmt: skip
