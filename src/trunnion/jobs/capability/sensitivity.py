@@ -138,7 +138,7 @@ def _zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> d
     pose = _stated_pose(machine, zero_at)
     if pose is not None and np.isnan(joints_at_zero(machine, pose)).any():
         text = ",".join(f"{name}={value:g}" for name, value in pose.items())
-        raise wrong_argument("zero_at", text, "give another pose: the slides cannot reach the zero in this one")
+        raise wrong_argument("zero_at", text, "give another pose: the linear axes cannot reach the zero in this one")
     return pose
 
 
