@@ -40,6 +40,7 @@ class FanucInterpreter(CycleInterpreter):
         self._blocks_ahead = 0
         # G23: the areas that G22 forbids are not watched.
         self._limits_off = False
+        self._limits_set_at = 0
         self._needs_number = self.control.settings.needs_program_number
         self._nurbs = NurbsBlocks(self.control)
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
@@ -191,7 +192,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _stroke_limits(self, word: Word, block: Block) -> None:
         self.control.set_mode("limits", word.text, self._limits_off, word.sets)
-        self._limits_off = word.sets
+        self._limits_off, self._limits_set_at = word.sets, self.control.row
         if any(letter in block.words for letter in word.letters):
             self._note(Wording("NC220", "g22_positions_limits_axes_may"), Severity.ERROR)
 
@@ -268,6 +269,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _may_be_left_on(self) -> list[str]:
         left = super()._may_be_left_on()
+        left += ["G23"] if self._limits_off and self.control.cuts_behind(self._limits_set_at) else []
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
         return left
 
