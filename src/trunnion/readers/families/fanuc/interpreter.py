@@ -12,6 +12,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
+from trunnion.readers.control.virtual_control import LINEAR
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
@@ -40,6 +41,8 @@ class FanucInterpreter(CycleInterpreter):
         self._blocks_ahead = 0
         # G23: the areas that G22 forbids are not watched.
         self._limits_off = False
+        # The row from which radius compensation begins or ends; -1: no motion waits for that.
+        self._compensates_from = -1
         self._limits_set_at = 0
         self._needs_number = self.control.settings.needs_program_number
         self._nurbs = NurbsBlocks(self.control)
@@ -177,6 +180,9 @@ class FanucInterpreter(CycleInterpreter):
         radius = block.take("D")
         if radius is not None and 0 <= radius < 1e6:
             modal.radius.set(row, int(radius))
+        if self._compensates_from == row and MOTIONS.get(self.motion_code, 0) > LINEAR:
+            self._compensates_from = -1
+            self._note(Wording("NC210", "compensation_switched_on_arc"), Severity.ERROR)
 
     def _close_block(self, block: Block) -> None:
         assign(self._variables, block)
@@ -223,6 +229,12 @@ class FanucInterpreter(CycleInterpreter):
 
     def _end_modal_macro(self, word: Word, block: Block) -> None:
         self._stack[-1].modal = None
+
+    def _compensation(self, word: Word, block: Block) -> None:
+        before = self.control.modal.compensation.current
+        super()._compensation(word, block)
+        if bool(before) != bool(word.sets):
+            self._compensates_from = self.control.row
 
     def _begin_compensation(self, block: Block) -> None:
         self._check_look_ahead()
