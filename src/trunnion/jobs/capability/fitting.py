@@ -27,7 +27,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine, shipped_machines
 from trunnion.machines.loading import is_example, machine_library
 from trunnion.machines.machine import Vector
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
 from trunnion.results import Figure
@@ -185,9 +185,9 @@ def _asked(machines: str | Iterable[MachineLike]) -> list[MachineLike]:
     elif isinstance(machines, Iterable) and not isinstance(machines, bytes):
         asked = list(machines)
     else:
-        raise wrong_argument("machines", machines, "give all, or names or files of machines")
+        raise wrong_argument("machines", machines, phrase("give_machines"))
     if not asked or not all(isinstance(each, str | os.PathLike | Machine) for each in asked):
-        raise wrong_argument("machines", machines, "give all, or names or files of machines")
+        raise wrong_argument("machines", machines, phrase("give_machines"))
     return asked
 
 
