@@ -23,9 +23,6 @@ from trunnion.machines import Machine
 from trunnion.messages import phrase
 from trunnion.simulation.meshes import load_mesh
 
-#: Degrees between tilts, and between azimuths, unless it is said.
-DEFAULT_STEP: Final = 5.0
-
 _STEPS: Final = (1.0, 45.0)
 
 #: The farthest that a tool may lean from a surface normal, degrees.
