@@ -10,7 +10,8 @@ import pytest
 
 from tests.support.locations import DOCS
 from tests.support.reports import CHECKS, PLACES, blade, waves, with_columns
-from trunnion.reporting import json_report, write_report
+from trunnion.reporting import json_report
+from trunnion.reporting.write import write_report
 from trunnion.verification.results import Check, Verification
 
 

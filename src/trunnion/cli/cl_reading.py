@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import BinaryIO, Final
 
+from trunnion.cl.read import ClReading
 from trunnion.cli.terminal import Terminal
 from trunnion.jobs.inputs.reading import read_toolpaths
 from trunnion.jobs.job import Given, streams
@@ -22,7 +23,7 @@ def as_read(given: Given, files: Iterable[str]) -> list[str | BinaryIO | Toolpat
     if not given.strict and not any(stated.values()):
         return list(inputs)
     units, dialect = (stated.get(name) or dict(given.values.get("settings", ())).get(key) for name, key in _SETTINGS)
-    return list(read_toolpaths(inputs, units, given.strict, Terminal(), dialect))
+    return list(read_toolpaths(inputs, Terminal(), ClReading(units, dialect, given.strict)))
 
 
 def _is_setting(given: Given, name: str) -> bool:

@@ -6,7 +6,8 @@ from typing import Any, Final
 
 from trunnion.cli.controls import control_lines
 from trunnion.cli.machine_text import machine_data, machine_lines, machine_list
-from trunnion.cli.results import print_result, show
+from trunnion.cli.printing import print_result
+from trunnion.cli.results import show
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control

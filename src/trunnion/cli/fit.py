@@ -9,6 +9,7 @@ from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.jobs.capability.fitting import AxisMargin, FitStatus, MachineFit, fit
 from trunnion.jobs.job import Given
+from trunnion.messages import phrase
 from trunnion.wording import format_duration
 
 
@@ -29,6 +30,8 @@ def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
         yield f"{each.key:<{wide}}  {each.status:<12}  {_facts(each)}".rstrip()
         for reason in each.reasons:
             yield f"{'':<{wide}}  {in_command_words(reason)}"
+        if each.not_measured:
+            yield f"{'':<{wide}}  {phrase('stands_on', values=each.not_measured)}"
 
 
 def _facts(each: MachineFit) -> str:

@@ -40,11 +40,11 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
     yield from _pose_lines(jogs)
     yield ""
     yield from _solution_lines(jogs)
-    yield from ("", "What is assumed", *(f"  {in_command_words(each)}" for each in found.assumed))
     yield from ("", f"Texts of {found.control}; {{field}} stands for a value")
     for text in found.texts:
         yield f"  {text.name}"
         yield from (f"    {line}" for line in text.lines)
+    yield from ("", "What is assumed", *(f"  {in_command_words(each)}" for each in found.assumed))
 
 
 def machine_data(found: MachineDescription) -> dict[str, object]:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 from trunnion.arrays import Floats
 from trunnion.cli.cl_reading import as_read
-from trunnion.cli.results import print_result, show, tell
+from trunnion.cli.printing import print_result, tell
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, load_machine
@@ -16,7 +17,7 @@ from trunnion.jobs.place.bodies import BodiesInput
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, BodyDistance, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
@@ -61,8 +62,8 @@ def run(given: Given) -> int:
         goal=given.goal,
         turns=given.only_turns or given.turns,
         tilts=(_FREE_STEP if given.free else given.tilts) or (),
-        zero=given.zero or settings.get("zero"),
-        tool_length=length,
+        zero=given.zero,
+        tool_length=given.tool_length,
         settings=settings,
         subprograms=given.subprograms,
         hooks=given.hooks,
@@ -165,6 +166,8 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
         if not found.region.is_box:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+    if found.not_measured:
+        yield f"  {phrase('stands_on', values=found.not_measured)}"
 
 
 def _table(found: Placement, best: PartPlace) -> Iterator[str]:

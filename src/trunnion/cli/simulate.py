@@ -9,7 +9,7 @@ from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.jobs.job import Given
 from trunnion.jobs.simulate.report import write_simulation_report
-from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number
 from trunnion.simulation.meshes import save_mesh
@@ -63,6 +63,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             yield f"{_of_setup(each.setup)}places are those of the part as it is drawn; it is {how}"
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
+    yield from not_measured_lines(found)
     errors = sum(remark.severity is Severity.ERROR for remark in found.remarks)
     parts = [counted(len(found.findings), "finding"), *([counted(errors, "error")] if errors else [])]
     yield "nothing found" if found.passed else f"{' and '.join(parts)}: the program must not run"

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from trunnion.cl import is_cl_file
 from trunnion.cli.cl_reading import as_read
+from trunnion.cli.printing import print_result
 from trunnion.cli.record import machine_password
-from trunnion.cli.results import print_result
 from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem

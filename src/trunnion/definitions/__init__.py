@@ -18,7 +18,7 @@ from trunnion.definitions.extends import (
     resolve_extends,
 )
 from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, key_lines, layout
-from trunnion.definitions.table import Table
+from trunnion.definitions.table import Table, TextForm
 from trunnion.definitions.units import unit_of
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "Layout",
     "LocatedValue",
     "Table",
+    "TextForm",
     "definition_names",
     "in_order",
     "key_lines",

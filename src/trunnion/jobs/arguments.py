@@ -6,13 +6,14 @@ declaration. Functions say in their docstrings what each means; here it stands u
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, TypeVar, cast
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
-from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.settings import Settings, reported_as_arguments
 from trunnion.jobs.registry import JOBS
 from trunnion.jobs.result_output import OutputLike
 from trunnion.messages import Wording
@@ -264,6 +265,12 @@ def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
     return cast(_Given, found)
 
 
+def reported_by_arguments(command: str, given: Mapping[str, Any]) -> AbstractContextManager[None]:
+    """Have problems with settings that were given as arguments told as problems with these."""
+    stated = [each for each in JOBS[command].options if each.setting and given.get(each.name) is not None]
+    return reported_as_arguments({each.setting: each.name for each in stated})
+
+
 def _check(option: Option, value: Any) -> None:
     """Refuse a value in the words of the command line; texts and lists are up to the function."""
     kind = option.kind
@@ -274,8 +281,7 @@ def _check(option: Option, value: Any) -> None:
     try:
         kind.check(value)
     except WrongValueError as error:
-        what, _, cure = str(error).partition("; ")
-        raise InputError(argument_problem(option.name, Wording("ARG140", "of_kind", what=what, cure=cure))) from None
+        raise InputError(argument_problem(option.name, error.wording)) from None
 
 
 def with_present_names(given: Mapping[str, Any]) -> dict[str, Any]:

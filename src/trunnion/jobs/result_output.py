@@ -13,7 +13,7 @@ from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output,
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.registry import JOBS
-from trunnion.messages import Wording
+from trunnion.messages import Wording, foreign
 from trunnion.options.kinds import FileOut
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
@@ -51,7 +51,7 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
     """
     place = resolve_output(check_path(argument, file))
     if Path(place.name).suffix.lower() not in endings:
-        raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}", code="FIL260"))
+        raise InputError(Problem(place.name, 0, foreign(what, f"let its name end in {' or '.join(endings)}", "FIL260")))
     return place
 
 

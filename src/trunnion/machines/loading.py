@@ -11,7 +11,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
-from trunnion.definitions import Table, definition_names, load_table
+from trunnion.definitions import Table, TextForm, definition_names, load_table
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.messages import meant_word
@@ -149,8 +149,8 @@ def read_machine(table: Table, key: str) -> Machine:
         cl_words=cl_words,
         bodies=bodies,
         spindle_point_is_stated="gauge_point_mm" in spindle,
-        unmeasured=tuple(map(str, marked_in(table.content, MARKS))),
-        assumed=tuple(map(str, marked_in(table.content, ASSUMED))),
+        unmeasured=tuple(marked_in(table.content, MARKS)),
+        assumed=tuple(marked_in(table.content, ASSUMED)),
         demands=demands,
     )
 
@@ -165,7 +165,7 @@ def _demands(proof: Table) -> tuple[str, ...]:
 
 
 def _axis(entry: Table) -> Axis:
-    name = entry.text("name", pattern=_AXIS_NAME, form=phrase("name_of_axis"))
+    name = entry.text("name", written=TextForm(phrase("name_of_axis"), _AXIS_NAME))
     word = entry.text("kind", one_of=tuple(AxisKind))
     mount = Mount(entry.text("carries", one_of=tuple(Mount)) or Mount.PART)
     direction = _direction(entry, "direction", None)

@@ -14,6 +14,9 @@ GOALS: Final = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
 #: Kinds of files that there are schemas of.
 SCHEMAS: Final = ("machine", "control", "project", "tools", "impeller", "nodes", "batch")
 
+#: Shells whose completion can be printed.
+SHELLS: Final = ("bash", "zsh", "fish", "powershell")
+
 #: What a batch does with each file.
 ACTIONS: Final = ("post", "convert", "verify", "simulate")
 

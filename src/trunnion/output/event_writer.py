@@ -35,6 +35,7 @@ from trunnion.model.toolpath import (
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.blocks.spline_blocks import write_rows_and_splines
 from trunnion.output.holes.hole_blocks import write_holes
+from trunnion.output.holes.hole_groups import HoleRows
 from trunnion.output.program import Program
 from trunnion.output.template_values import plain_text, spindle_values
 from trunnion.output.template_writer import TemplateWriter
@@ -304,9 +305,8 @@ class EventWriter:
             joining = self._joining_events
             self._phase = write_rows_and_splines(self._blocks, self._motion, first, last, joining, self._phase)
         else:
-            self._phase = write_holes(
-                self._blocks, self._motion, first, last, self._joining_events, self._phase, self._cycle
-            )
+            rows = HoleRows(self._motion, first, last, self._joining_events)
+            self._phase = write_holes(self._blocks, rows, self._phase, self._cycle)
         self._next_row = max(first, last)
 
 

@@ -4,11 +4,17 @@ import base64
 import hashlib
 import html
 import math
+from collections.abc import Iterable
 
 
 def escape(value: object) -> str:
     """Return text escaped for HTML and for attributes in double quotes."""
     return html.escape(str(value), quote=True)
+
+
+def note_lines(lines: Iterable[str]) -> str:
+    """Return lines as notes."""
+    return "".join(f'<p class="note">{escape(line)}</p>\n' for line in lines)
 
 
 def format_number(value: float | None) -> str:

@@ -179,11 +179,10 @@ def setup_findings(cut: CutSetup) -> CutFindings:
         idle = list(_air(run, one, lengths[one.program]))
         air += idle
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
-        lines = int(run.line[one.first]), int(run.line[one.end - 1])
         air_length = sum(each.length for each in idle)
         own = [each for each in touched[one.program] if not each.is_near and one.first <= each.worst_row < one.end]
         count, blocks = len(one.findings) + len(own), _blocks(run, one, at)
-        operations.append(_operation(run, one, seconds_taken, lines, air_length, count, blocks))
+        operations.append(_operation(run, one, seconds_taken, air_length, count, blocks))
     for number, collisions in enumerate(touched):
         run, at = programs[number].run, seconds[number]
         for finding in map(_of_collision, collisions):
@@ -201,14 +200,9 @@ def _named(found: Iterable[_Named], setup: str) -> tuple[_Named, ...]:
 
 
 def _operation(
-    run: Run,
-    one: OperationCut,
-    seconds: float,
-    lines: tuple[int, int],
-    air: float,
-    count: int,
-    blocks: BlockRemoval,
+    run: Run, one: OperationCut, seconds: float, air: float, count: int, blocks: BlockRemoval
 ) -> SimulatedOperation:
+    lines = int(run.line[one.first]), int(run.line[one.end - 1])
     tool, removed = one.tool or NO_CALL, float(one.removed.sum())
     file = run.files[int(run.file[one.first])]  # line 21 may be that of a subprogram
     return SimulatedOperation(file, tool, *lines, removed, one.gouged, seconds, air, count, blocks)

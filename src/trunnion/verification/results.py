@@ -105,6 +105,7 @@ class Check:
     places    the worst places, worst first
     missing   what nobody has stated, so that the question was not answered, or only in part
     coverage  which motions it has looked at; None: it is no question of single motions
+    stands_on values of the definition that the answer stands on, though nobody has measured them
     """
 
     key: str
@@ -117,6 +118,7 @@ class Check:
     places: tuple[Place, ...] = ()
     missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
     coverage: Coverage | None = None
+    stands_on: Annotated[tuple[str, ...], Figure(after="missing")] = ()
 
     @property
     @Figure(after="title")
@@ -199,7 +201,7 @@ class Verification:
             failed=states.count(State.FAIL),
             not_checked=states.count(State.NOT_CHECKED),
             warnings=severities.count(Severity.WARNING),
-            not_measured=self.machine.nobody_measured,
+            not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
         )
 
     def __repr__(self) -> str:

@@ -1,9 +1,10 @@
 """A verification as lines of text for a terminal."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from trunnion.messages import phrase
 from trunnion.model.toolpath import Kind
 from trunnion.verification.results import Check, Place, State, Verification, moving_seconds
 from trunnion.wording import format_duration
@@ -21,6 +22,19 @@ def check_lines(verification: Verification) -> Iterator[str]:
             yield str(check)
         elif check.key == keys[0]:
             yield f"{', '.join(keys)}: {check.state}, {check.told}"
+
+
+def stand_lines(asked: Sequence[Check]) -> Iterator[str]:
+    """One line for values that nobody has measured, and the checks that stand on them."""
+    checks: dict[str, list[str]] = {}
+    for check in asked:
+        for value in check.stands_on:
+            checks.setdefault(value, []).append(check.key)
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for value, keys in checks.items():
+        alike.setdefault(tuple(keys), []).append(value)
+    for on_them, values in alike.items():
+        yield f"{', '.join(on_them)}: {phrase('stands_on', values=tuple(values))}"
 
 
 def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:

@@ -17,10 +17,10 @@ from trunnion.machines import Machine
 from trunnion.machines.links import link_chain
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.simulation.collisions.bodies import Body, BodyKind, fixture_body, machine_bodies, part_body, tool_bodies
-from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.collisions.bodies import Body, BodyKind, machine_bodies, tool_bodies
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
+from trunnion.verification import stand_lines
 from trunnion.verification.comparison import Alignment
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
@@ -68,8 +68,7 @@ def view_content(
     texts: Sequence[str],
     cl_texts: Mapping[str, str],
     tools: Mapping[str, ToolShape],
-    part: TriangleMesh | None = None,
-    fixtures: Iterable[TriangleMesh] = (),
+    clamped: Sequence[Body] = (),
     toolpaths: Sequence[Toolpath] = (),
 ) -> ViewContent:
     """Put together what a page shows.
@@ -78,7 +77,7 @@ def view_content(
     texts           of the files of its run, in their order
     cl_texts        of its CL files, by the names that its operations have for them
     tools           bodies of tools by their names in the program; others are drawn as needles
-    part, fixtures  meshes in the workpiece frame
+    clamped         part and fixtures
     toolpaths       that the program was made from: they know the phases of its motions
 
     Raises ``InputError`` if a mesh of the machine cannot be used.
@@ -88,9 +87,7 @@ def view_content(
     seconds = durations(verification)[0] if len(verification.seconds) else np.zeros(0)
     lengths = {k: _length(tools.get(name), machine) for k, name in enumerate(run.tools)}
     motion = motion_columns(run, seconds, lengths)
-    bodies = list(machine_bodies(machine))
-    bodies += [] if part is None else [part_body(part, machine)]
-    bodies += [fixture_body(mesh, machine) for mesh in fixtures]
+    bodies = [*machine_bodies(machine), *clamped]
     for k, name in enumerate(run.tools):
         shape = tools.get(name)
         bodies += _needle(machine, name) if shape is None else tool_bodies(shape, machine, name, lengths[k])
@@ -138,7 +135,8 @@ def view_content(
 def proof_scene(verification: Verification) -> dict[str, Any]:
     """Return what the page says of the proof."""
     checks = [{"key": one.key, "state": one.state, "summary": one.told} for one in verification.checks]
-    return {"checks": checks, "standing": verification.standing.told}
+    stands = list(stand_lines(verification.checks))
+    return {"checks": checks, "standing": verification.standing.told, "stands": stands}
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:

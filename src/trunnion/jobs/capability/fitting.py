@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Final, Unpack
@@ -74,6 +74,7 @@ class MachineFit:
     missing    how far the linear axes are from reaching it at the best place, mm; None where that is not the reason
     zero_mm    workpiece zero of the best place, machine frame; None: there is no place, or it was not looked for
     turn_deg   turn of the part there, about Z
+    not_measured  values of the definition that this stands on, though nobody has measured them
     """
 
     key: Annotated[str, Figure("machine", take=lambda key: Path(key).as_posix() if key.endswith(".toml") else key)]
@@ -84,6 +85,7 @@ class MachineFit:
     missing: Annotated[float | None, Figure(unit="mm", decimals=6, after="turn_deg")] = None
     zero_mm: Vector | None = None
     turn_deg: float | None = None
+    not_measured: tuple[str, ...] = ()
 
     @property
     @Figure(after="status")
@@ -215,7 +217,7 @@ def _toolpaths(
     if subprograms or zero is not None:
         name = "subprograms" if subprograms else "zero"
         raise InputError(argument_problem(name, Wording("ARG130", "only_for_programs")))
-    toolpaths = as_toolpaths(files, None, False, observer)
+    toolpaths = as_toolpaths(files, observer)
     if not any(len(operation.moves) for path in toolpaths for operation in path.operations):
         raise InputError(argument_problem("files", Wording("ARG130", "no_motion_in_files")))
     for toolpath in toolpaths:
@@ -247,7 +249,7 @@ def _fit(
             raise
         return MachineFit(key, FitStatus.NOT, _reasons(error))
     if not found.fits:
-        return _beyond(asked, machine, found)
+        return replace(_beyond(asked, machine, found), not_measured=found.not_measured)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes) if found.best else ()
     # The placement and the program are let go: of a long path they are large, and there are many machines.
     place_of = found.zero_mm, found.turn_deg
@@ -258,7 +260,8 @@ def _fit(
     reasons = _open_reasons(machine)
     status = FitStatus.OPEN if reasons else FitStatus.FITS
     margins += _rotary_margins(machine, posted)
-    return MachineFit(machine.key, status, reasons, _seconds(posted), margins, None, *place_of)
+    values = tuple(dict.fromkeys((*found.not_measured, *_not_measured(posted))))
+    return MachineFit(machine.key, status, reasons, _seconds(posted), margins, None, *place_of, values)
 
 
 def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath], hooks: Sequence[FilePath]) -> MachineFit:
@@ -268,7 +271,12 @@ def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath], hooks: Sequ
     except TrunnionError as error:
         return MachineFit(machine.key, FitStatus.NOT, _reasons(error))
     margins = _rotary_margins(machine, posted)
-    return MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins)
+    fits = MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins)
+    return replace(fits, not_measured=_not_measured(posted))
+
+
+def _not_measured(posted: PostResult) -> tuple[str, ...]:
+    return () if posted.standing is None else posted.standing.not_measured
 
 
 def _open_reasons(machine: Machine) -> tuple[str, ...]:

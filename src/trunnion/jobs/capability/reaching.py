@@ -81,7 +81,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     degrees, part = _number("step", found["step"], *_STEPS), found["part"]
     leaning = _number("lean", found["lean"], 0.0, _MOST_LEAN)
     loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
-    toolpaths = hooked_toolpaths(as_toolpaths(found["cl"], None, False, observer), loaded, found["hooks"])
+    toolpaths = hooked_toolpaths(as_toolpaths(found["cl"], observer), loaded, found["hooks"])
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     surface = None

@@ -101,7 +101,7 @@ def _without_cuts(run: Run) -> Problem:
 
 def _is_cl_file(name: str) -> bool:
     try:
-        found = read_toolpaths(name, None, False, SILENT)
+        found = read_toolpaths(name, SILENT)
     except InputError:
         return False
     return any(len(operation.moves) for toolpath in found for operation in toolpath.operations)

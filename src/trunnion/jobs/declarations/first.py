@@ -3,7 +3,7 @@
 from typing import Final
 
 from trunnion.jobs.job import Job, job
-from trunnion.options.groups import BARE_JSON, JSON, SERVING
+from trunnion.options.groups import JSON, SERVING
 from trunnion.options.kinds import FileIn, Switch, Text
 from trunnion.options.option import Many, Option
 
@@ -25,7 +25,7 @@ _CHECK: Final = job(
         "file", "", FileIn("NAME_OR_FILE", leads="definition"),
         "definition to validate: a TOML file, or a shipped one",
     ),
-    BARE_JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
+    JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
     run="definitions:check",
     examples=[
         ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
@@ -55,7 +55,7 @@ _CONTROLS: Final = job(
         "name", "", FileIn("NAME_OR_FILE", leads="definition"), "control to explain, or a machine's",
         many=Many.MAYBE,
     ),
-    BARE_JSON,
+    JSON,
     run="controls:controls",
     examples=[
         ("trunnion controls", "a line each"),

@@ -4,6 +4,7 @@ from typing import Final
 
 from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.jobs.job import Job, job
+from trunnion.messages import phrase
 from trunnion.options.groups import (
     BODIES,
     CLAMPING,
@@ -122,11 +123,11 @@ _PLACE: Final = job(
     Option(
         "goal", "--goal", Choice(GOALS, "GOAL"),
         "what the best place is best for: margin to the limits, travel of rotary axes or slides, time, fewest blocks"
-        " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions); by default margin",
+        " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions)",
         default="margin",
     ),
     Option(
-        "turns", "--turns", angle("a step of turns", 0.1, 360.0, "5"),
+        "turns", "--turns", angle(phrase("kind_step_of_turns"), 0.1, 360.0, "5"),
         "try the part at every so many degrees about Z, counter-clockwise seen from above (from +Z), and more finely"
         " around the best; by default 5, with several tilts or the goal collisions 15", either="turns",
     ),

@@ -4,6 +4,7 @@ In:     a machine, and the table of its definition if that is known.
 Out:    sentences for a person beside the machine.
 """
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Final
@@ -35,8 +36,11 @@ def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
     table    its definition, merged with what it extends; None: the machine comes from no file
     """
     own = None if table is None else table.unread_copy()
-    of_files = () if own is None else (*_marked(own), *_inherited(own))
-    return (*of_files, *_left_open(machine))
+    if own is None:
+        return tuple(_left_open(machine))
+    assumed = _marked(own, ASSUMED, "Assumed by the shipped definition")
+    # What is still to be done comes last, where it is seen.
+    return (*assumed, *_inherited(own), *_left_open(machine), *_marked(own, MARKS, "Still to enter"))
 
 
 def assumed_places(machine: Machine, table: Table | None) -> str:
@@ -46,20 +50,19 @@ def assumed_places(machine: Machine, table: Table | None) -> str:
     """
     if not machine.spindle_point_is_stated:
         return "the definition does not state the gauge point, and with it where the rotary axes lie in the travel"
-    marked = [] if table is None else marked_in(table.content, ("#",))
-    names = [each.name for each in marked if each.name.endswith(_PLACES) and "assum" in each.mark]
+    marked = [] if table is None else marked_in(table.content, ASSUMED)
+    names = [each.name for each in marked if each.name.endswith(_PLACES)]
     return f"the definition assumes {', '.join(names)}" if names else ""
 
 
-def _marked(table: Table) -> Iterator[str]:
+def _marked(table: Table, mark: re.Pattern[str], what: str) -> Iterator[str]:
     """Values whose comments say that they are none of the machine's."""
     library = str(machine_library())
-    for begins, what in ((MARKS, "Still to enter"), (ASSUMED, "Assumed by the shipped definition")):
-        found: dict[str, list[str]] = {}
-        for value in marked_in(table.content, begins):
-            found.setdefault(value.file, []).append(str(value))
-        for file in sorted(found, key=lambda each: each.startswith(library)):
-            yield f"{what}: {', '.join(found[file])}."
+    found: dict[str, list[str]] = {}
+    for value in marked_in(table.content, mark):
+        found.setdefault(value.file, []).append(str(value))
+    for file in sorted(found, key=lambda each: not each.startswith(library)):
+        yield f"{what}: {', '.join(found[file])}."
 
 
 def _inherited(table: Table) -> Iterator[str]:

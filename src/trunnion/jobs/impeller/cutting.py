@@ -244,10 +244,10 @@ def reachable_axes(machine: Machine) -> Callable[[Floats], Flags]:
 def step_toolpath(paths: StepPaths, part: str, file: str) -> Toolpath:
     """Return the operations of a step as the content of a CL file."""
     step = paths.step
-    data = CuttingData(step.rpm, step.feed, step.lead_feed, step.coolant)
+    data = CuttingData(step.rpm, step.feed, step.lead_feed, step.coolant, step.tolerance)
     tool = cl_tool(paths.tool)
     operations: list[Operation] = [
-        operation_of(name, path, tool, step.tool, paths.radius, data, step.tolerance)
+        operation_of(name, path, tool, step.tool, paths.radius, data)
         for name, path in zip(paths.names, paths.paths, strict=True)
     ]
     return Toolpath(file, tuple(operations), part)

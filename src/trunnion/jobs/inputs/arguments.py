@@ -7,6 +7,7 @@ from typing import BinaryIO, TypeGuard, TypeVar
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.observer import Observer
+from trunnion.messages import foreign
 
 _Choice = TypeVar("_Choice", bound=str)
 
@@ -14,7 +15,7 @@ _Choice = TypeVar("_Choice", bound=str)
 def wrong_argument(name: str, value: object, cure: str) -> InputError:
     """Return the error for an argument of a type or value that cannot be used."""
     shown = repr(value) if isinstance(value, str | int | float | bytes | tuple | None) else f"a {type(value).__name__}"
-    return InputError(argument_problem(name, f"is {shown}", cure, code="ARG140"))
+    return InputError(argument_problem(name, foreign(f"is {shown}", cure, "ARG140")))
 
 
 def check_path(name: str, value: object) -> Path:

@@ -90,7 +90,9 @@ def _declared(option: Option) -> RunSetting:
         return _choice(meaning, *option.kind.words)
     assert isinstance(option.kind, Number)
     bounds = option.kind.least, option.kind.most
-    return RunSetting(meaning, bounds=bounds, form=option.kind.metavar, example=option.kind.how.rpartition(" ")[2])
+    return RunSetting(
+        meaning, bounds=bounds, form=option.kind.metavar, example=str(option.kind.how.parameter("example"))
+    )
 
 
 #: Settings of the post by their names; all others belong to the control, whose templates print them.

@@ -15,8 +15,8 @@ from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.arguments import PlaceArguments
 from trunnion.jobs.inputs.arguments import check_paths, is_stream, wrong_argument
 from trunnion.jobs.inputs.hooked import hooked_toolpaths, no_cl_files
-from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
-from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
+from trunnion.jobs.inputs.reading import ToolpathLike, cl_reading, read_toolpaths
+from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.planning import plan
 from trunnion.machines import Machine
@@ -151,9 +151,9 @@ def _toolpaths_of(
     file: ToolpathLike, settings: Mapping[str, str], machine: Machine, observer: Observer
 ) -> list[Toolpath] | None:
     """Return the toolpaths of a CL file; None if it is a program that the machine's control understands."""
-    tolerance = number_setting(settings, "spline_tolerance")
+    how = cl_reading(settings)
     try:
-        return read_toolpaths(file, settings.get("cl_units"), False, observer, settings.get("dialect"), tolerance)
+        return read_toolpaths(file, observer, how)
     except InputError as error:
         if not isinstance(file, str | os.PathLike) or not readers.can_read(machine):
             raise
@@ -166,7 +166,7 @@ def _toolpaths_of(
 
 
 def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run:
-    run = readers.run_program(program, machine, subprograms=subprograms)
+    run = readers.run_program(program, machine, readers.RunOptions(subprograms=subprograms))
     if run.errors:
         found = [Problem(each.file, each.line, each.wording) for each in run.errors[:_MOST_NAMED]]
         raise RefusedError(

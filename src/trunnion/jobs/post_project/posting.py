@@ -24,6 +24,7 @@ from trunnion.jobs.post_project.replaced_files import check_replaced
 from trunnion.jobs.post_project.setups import NO_OPTIONS, PostedPrograms, ProjectOptions, ProjectPosting, post_setups
 from trunnion.jobs.project.file import load_project, told_by_keys
 from trunnion.jobs.project.named_files import project_inputs
+from trunnion.jobs.project.outputs import reported_at_outputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.messages import Wording
 
@@ -123,9 +124,10 @@ def post_into(
 def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, observer: Observer) -> ProjectPosting:
     """Return what is posted, once it is known that nothing is written over that must stay."""
     posting = ProjectPosting(group, project, options, observer, project_inputs(project))
-    check_outputs([*(each.output for each in project.setups), *posting.papers], posting.inputs)
-    if not options.replaces:
-        check_replaced(project)
+    with reported_at_outputs(project.setups):
+        check_outputs([*(each.output for each in project.setups), *posting.papers], posting.inputs)
+        if not options.replaces:
+            check_replaced(project)
     observer.problems(_running_hooks(project))
     return posting
 

@@ -5,7 +5,7 @@ Out:    ``ReadSetup``: the set-up as it is simulated, and as it is posted, if it
 """
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -142,7 +142,10 @@ class SetupReader:
             programs = self._existing_programs(table, stated)
         else:
             self._check_post(table, stated, output, papers)
-            programs, posted = (str(output),), _posted(stated, name, output, released, papers)
+            programs = (str(output),)
+            posted = replace(
+                _posted(stated, name, output, released, papers), files=_places_of_files(table, output, papers)
+            )
         values = {each.name: stated.values[each.name] for each in OF_SETUP}
         return ReadSetup(SetupInput(programs, name=name, pose=pose, places=stated.places, **values), posted)
 
@@ -212,6 +215,12 @@ def _posted(stated: StatedSetup, name: str, output: Path, released: tuple[str, .
         name, values["cl"], values["machine"], output, stated.division, stated.settings, released, arguments, papers,
         stated.setting_places,
     )  # fmt: skip
+
+
+def _places_of_files(table: Table, output: Path, papers: PaperFiles) -> Places:
+    """Where a table names the files that are written."""
+    keys = {"output": output, **papers.by_name()}
+    return {str(file): (*table.location(key), table.key_path(key)) for key, file in keys.items()}
 
 
 def _division(table: Table) -> Division:

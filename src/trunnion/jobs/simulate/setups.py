@@ -62,7 +62,7 @@ def prepare_setup(
     for program in programs:
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
-    toolpaths = hooked_toolpaths(as_toolpaths(given.cl, None, False, observer), machine, given.hooks)
+    toolpaths = hooked_toolpaths(as_toolpaths(given.cl, observer), machine, given.hooks)
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)
     tools = _tools(runs, known_tools(given.tools, given.tool_libraries, given.unit, toolpaths))

@@ -82,6 +82,7 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
     Raises ``RefusedError`` when the program has errors: a machine would not run it.
     """
     import_extra("asyncua", "twin")
+    from trunnion.twin.running import Twin
     from trunnion.twin.serving import Ports, run_until_ended, serve_program
 
     found = taken(TwinArguments, "twin", given)
@@ -104,10 +105,9 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
         ready = found["ready"] or _ignore
         run_until_ended(
             lambda: serve_program(
-                program, playback, ports, period=rate / 1000.0, security=security, started=not found["hold"],
-                ready=ready,
+                Twin(program, playback, rate / 1000.0), ports, security=security, started=not found["hold"], ready=ready
             )
-        )  # fmt: skip
+        )
 
 
 def write_device_xml(

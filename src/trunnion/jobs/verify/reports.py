@@ -73,7 +73,7 @@ def add_report(
     """
     if len(verification.seconds) != len(verification.run):
         raise InputError(Problem(name, 0, Wording("ARG130", "verified_without_columns")))
-    from trunnion.reporting import render_report  # most runs write no report
+    from trunnion.reporting.write import render_report  # most runs write no report
 
     content = None
     if simulation is not None:
@@ -86,7 +86,7 @@ def add_report(
 
 
 def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, place: Path) -> None:
-    """Write the report of a program that was refused before it was run; arguments as ``reporting.write_refusal``."""
-    from trunnion import reporting
+    """Write the report of a program that was refused before it was run; arguments as ``reporting`` has them."""
+    from trunnion.reporting import write  # most runs are not refused
 
-    reporting.write_refusal(problems, machine, program, place)
+    write.write_refusal(problems, machine, program, place)

@@ -87,7 +87,7 @@ def view_program(
     if unused:
         raise InputError(Problem(str(unused[0]), 0, Wording("PAG113", "never_called", program=files[0].name)))
     cl = given["cl"]
-    toolpaths = hooked_toolpaths(as_toolpaths(cl, None, False, observer), machine, hooks)
+    toolpaths = hooked_toolpaths(as_toolpaths(cl, observer), machine, hooks)
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))

@@ -18,7 +18,7 @@ def machine_problems(program: Program) -> list[Problem]:
     unlimited = [axis.name for axis in slides if not axis.has_limits]
     problems = []
     if machine.unmeasured:
-        shown, more = machine.unmeasured[:_MOST_SHOWN], len(machine.unmeasured) - _MOST_SHOWN
+        shown, more = map(str, machine.unmeasured[:_MOST_SHOWN]), len(machine.unmeasured) - _MOST_SHOWN
         problems.append(
             _warning(
                 program,

@@ -7,7 +7,7 @@ from typing import Final
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording
-from trunnion.model.toolpath import Operation, Tool
+from trunnion.model.toolpath import LoadTool, Operation, Tool
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
 
@@ -56,12 +56,27 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
                     ),
                 )
             )
+        loads = [event for event in operation.events if isinstance(event, LoadTool)]
+        if not uses_length_numbers and loads and register not in (0, loads[-1].number):
+            problems.append(_lost_register(program, operation, loads[-1]))
         before = known.setdefault(call, [])
         if operation.tool in (other.tool for other in before):
             continue
         problems += _conflict(call, before, operation, file)
         before.append(operation)
     return problems
+
+
+def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Problem:
+    """Return a warning of a register for the length, which the control does not take."""
+    return Problem(
+        program.file_of(operation),
+        load.line,
+        Wording(
+            "CTL715", "length_is_that_of_tool", tool=load.number, register=load.adjust, control=program.control.name
+        ),
+        severity=Severity.WARNING,
+    )
 
 
 def _conflict(call: str, before: Sequence[Operation], operation: Operation, file: str) -> Iterator[Problem]:

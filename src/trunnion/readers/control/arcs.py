@@ -111,7 +111,7 @@ def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: 
     if short > max(RADIUS_ERROR, RADIUS_RATIO * abs(radius)):
         raise ArcError(Wording("NC320", "radius_too_small", radius=radius, length=length))
     height = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0)) * math.copysign(1.0, radius)
-    return _from_chord(start, end, chord, height, plane, clockwise, turns)
+    return _from_chord(start, end, chord, height, normal_of(plane, clockwise), turns)
 
 
 def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
@@ -124,7 +124,7 @@ def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bo
     if length > 2.0 * MAX_RADIUS * math.sin(half):
         raise ArcError(Wording("NC320", "opening_angle_needs_radius_no", angle=angle))
     height = 0.5 * length * math.cos(half) / math.sin(half)
-    return _from_chord(start, end, chord, height, plane, clockwise, turns)
+    return _from_chord(start, end, chord, height, normal_of(plane, clockwise), turns)
 
 
 def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
@@ -160,12 +160,10 @@ def _chord(start: Floats, end: Floats, plane: int) -> Floats:
     return np.asarray(chord)
 
 
-def _from_chord(
-    start: Floats, end: Floats, chord: Floats, height: float, plane: int, clockwise: bool, turns: int
-) -> Arc:
-    """Return the arc whose centre is at a height over the middle of the chord, to its left if counter-clockwise."""
-    left = np.cross(normal_of(plane, clockwise), chord)
+def _from_chord(start: Floats, end: Floats, chord: Floats, height: float, normal: Floats, turns: int) -> Arc:
+    """Return the arc whose centre is at a height over the middle of the chord, to its left about the normal."""
+    left = np.cross(normal, chord)
     centre = start + 0.5 * chord + height * left / np.linalg.norm(left)
     middle = np.asarray(centre)
     radius = float(np.linalg.norm(start - middle))
-    return Arc(end, middle, normal_of(plane, clockwise), radius, turns)
+    return Arc(end, middle, normal, radius, turns)

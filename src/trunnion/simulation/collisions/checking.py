@@ -29,10 +29,8 @@ def check_collisions(
     tools: Mapping[str, ToolShape],
     *,
     near: float = 0.0,
-    step: float = STEP,
     end: int | None = None,
     pairs_told: Callable[[int], None] | None = None,
-    progress: Callable[[int], None] | None = None,
 ) -> list[Collision]:
     """Find which bodies touch while a program runs, or come near each other.
 
@@ -41,10 +39,8 @@ def check_collisions(
     tools       the tools in the spindle, by their names in ``run.tools``. A tool without a length has that of the
                 machine
     near        distance in mm from which on two bodies are told that do not touch
-    step        between bodies nearer to each other than this, the motion is looked at in such steps, mm
     end         the first row that is left out; None: all are checked
     pairs_told  is told how many pairs of bodies are checked against each other
-    progress    is told how many rows are done
 
     list of Collision  in the order of the program
 
@@ -60,14 +56,12 @@ def check_collisions(
         pairs_told(len(pairs))
     solids = {k: Solid(everything[k].mesh) for pair in pairs for k in pair}
     watches = [
-        PairWatch(run.machine, run.tools, (everything[i], everything[j]), (solids[i], solids[j]), near, step)
+        PairWatch(run.machine, run.tools, (everything[i], everything[j]), (solids[i], solids[j]), near, STEP)
         for i, j in pairs
     ]
     for pieces in axis_pieces(run, lengths, end):
         for watch in watches:
             watch.follow(pieces)
-        if progress is not None:
-            progress(pieces.end)
     found = [collision for watch in watches for collision in watch.findings()]
     return sorted(found, key=lambda each: (each.row, each.fraction, each.between))
 

@@ -134,6 +134,11 @@ export class Page {
       line.textContent = `${check.key}: ${check.state}: ${check.summary}`;
       (check.state === "FAIL" ? list : element("unchecked")).append(line);
     }
+    for (const text of this.scene.stands) {
+      const line = document.createElement("li");
+      line.textContent = text;
+      element("unchecked").append(line);
+    }
     this.scene.findings.forEach((each) => {
       const line = document.createElement("li"), button = document.createElement("button");
       button.type = "button";
