@@ -12,20 +12,27 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import Flags, Ints
+from trunnion.machines import Mount
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.verification.context import Context
 from trunnion.verification.kinematics.cut_extent import cut_extent
 from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.verification.results import Place
+
+#: Smaller angles are none, degrees.
+_STILL: Final = 1e-3
 
 #: Places on a rapid that are looked at.
 _PLACES: Final = 257
 
 
 def approaches_through_part(context: Context) -> Iterator[Place]:
-    """Yield both legs of each approach that pass through the box around all cuts."""
+    """Yield both legs by X and Y of the plane, and then along the tool, that pass through the box around all cuts."""
     run, machine = context.run, context.run.machine
     known = machine.workpiece_zero is not None and machine.tool_length is not None
     rows = approach_rows(run) if known and machine.has_rotary_head else np.zeros(0, np.int64)
+    rows = rows[_tilts_tool(run, rows) & ((run.programmed[rows] & int(ProgrammedWord.Z)) == 0)]
     part = cut_extent(run) if len(rows) else None
     if part is None:
         return
@@ -37,3 +44,9 @@ def approaches_through_part(context: Context) -> Iterator[Place]:
         )
         if inside.any() and not inside[0] and not inside[-1]:
             yield context.place(row, 0.0, "the way from home leads through the part at rapid")
+
+
+def _tilts_tool(run: Run, rows: Ints) -> Flags:
+    """In which rows a head has turned the tool, (k,) bool."""
+    columns = [k for k, column in enumerate(run.machine.rotary) if run.machine.axes[column].mount is Mount.TOOL]
+    return np.asarray((np.abs(run.rotary[rows][:, columns]) > _STILL).any(axis=1))

@@ -23,9 +23,10 @@ ROTARY_WORDS = ProgrammedWord.FIRST | ProgrammedWord.SECOND
 _STRAIGHT = 1e-6
 _SAME_AXIS = 1e-9
 
-#: A linear axis has arrived within this, mm, and one at home has gone no farther: positions in a plane are rounded.
+#: A linear axis has arrived within this, mm: positions in a plane are rounded. Another one is as near to home as
+#: this, mm, or on its way: the tool may be longer or shorter than the one that the program was posted for.
 _ARRIVED = 0.01
-_FROM_HOME = 10.0
+_FROM_HOME = 200.0
 
 #: Rows that are searched at first.
 _FEW = 64
@@ -130,15 +131,17 @@ def approach_rows(run: Run) -> Ints:
 def is_leg_of_axes(run: Run, row: int) -> bool:
     """Whether a motion in a plane of a tilted head brings some linear axes to where the next one needs them.
 
-    The others stay at home, but for a few millimetres, and none goes back. That is known with zero and tool length.
+    The others stay near home, or go on to where the next one leads. That is known with zero and tool length.
     """
     machine, columns = run.machine, list(run.machine.linear)
-    if machine.workpiece_zero is None or machine.tool_length is None or not machine.has_rotary_head:
+    if machine.workpiece_zero is None or machine.tool_length is None or run.state.plane[row] < 0:
+        return False
+    if not machine.has_rotary_head:
         return False
     joints = run.positions(np.array([row - 1, row, row + 1])).joints[:, columns]
     begin, end, following = joints
     way, rest = end - begin, following - end
-    arrives, stays = np.abs(rest) <= _ARRIVED, (np.abs(way) <= _FROM_HOME) & (way * rest >= 0.0)
+    arrives, stays = np.abs(rest) <= _ARRIVED, (np.abs(way) <= _FROM_HOME) | (way * rest >= 0.0)
     return bool((arrives | stays).all() and arrives.any() and not arrives.all())
 
 
