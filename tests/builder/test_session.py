@@ -120,7 +120,7 @@ def test_what_is_not_known_of_a_new_machine_is_left_out_or_marked(session: Build
     assert found["marks"] == []
     assert "#" not in found["text"].removeprefix(first_line("machine"))
     warned = ask(session, "sample", text=found["text"])
-    assert any("travel" in each["what"] and not each["error"] for each in warned["problems"])
+    assert any("travel" in each["text"] and each["severity"] == "warning" for each in warned["problems"])
 
 
 def test_a_comment_of_the_users_own_is_no_mark(session: BuilderSession) -> None:
@@ -146,7 +146,7 @@ def test_a_sample_that_is_refused_has_a_reason(session: BuilderSession, path: li
     sample = ask(session, "sample", text=changed["text"])
     assert not sample["passed"]
     failed = [each for each in sample["checks"] if each["state"] == "FAIL"]
-    assert failed or any(each["error"] for each in sample["problems"])
+    assert failed or any(each["severity"] == "error" for each in sample["problems"])
     assert "force" not in str(sample)
     assert (sample["lines"], sample["all"]) == ([], 0)
     assert told in str(sample["problems"]) + str(sample["checks"])

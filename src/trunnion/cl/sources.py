@@ -214,9 +214,7 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         else:
             sources.append(ClSource(inside, opened))
     if not sources:
-        raise InputError(
-            [Problem(name, 0, Wording("FIL180", "no_cl_file") if infos else Wording("FIL180", "empty")), *left_out]
-        )
+        raise InputError([Problem(name, 0, Wording("FIL180", "no_cl_file" if infos else "empty")), *left_out])
     first = sources[0]
     return [ClSource(first.name, first.open, remarks=tuple(left_out)), *sources[1:]]
 

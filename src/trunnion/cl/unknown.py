@@ -9,7 +9,6 @@ from trunnion.messages import Wording
 from trunnion.model.toolpath import ShopStatement, Toolpath, UnknownStatement
 
 _CURE = "a program is refused unless the control's definition says what becomes of it ([control.statements])"
-_NO_EFFECT = "nothing becomes of it: check that nothing should, or say under [control.statements] or [cl.words] what"
 
 
 def statement_words(text: str) -> tuple[str, frozenset[str]]:

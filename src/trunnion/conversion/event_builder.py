@@ -139,7 +139,7 @@ class EventBuilder:
                 else:
                     self._warn(line, Wording("CNV150", "t_not_carried", value=value))
             case "coolant":
-                yield Coolant(row, line, self._coolants.get(_COOLANT_CODE[str(value)], str(value).upper()))
+                yield Coolant(row, line, self._coolant_word(str(value)))
             case "dwell":
                 assert isinstance(value, float)
                 yield Dwell(row, line, abs(value), value < 0)
@@ -171,6 +171,12 @@ class EventBuilder:
                 self._warn(line, Wording("CNV140", "not_carried_over", name=name, cure=cure), event.file)
             case kind:
                 self._lose(kind, event)
+
+    def _coolant_word(self, value: str) -> str:
+        """Return the CL word of coolant that the reader knows."""
+        if value == "through":
+            return "THRU"
+        return self._coolants.get(_COOLANT_CODE[value], value.upper())
 
     def _lose(self, kind: str, event: ProgramEvent) -> None:
         """Say of an event that no operation holds what the table of states has."""

@@ -106,26 +106,19 @@ def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Prob
             chosen.file,
             int(chosen.operation.moves.line[-1]),
             (
-                Wording("PLN240", "axis_ends_turns", operation=chosen.operation.name, axis=axis.name, turns=turns)
-                if axis.endless
-                else Wording(
-                    "PLN240", "axis_ends_turns_from", operation=chosen.operation.name, axis=axis.name, turns=turns
+                Wording(
+                    "PLN240",
+                    "axis_ends_turns" if axis.endless else "axis_ends_turns_from",
+                    operation=chosen.operation.name,
+                    axis=axis.name,
+                    turns=turns,
                 )
             )
             if axis.rapid is None
             else (
                 Wording(
                     "PLN240",
-                    "axis_ends_turns_from_home",
-                    operation=chosen.operation.name,
-                    axis=axis.name,
-                    turns=turns,
-                    format_duration=format_duration(60.0 * 360.0 * turns / axis.rapid),
-                )
-                if axis.endless
-                else Wording(
-                    "PLN240",
-                    "axis_ends",
+                    "axis_ends_turns_from_home" if axis.endless else "axis_ends",
                     operation=chosen.operation.name,
                     axis=axis.name,
                     turns=turns,

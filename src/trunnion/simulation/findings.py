@@ -5,10 +5,7 @@ Out:    ``Finding`` records, in the order of the program.
 Units:  mm, workpiece frame.
 """
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import StrEnum
 from typing import Final
 
 import numpy as np
@@ -17,44 +14,12 @@ from trunnion.arrays import Flags, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.measurements import Depths, RowsCut
+from trunnion.simulation.finding import Finding, What
 from trunnion.simulation.stock.deviation import Gouges
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Rows without a finding that do not end a run of rows with one.
 _PAUSE: Final = 2
-
-
-class What(StrEnum):
-    """What is wrong."""
-
-    RAPID = "rapid through stock"
-    GOUGE = "gouge"
-    STANDING = "cuts with the spindle off"
-    SHANK = "shank into stock"
-    HOLDER = "holder into stock"
-    BODY = "collision"
-    NEAR = "near"
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """One thing that is wrong, in consecutive rows of a run.
-
-    between   names of the two bodies
-    rows      first and last row of the run
-    worst     the row in which it is deepest
-    depth     there, mm
-    place     there, mm
-    fraction  part of the worst row that is done then; NaN: as the tool first covers the place
-    """
-
-    what: What
-    between: tuple[str, str]
-    rows: tuple[int, int]
-    worst: int
-    depth: float
-    place: tuple[float, float, float]
-    fraction: float = math.nan
 
 
 def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float, turning: Flags) -> Iterator[Finding]:

@@ -18,7 +18,8 @@ from trunnion.model.run import Run
 from trunnion.simulation.cutting.measurements import Chunk, RowsCut, rows_cut
 from trunnion.simulation.cutting.removal import CutRows, Cutter, measure
 from trunnion.simulation.cutting.shares import JoinedShares, Share, ShareWriter, tiles_of
-from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
+from trunnion.simulation.finding import Finding
+from trunnion.simulation.findings import air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
 from trunnion.simulation.near_stock import near_findings, pieces_with_near
 from trunnion.simulation.stock.deviation import Excess, Gouges, lacking_at_start, left_on, missing_from
 from trunnion.simulation.stock.material import Stock

@@ -7,8 +7,9 @@ from typing import Protocol
 
 from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording
-from trunnion.simulation.collisions import Body, Collision, check_collisions, fixture_body, machine_bodies, part_body
+from trunnion.simulation.collisions import Body, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.cutting.shares import JoinedShares, Share
+from trunnion.simulation.finding import Finding
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.remarks import of_setup, part_remarks, simulation_remarks
@@ -62,7 +63,7 @@ class CutSetup:
     setup: PreparedSetup
     simulation: Simulation
     programs: Sequence[SimulatedProgram]
-    touched: Sequence[Sequence[Collision]]
+    touched: Sequence[Sequence[Finding]]
     remarks: tuple[Problem, ...]
     pairs: int
 
@@ -142,7 +143,7 @@ class SetupSteps:
 
         def touching(
             programs: Sequence[SimulatedProgram], tell: Callable[[int], None] | None = None
-        ) -> list[list[Collision]]:
+        ) -> list[list[Finding]]:
             """Return what touches on the machine, where the part is as it is clamped; places are those of the
             drawing.
             """
@@ -199,12 +200,12 @@ def _told_once(tell: Callable[[int], None]) -> Callable[[int, int], None]:
 
 
 def _up_to_first_hit(
-    programs: Sequence[SimulatedProgram], touched: Sequence[Sequence[Collision]]
+    programs: Sequence[SimulatedProgram], touched: Sequence[Sequence[Finding]]
 ) -> list[SimulatedProgram]:
     """Return the programs as far as the row in which bodies first touch."""
     kept = []
     for program, collisions in zip(programs, touched, strict=True):
-        first = min((each.row for each in collisions if not each.is_near), default=None)
+        first = min((each.rows[0] for each in collisions if not each.is_near), default=None)
         kept.append(program if first is None else replace(program, end=first + 1))
         if first is not None:
             break
@@ -243,7 +244,7 @@ def _bodies(
 
 def _collisions(
     program: SimulatedProgram, bodies: Sequence[Body], near: float, pairs_told: Callable[[int], None] | None = None
-) -> list[Collision]:
+) -> list[Finding]:
     """Return what touches, or comes near, while a program runs as far as it is simulated."""
     if not bodies:
         return []

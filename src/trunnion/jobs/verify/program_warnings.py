@@ -2,8 +2,8 @@
 
 In:     a program that was run, and the words that the definition of its control states as its own.
 Out:    a warning for each word of the machine's builder that the definition does not declare, where it stands first,
-        for each block at which the program waits or stops, and for each mode and each work offset that it leaves to
-        the next program.
+        for each block at which the program waits or stops, or passes the end of a turn by a way that no source
+        confirms, and for each mode and each work offset that it leaves to the next program.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,12 +16,13 @@ from trunnion.model.run import Diagnostic, Run
 
 _OF_BUILDER: Final = "NC225"
 _WAITS: Final = "NC226"
+_END_OF_TURN: Final = "NC342"
 _LEFT_ON: Final = "NC351"
 
 #: Warnings of a kind that are told one by one; a program with more words is hardly one for this machine.
 _MOST_TOLD: Final = 20
 
-_KINDS: Final = (_OF_BUILDER, _WAITS, _LEFT_ON)
+_KINDS: Final = (_OF_BUILDER, _WAITS, _END_OF_TURN, _LEFT_ON)
 
 
 def stated_words(control: Control, settings: Mapping[str, str]) -> frozenset[str]:

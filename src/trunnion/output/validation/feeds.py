@@ -30,9 +30,9 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
         Problem(
             program.file_of(motion.operation),
             int(moves.line[rows[0]]),
-            Wording("CTL310", "cutting_motion_without")
-            if motion.cl_rows is not None
-            else Wording("CTL310", "cutting_motion_without_feed"),
+            Wording(
+                "CTL310", "cutting_motion_without" if motion.cl_rows is not None else "cutting_motion_without_feed"
+            ),
         )
     ]
 
@@ -105,9 +105,7 @@ def rounding_problem(
         return Problem(
             file,
             line,
-            Wording("CTL320", "feed_below_least", feed=feed)
-            if per_rev
-            else Wording("CTL320", "feed_below_least_control", feed=feed),
+            Wording("CTL320", "feed_below_least" if per_rev else "feed_below_least_control", feed=feed),
         )
     error = abs(printed - feed) / feed
     if error <= TOLD_ERROR:
@@ -116,8 +114,8 @@ def rounding_problem(
     return Problem(
         file,
         line,
-        Wording("CTL320", "feed_prints_off", feed=feed, printed=printed, error=100.0 * error)
-        if per_rev
-        else Wording("CTL320", "feed_prints", feed=feed, printed=printed, error=100.0 * error),
+        Wording(
+            "CTL320", "feed_prints_off" if per_rev else "feed_prints", feed=feed, printed=printed, error=100.0 * error
+        ),
         severity=Severity.ERROR if refused else Severity.WARNING,
     )

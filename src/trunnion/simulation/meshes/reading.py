@@ -248,9 +248,7 @@ def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, guessed: b
             Problem(
                 label,
                 0,
-                Wording("SIM213", "mm_large_numbers", extent=extent)
-                if guessed
-                else Wording("SIM213", "mm_large", extent=extent),
+                Wording("SIM213", "mm_large_numbers" if guessed else "mm_large", extent=extent),
                 severity=severity if guessed else Severity.WARNING,
             )
         )

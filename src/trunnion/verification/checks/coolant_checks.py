@@ -14,12 +14,15 @@ from trunnion.verification.results import Check, Place
 
 #: Coolant words of the CL file as they show in a run; the others are M words of the machine builder, whose meaning is
 #: not known.
-_COOLANT: Final = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST": "mist"}
+_COOLANT: Final = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST": "mist", "THRU": "through"}
+
+#: Coolant for which most controls have no word of their own.
+_OF_BUILDER: Final = ("mist", "through")
 
 
 def is_builder_coolant(word: str) -> bool:
     """Whether only the machine builder may have a word for coolant that a CL file asks for."""
-    return word not in _COOLANT or word == "MIST"
+    return _COOLANT.get(word) in (None, *_OF_BUILDER)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,17 +32,21 @@ class _CoolantWords:
     rows     (k,) int64, the rows before which ``changes`` stand
     changes  row, state and event of each
     builder  (m,) int64
+    stays_off  (m,) int64, the rows before which a word switches off, and no word of the builder stands behind it there
     """
 
     rows: Ints
     changes: list[tuple[int, str, RunEvent]]
     builder: Ints
+    stays_off: Ints
 
     @staticmethod
     def of(run: Run) -> "_CoolantWords":
         changes = [(event.before_row, str(event.value), event) for event in run.events if event.kind == "coolant"]
         builder = np.array([event.before_row for event in run.events if event.kind == "m"], np.int64)
-        return _CoolantWords(np.array([row for row, _, _ in changes], np.int64), changes, builder)
+        last = {event.before_row: event for event in run.events if event.kind in ("coolant", "m")}
+        stays_off = np.array([row for row, event in last.items() if event.value == "off"], np.int64)
+        return _CoolantWords(np.array([row for row, _, _ in changes], np.int64), changes, builder, stays_off)
 
     def has_builder_word(self, after: int, row: int) -> bool:
         """Whether the machine builder has a word between the row ``after`` and another."""
@@ -81,7 +88,8 @@ def check_coolant(context: ComparedContext) -> Check:
         row, last = matching.nc[first], matching.nc[end - 1]
         after = matching.nc[first - 1] if first else -1
         by_builder = words.has_builder_word(after, row)
-        if wanted is None or (wanted == "mist" and by_builder):
+        unknown = by_builder or bool(unread) or wanted == "through"
+        if wanted is None or (wanted in _OF_BUILDER and words.at(row) != wanted and unknown):
             unread.add(state.value)
             if not by_builder and (state.value != before or words.has_own_word(after, row)):
                 text = (
@@ -89,6 +97,10 @@ def check_coolant(context: ComparedContext) -> Check:
                     " and no word of the machine builder stands here"
                 )
                 places.append(context.place_with_cl(row, 0.0, text, matching.cl[first]))
+            off = words.stays_off[(words.stays_off > row) & (words.stays_off <= last)]
+            if len(off):
+                text = f"coolant is switched off; the CL file wants {state.value}"
+                places.append(context.place(int(off[0]), 0.0, text))
         else:
             asked.add(wanted)
             fault = _fault(words, wanted, row, last, readable=not unread)
