@@ -10,7 +10,7 @@ from typing import BinaryIO, Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Ints
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, WordRangeError
@@ -19,6 +19,7 @@ from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, P
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import CHUNK, BlockWriter
 from trunnion.output.blocks.feeds import FEED_WORDS, FeedWords
+from trunnion.output.blocks.first_leg import FirstLegs
 from trunnion.output.blocks.line_texts import LineTexts
 from trunnion.output.blocks.orientation import OrientationWords
 from trunnion.output.blocks.surface_normals import add_vector_lines, contact_rows
@@ -92,7 +93,7 @@ class MotionBlockWriter:
         self._length_register = 0
         self._words_to_repeat: dict[str, int] = {}
         self._texts = LineTexts(program)
-        self._legs = ApproachLegs(program)
+        self.legs = FirstLegs(ApproachLegs(program), self.writer)
 
     # Motions
 
@@ -174,7 +175,7 @@ class MotionBlockWriter:
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""
-        self.writer.write_table({word: np.array([count], np.int64) for word, count in words.items()})
+        self.writer.write_words(words)
 
     def write_event(self, event: WordEvent) -> None:
         """Write the words of an event as a block of its own."""
@@ -227,24 +228,6 @@ class MotionBlockWriter:
 
     # Rows
 
-    def write_first_leg(
-        self, motion: Motion, point: Floats, block: Mapping[str, int], first_words: dict[str, int]
-    ) -> dict[str, int]:
-        """Write the first leg of the way from home: X and Y of ``block``, or an order of the linear axes.
-
-        point        to which the approach leads, in the coordinates of the blocks
-        first_words  the family's words for the first block; returned are those that the next block still needs
-        """
-        leg = self._legs.first(motion, point)
-        if leg is None:
-            self.write_block({word: count for word, count in block.items() if word != "Z"})
-            return first_words
-        there, here = ([self.writer.to_count(w, float(c)) for w, c in zip("XYZ", p, strict=True)] for p in (point, leg))
-        if here == there:  # one leg is all
-            return first_words
-        self.write_block({**block, **dict(zip("XYZ", here, strict=True)), **first_words})  # Z counts with the length
-        return {}
-
     def write_rows(self, motion: Motion, first: int, last: int, joining_events: Sequence[WordEvent], phase: int) -> int:
         """Write rows ``first`` to ``last`` (excluded), in as many files as they need.
 
@@ -287,7 +270,7 @@ class MotionBlockWriter:
         if start == 0:
             first_words = self.first_block_words(motion)
             if rapid[0] and self.xy_before_z:
-                first_words = self.write_first_leg(motion, moves.tip[0], table.words_of_row(0), first_words)
+                first_words = self.legs.write(motion, moves.tip[0], table.words_of_row(0), first_words)
             table.set_words(0, first_words)
         for event in joining_events:
             table.set_words(event.row - start, self.event_words(event))

@@ -98,7 +98,7 @@ class _Holes:
         block, first_words = {**self._rapid, **position}, blocks.first_block_words(self._motion)
         if blocks.xy_before_z:
             point = np.array([*self._motion.operation.moves.tip[0, :2], retract])
-            first_words = blocks.write_first_leg(self._motion, point, block, first_words)
+            first_words = blocks.legs.write(self._motion, point, block, first_words)
         block |= {"Z": self._writer.to_count("X", retract), **first_words}
         for event in joining_events:
             block |= blocks.event_words(event)
