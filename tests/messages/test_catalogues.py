@@ -47,7 +47,7 @@ LOOKS = {
 NO_SENTENCES = {
     "jobs/post/papers/manifests.py: file.what == 'program'",
     "jobs/post_project/case_papers.py: each.what == 'report'",
-    "simulation/setup_findings.py: finding.what is What.NEAR",
+    "simulation/finding.py: self.what is What.NEAR",
 }
 
 #: Words of a sentence.

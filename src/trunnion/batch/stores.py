@@ -20,9 +20,6 @@ from trunnion.files import atomic_file
 from trunnion.files.places import FULL
 from trunnion.messages import Wording
 
-#: The cure where a disk is full.
-_SPACE: Final = "make space there, and run the batch again: it goes on where it was"
-
 #: Files that are asked for at once where that takes a journey each.
 _AT_ONCE: Final = 256
 
@@ -320,9 +317,7 @@ class UrlStore:
             Problem(
                 self.label,
                 0,
-                Wording("BAT130", "does_not_take", error=error)
-                if is_full
-                else Wording("BAT130", "does_not_take_results", error=error),
+                Wording("BAT130", "does_not_take" if is_full else "does_not_take_results", error=error),
             )
         )
 

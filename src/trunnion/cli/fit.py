@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
@@ -15,8 +14,7 @@ from trunnion.wording import format_duration
 
 def run(given: Given) -> int:
     """Ask the machines; 0 if one of them can run it, else 1."""
-    files = as_read(given, given.files) if given.machine is None else given.files
-    found = fit(files, **given.arguments("files"), observer=Terminal())
+    found = fit(**given.arguments(), observer=Terminal())
     show(given, lambda: {"schema": 1, "machines": found}, fit_lines(found))
     return 0 if any(each.status is not FitStatus.NOT for each in found) else 1
 

@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.arrays import Floats
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.printing import print_result, tell
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, load_machine
 from trunnion.jobs.inputs.settings import as_texts
-from trunnion.jobs.job import Given
+from trunnion.jobs.job import Given, streams
 from trunnion.jobs.place.bodies import BodiesInput
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
@@ -53,9 +52,9 @@ def run(given: Given) -> int:
     settings = {**({} if project is None else as_texts(project.settings)), **dict(given.settings)}
     length = given.tool_length or settings.get("tool_length")
     stated = BodiesInput() if project is None else project.bodies
-    placed: Sequence[ToolpathLike] = as_read(given, files)
+    placed: Sequence[ToolpathLike] = streams(files)
     if given.apply is not None:
-        placed = toolpaths_to_post(placed, machine=machine, settings=settings, observer=Terminal())
+        placed = toolpaths_to_post(placed, machine=machine, settings=settings, strict=given.strict, observer=Terminal())
     found = place(
         placed,
         machine=machine,
@@ -65,6 +64,7 @@ def run(given: Given) -> int:
         zero=given.zero,
         tool_length=given.tool_length,
         settings=settings,
+        strict=given.strict,
         subprograms=given.subprograms,
         hooks=given.hooks,
         fixtures=given.fixtures or stated.fixtures,

@@ -8,7 +8,6 @@ import numpy as np
 from trunnion.capability.part_reach import PartReach
 from trunnion.capability.path_reach import PathReach
 from trunnion.capability.reach import Reach, TiltReach
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.jobs.capability.reach_report import write_reach_plot
@@ -26,7 +25,7 @@ _MOST: Final = 12
 def run(given: Given) -> int:
     """Tell and draw what is reached; 0 if all that was asked for is, else 1."""
     terminal = Terminal()
-    found = reach(**given.arguments("cl"), cl=as_read(given, given.cl), observer=terminal)
+    found = reach(**given.arguments(), observer=terminal)
     terminal.problems(found.remarks)
     if given.plot is not None:
         write_reach_plot(found, given.plot, given.read)

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
@@ -24,7 +23,7 @@ _MOST: Final = 20
 
 def run(given: Given) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
-    found = simulate(**given.arguments("cl"), cl=as_read(given, given.cl), observer=Terminal())
+    found = simulate(**given.arguments(), observer=Terminal())
     if given.save_stock is not None:
         save_mesh(stock_surface(found.simulation.stock), given.save_stock, inputs=given.read)
     if given.report is not None:

@@ -50,15 +50,9 @@ def shipped_controls() -> list[str]:
 def load_control(own: Table) -> Control:
     """Read the definition of a control.
 
-    Parameters
-    ----------
-    own
-        The ``[control]`` table of a machine. The definition that its ``extends`` names is merged under it.
+    own  the ``[control]`` table of a machine. The definition that its ``extends`` names is merged under it
 
-    Raises
-    ------
-    InputError
-        With every mistake, each at its file and line.
+    Raises ``InputError`` with every mistake, each at its file and line.
     """
     table = resolve_extends(own, control_library())
     family = _load_family(table)

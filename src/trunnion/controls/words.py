@@ -155,24 +155,13 @@ def round_column(value: Floats, scale: float, out: Ints) -> None:
 def round_to_counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
     """Return values as counts, rounded as ``f"{value:.{decimals}f}"`` rounds.
 
-    Parameters
-    ----------
-    value : (n,) float64
-        NaN for an absent word.
-    decimals
-        Digits after the point, at most 9.
-    out : (n,) int64, optional
-        Array for the counts.
+    value : (n,) float64        NaN for an absent word
+    decimals                    digits after the point, at most 9
+    out : (n,) int64, optional  array for the counts
 
-    Returns
-    -------
-    (n,) int64
-        ``ABSENT`` where ``value`` is NaN.
+    (n,) int64  ``ABSENT`` where ``value`` is NaN
 
-    Raises
-    ------
-    OverflowError
-        If a count has more digits than a double.
+    Raises ``OverflowError`` if a count has more digits than a double.
     """
     if out is None:
         out = np.empty(len(value), np.int64)

@@ -17,7 +17,7 @@ from trunnion.definitions.extends import (
     own_keys,
     resolve_extends,
 )
-from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, key_lines, layout
+from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, layout
 from trunnion.definitions.table import Table, TextForm
 from trunnion.definitions.units import unit_of
 
@@ -30,7 +30,6 @@ __all__ = [
     "TextForm",
     "definition_names",
     "in_order",
-    "key_lines",
     "layout",
     "load_draft",
     "load_table",

@@ -61,7 +61,7 @@ def locate_values(
     """Attach file and lines to a raw TOML value and everything in it.
 
     value        as ``tomllib`` gives it
-    lines        from ``key_lines``
+    lines        of each key
     path         path of the value
     parent_line  line of values that have none of their own
     below        from ``texts_below``
@@ -118,14 +118,6 @@ def layout(text: str) -> Layout:
         return _Scanner(text).scan()
     except (IndexError, ValueError):
         return Layout({}, {}, [], [])
-
-
-def key_lines(text: str) -> dict[KeyPath, int]:
-    """Line of every key of a TOML text, as ``layout`` has them.
-
-    Raises ``RecursionError`` if tables nest too deeply.
-    """
-    return layout(text).lines
 
 
 def texts_below(text: str, found: Layout) -> frozenset[KeyPath]:

@@ -133,7 +133,9 @@ class DiffArguments(TypedDict, total=False):
     path: bool
 
 
-class SimulateArguments(BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, total=False):
+class SimulateArguments(
+    ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, total=False
+):
     """Arguments of ``trunnion.simulate``."""
 
     hooks: Sequence[FilePath]
@@ -145,12 +147,10 @@ class SimulateArguments(BodyArguments, CuttingArguments, SetUpArguments, Clampin
     threads: int | None
 
 
-class PlaceArguments(BodyArguments, SetUpArguments, total=False):
+class PlaceArguments(ReadingArguments, BodyArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.place``."""
 
     hooks: Sequence[FilePath]
-    units: Literal["mm", "inch"] | None
-    dialect: str | None
     goal: str
     turns: float | Sequence[float] | None
     tilts: float | Sequence[float]
@@ -167,7 +167,7 @@ class PlacedArguments(TypedDict, total=False):
     hooks: Sequence[FilePath]
 
 
-class ReachArguments(SetUpArguments, total=False):
+class ReachArguments(ReadingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.reach``."""
 
     hooks: Sequence[FilePath]
@@ -177,7 +177,7 @@ class ReachArguments(SetUpArguments, total=False):
     step: float
 
 
-class FitArguments(SetUpArguments, total=False):
+class FitArguments(ReadingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.fit``."""
 
     hooks: Sequence[FilePath]
@@ -196,7 +196,7 @@ class SensitivityArguments(SetUpArguments, total=False):
     zero_at: str | Mapping[str, float] | None
 
 
-class ViewArguments(BodyArguments, CuttingArguments, SetUpArguments, total=False):
+class ViewArguments(ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.write_view``."""
 
     hooks: Sequence[FilePath]
@@ -204,8 +204,6 @@ class ViewArguments(BodyArguments, CuttingArguments, SetUpArguments, total=False
     against: FilePath | Sequence[FilePath] | None
     against_machine: MachineLike | None
     setup: str | None
-    units: Literal["mm", "inch"] | None
-    dialect: str | None
     settings: Settings | None
     cl: ToolpathLike | Iterable[ToolpathLike]
     subprograms: Sequence[FilePath]

@@ -114,8 +114,3 @@ def streams(files: Iterable[str]) -> list[str | BinaryIO]:
     if named.count(STDIN) > 1:
         raise InputError(Problem("stdin", 0, Wording("ARG130", "stdin_twice", stdin=STDIN)))
     return [sys.stdin.buffer if file == STDIN else file for file in named]
-
-
-def named_files(files: Iterable[str]) -> list[str]:
-    """Files but stdin."""
-    return [file for file in files if file != STDIN]

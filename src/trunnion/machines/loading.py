@@ -89,18 +89,11 @@ def check_is_shipped(name: str) -> None:
 def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | None = None) -> Machine:
     """Return the machine that a definition describes.
 
-    Parameters
-    ----------
-    name_or_path
-        The name of a shipped machine, or a path that ends in ``.toml``.
-    overrides
-        Values in place of those of the file, shaped like it:
-        ``{"workpiece": {"zero_mm": [0, 0, 80]}, "axis": [{"name": "B", "limits_deg": [-5, 95]}]}``.
+    name_or_path  the name of a shipped machine, or a path that ends in ``.toml``
+    overrides     values in place of those of the file, shaped like it: ``{"workpiece": {"zero_mm": [0, 0, 80]}, "axis":
+                  [{"name": "B", "limits_deg": [-5, 95]}]}``
 
-    Raises
-    ------
-    InputError
-        With every mistake of the definition, each at its file and line.
+    Raises ``InputError`` with every mistake of the definition, each at its file and line.
     """
     key = PurePath(str(name_or_path)).name.removesuffix(".toml")
     return read_machine(load_table(name_or_path, machine_library(), overrides, kind="machine"), key)
@@ -229,9 +222,7 @@ def _home(entry: Table, key: str, low: float, high: float) -> float:
     if not low <= home <= high:
         entry.add_problem(
             key,
-            Wording("DEF440", "outside_limits", home=home, low=low, high=high)
-            if key in entry
-            else Wording("DEF440", "outside_limits_0", home=home, low=low, high=high),
+            Wording("DEF440", "outside_limits" if key in entry else "outside_limits_0", home=home, low=low, high=high),
         )
     return home
 

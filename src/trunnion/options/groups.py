@@ -70,9 +70,6 @@ READING: Final = Group(
     ),
 )
 
-#: The same where the command line reads the files itself, and hands their toolpaths on.
-READING_FIRST: Final = READING.but(**{name: {"own": True} for name in ("units", "dialect", "strict")})
-
 #: The same where units and dialect are settings too.
 READING_AS_SETTINGS: Final = READING.but(units={"setting": "cl_units"}, dialect={"setting": "dialect"})
 

@@ -20,8 +20,5 @@ SHELLS: Final = ("bash", "zsh", "fish", "powershell")
 #: What a batch does with each file.
 ACTIONS: Final = ("post", "convert", "verify", "simulate")
 
-#: Endings of files that hold meshes, and of STEP files.
-MESHES: Final = (".stl", ".ply", ".3mf", ".glb")
-
 #: Tasks among which one simulation of a batch may be divided.
 MOST_TILES: Final = 1000

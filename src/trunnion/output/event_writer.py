@@ -235,7 +235,7 @@ class EventWriter:
     def _stop_lines(self, event: Stop) -> list[str]:
         """Return the lines of a stop: the family's, or those of the shop's template, which must stop as well."""
         if STOP_PLACE not in self._control.templates:
-            return self._family.stop(event, self._control.codes)
+            return self._family.stop(replace(event, text=spelled(event.text, self._encoding)), self._control.codes)
         code = self._control.codes["optional_stop" if event.optional else "stop"]
         values = {**self._values, "text": plain_text(self._program, event.text), "number": code}
         lines = self._templates.lines(STOP_PLACE, values, self._motion)

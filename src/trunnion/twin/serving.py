@@ -46,18 +46,11 @@ async def serve_program(
 ) -> None:
     """Serve a program until cancelled.
 
-    Parameters
-    ----------
-    twin
-        The program, its clock and its samples.
-    ports
-        Where it is served.
-    security
-        Who may use it; None: anybody on this computer.
-    started
-        It runs at once; else a client starts it.
-    ready
-        Is called when clients can connect.
+    twin      the program, its clock and its samples
+    ports     where it is served
+    security  who may use it; None: anybody on this computer
+    started   it runs at once; else a client starts it
+    ready     is called when clients can connect
     """
     program = twin.program
     server = TwinServer(program, twin, ports.opcua, ports.host, security)

@@ -10,7 +10,7 @@ from place to place, each from the middle of its neighbour's, so that all of the
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -113,7 +113,7 @@ def grow_regions(places: Floats, margin: Margin, advance: Advance = ignore) -> R
         pairs = pairs[~tried[pairs[:, 1]]]
         rows, index = np.unique(pairs[:, 1], return_index=True)
         if not len(rows):
-            rows, index, pairs = _nearest_left(tree, places, tried, np.isfinite(middle[:, 0]))
+            rows, index, pairs = _nearest_left(places, tried, np.isfinite(middle[:, 0]))
             if not len(rows):
                 break
         start = _nearest_allowed(rows, middle[pairs[index, 0]], margin)
@@ -130,7 +130,7 @@ def grow_regions(places: Floats, margin: Margin, advance: Advance = ignore) -> R
     return _in_order(order, parts, middle)
 
 
-def _nearest_left(tree: Any, places: Floats, tried: Flags, found: Flags) -> tuple[Ints, Ints, Ints]:
+def _nearest_left(places: Floats, tried: Flags, found: Flags) -> tuple[Ints, Ints, Ints]:
     """Return the place that has not been tried and is nearest to one with a region, as rows and pairs of the search."""
     left, known = np.flatnonzero(~tried), np.flatnonzero(found)
     if not len(left):

@@ -10,6 +10,7 @@ from typing import Annotated, Final, Unpack
 
 import numpy as np
 
+from trunnion.cl.read import ClReading
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, Problem, Severity, TrunnionError, argument_problem
 from trunnion.jobs.arguments import FitArguments, taken
@@ -114,6 +115,8 @@ def fit(
     tool_length
         Of the tool, gauge point to tip, mm, on all machines; by default the greatest that the CL files state for tools
         in the spindle. Where none is known the answer is open at best.
+    units, dialect, strict
+        How the CL files are read, as ``trunnion.read_cl`` has it.
     hooks
         Python files that change the CL files, as for ``trunnion.post``. They are run, on each machine anew.
     turns
@@ -206,6 +209,7 @@ def _toolpaths(
 ) -> list[Toolpath]:
     subprograms, zero = check_paths("subprograms", stated["subprograms"]), stated["zero"]
     if stated["machine"] is not None:
+        _check_for_cl(stated)
         given = [files] if isinstance(files, str | os.PathLike) else list(files) if isinstance(files, Iterable) else []
         if len(given) != 1 or not isinstance(given[0], str | os.PathLike):
             raise InputError(argument_problem("files", Wording("ARG130", "machine_of_one_program")))
@@ -217,12 +221,19 @@ def _toolpaths(
     if subprograms or zero is not None:
         name = "subprograms" if subprograms else "zero"
         raise InputError(argument_problem(name, Wording("ARG130", "only_for_programs")))
-    toolpaths = as_toolpaths(files, observer)
+    toolpaths = as_toolpaths(files, observer, ClReading(stated["units"], stated["dialect"], stated["strict"]))
     if not any(len(operation.moves) for path in toolpaths for operation in path.operations):
         raise InputError(argument_problem("files", Wording("ARG130", "no_motion_in_files")))
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
+
+
+def _check_for_cl(stated: FitArguments) -> None:
+    """Refuse what says how CL files are read where an NC program is asked about."""
+    for name, value in (("units", stated["units"]), ("dialect", stated["dialect"]), ("strict", stated["strict"])):
+        if value:
+            raise InputError(argument_problem(name, Wording("ARG130", "only_for_cl_files")))
 
 
 def _stated_length(toolpaths: Sequence[Toolpath]) -> float | None:

@@ -12,6 +12,7 @@ from trunnion.capability.reach import (
     tilt_reach,
     tilts_between,
 )
+from trunnion.cl.read import ClReading
 from trunnion.jobs.arguments import ReachArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
@@ -20,9 +21,6 @@ from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.simulation.meshes import load_mesh
-
-#: Degrees between tilts, and between azimuths, unless it is said.
-DEFAULT_STEP: Final = 5.0
 
 _STEPS: Final = (1.0, 45.0)
 
@@ -39,6 +37,8 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
         A name, a path or a ``Machine``.
     cl
         CL files whose points are judged, in one program's coordinates, those of the first operation.
+    units, dialect, strict
+        How the CL files are read, as ``trunnion.read_cl`` has it.
     hooks
         Python files that change the CL files, as for ``trunnion.post``. They are run.
     part
@@ -81,7 +81,11 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     degrees, part = _number("step", found["step"], *_STEPS), found["part"]
     leaning = _number("lean", found["lean"], 0.0, _MOST_LEAN)
     loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
-    toolpaths = hooked_toolpaths(as_toolpaths(found["cl"], observer), loaded, found["hooks"])
+    toolpaths = hooked_toolpaths(
+        as_toolpaths(found["cl"], observer, ClReading(found["units"], found["dialect"], found["strict"])),
+        loaded,
+        found["hooks"],
+    )
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     surface = None

@@ -18,10 +18,6 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 
-#: How far numbers are off unless it is said, mm and seconds of arc.
-DEFAULT_LENGTH: Final = 0.01
-DEFAULT_ANGLE: Final = 5.0
-
 #: The most that they may be off: derivatives tell small errors only.
 _MOST: Final = {"length": 10.0, "angle": 3600.0}
 

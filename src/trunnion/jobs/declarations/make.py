@@ -149,7 +149,7 @@ _PLACE: Final = job(
     ZERO.but(help="the present workpiece zero on the machine, mm, to compare with"),
     TOOL_LENGTH,
     SETTINGS.but(help="for CL files, as post has it; may be repeated"),
-    READING_AS_SETTINGS.but(strict={"own": True}),
+    READING_AS_SETTINGS,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that the programs call; no others are opened"),
     BODIES.but(

@@ -55,7 +55,7 @@ _VIEW: Final = job(
     ),
     Option("setup", "--setup", Text("NAME"), "set-up of a project, if it has several: its name or number"),
     SETTINGS.but(help="for CL files, as post has it; may be repeated"),
-    READING_AS_SETTINGS.but(strict={"own": True}),
+    READING_AS_SETTINGS,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option("cl", "--cl", FileIn("CL", stdin=True), "CL file that it was made from", many=Many.REPEAT),
     SUBPROGRAMS,

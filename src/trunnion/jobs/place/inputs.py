@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion import readers
 from trunnion.arrays import Ints
+from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.arguments import PlaceArguments
 from trunnion.jobs.inputs.arguments import check_paths, is_stream, wrong_argument
@@ -88,7 +89,7 @@ def read_input(
     toolpaths: list[Toolpath] = []
     programs: list[Path] = []
     for each in given:
-        found = _toolpaths_of(each, texts, machine, observer)
+        found = _toolpaths_of(each, cl_reading(texts, stated["strict"]), machine, observer)
         toolpaths += found or ()
         if found is None and isinstance(each, str | os.PathLike):
             programs.append(Path(each))
@@ -127,15 +128,20 @@ def _clamping_of_programs(programs: Sequence[Path]) -> tuple[Clamping | None, tu
 
 
 def toolpaths_to_post(
-    files: Iterable[ToolpathLike], *, machine: Machine, settings: Settings | None = None, observer: Observer = SILENT
+    files: Iterable[ToolpathLike],
+    *,
+    machine: Machine,
+    settings: Settings | None = None,
+    strict: bool = False,
+    observer: Observer = SILENT,
 ) -> list[Toolpath]:
     """Read CL files that are to be posted where they are placed: who places them need not read them again.
 
     Raises ``InputError`` if a file cannot be used, or one is an NC program: it stays as it is.
     """
-    texts, found = as_texts(settings), list[Toolpath]()
+    how, found = cl_reading(as_texts(settings), strict), list[Toolpath]()
     for each in files:
-        toolpaths = _toolpaths_of(each, texts, machine, observer)
+        toolpaths = _toolpaths_of(each, how, machine, observer)
         if toolpaths is None:
             raise InputError(nc_program_stays(str(each)))
         found += toolpaths
@@ -147,11 +153,8 @@ def nc_program_stays(file: str) -> Problem:
     return Problem(file, 0, Wording("PLC140", "program_stays"))
 
 
-def _toolpaths_of(
-    file: ToolpathLike, settings: Mapping[str, str], machine: Machine, observer: Observer
-) -> list[Toolpath] | None:
+def _toolpaths_of(file: ToolpathLike, how: ClReading, machine: Machine, observer: Observer) -> list[Toolpath] | None:
     """Return the toolpaths of a CL file; None if it is a program that the machine's control understands."""
-    how = cl_reading(settings)
     try:
         return read_toolpaths(file, observer, how)
     except InputError as error:

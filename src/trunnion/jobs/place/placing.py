@@ -71,7 +71,7 @@ def place(
     tool_length
         Of the tool, gauge point to tip, mm; by default that of the definition, or of each tool its own where the CL
         files state all of them, or 0.
-    settings, units, dialect
+    settings, units, dialect, strict
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
         Files of the subprograms that NC programs call.

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion import readers
+from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
@@ -62,7 +63,9 @@ def prepare_setup(
     for program in programs:
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
-    toolpaths = hooked_toolpaths(as_toolpaths(given.cl, observer), machine, given.hooks)
+    toolpaths = hooked_toolpaths(
+        as_toolpaths(given.cl, observer, ClReading(given.units, given.dialect, given.strict)), machine, given.hooks
+    )
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)
     tools = _tools(runs, known_tools(given.tools, given.tool_libraries, given.unit, toolpaths))

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from trunnion.cl import is_cl_file
 from trunnion.encoding import decode
@@ -33,10 +33,6 @@ from trunnion.verification import restore_rapids
 if TYPE_CHECKING:
     from trunnion.twin.opcua.server import Security
     from trunnion.twin.serving import TwinAddresses
-
-#: Ports where clients look first.
-OPCUA_PORT: Final = 4840
-MTCONNECT_PORT: Final = 7878
 
 
 def _ignore(_addresses: object) -> None:

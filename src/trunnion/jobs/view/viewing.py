@@ -110,7 +110,7 @@ def write_view(
         it if it is another. What differs is marked, as ``trunnion.diff`` compares programs.
     setup
         Name or number of a project's set-up, if it has several.
-    settings, units, dialect
+    settings, units, dialect, strict
         For CL files, as for ``post``.
     cl
         Its CL files: the page then names the CL line of each block, and what the proof finds.

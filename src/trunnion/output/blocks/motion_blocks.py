@@ -176,10 +176,20 @@ class MotionBlockWriter:
 
     def write_event(self, event: WordEvent) -> None:
         """Write the words of an event as a block of its own."""
+        words = self.event_words(event)
+        if isinstance(event, CutterComp) and self._is_on_arc(words):
+            words["motion"] = self.writer.to_count("motion", self.control.codes["linear"])
         try:
-            self.write_block(self.event_words(event))
+            self.write_block(words)
         except WordRangeError as error:
             raise error.at(self._file, event.line) from None
+
+    def _is_on_arc(self, words: Mapping[str, int]) -> bool:
+        """Whether G2 or G3 is in force where radius compensation is switched, at which controls stop with an alarm."""
+        if "cutter_comp" not in words:
+            return False
+        arcs = [self.control.codes[f"arc_{way}"] for way in ("clockwise", "counterclockwise")]
+        return self.writer.modal_state().get("motion") in [self.writer.to_count("motion", code) for code in arcs]
 
     def needs_motion(self, event: WordEvent) -> bool:
         """Whether the words of an event make no block alone, as ``RL`` does not."""

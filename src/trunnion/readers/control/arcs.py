@@ -26,6 +26,13 @@ SAME_POINT: Final = 1e-9
 MAX_RADIUS: Final = 1e7
 
 
+#: The end of a circle that is nearer to its start than this, mm, and not there, was mostly meant to be there.
+_GAP: Final = 0.002
+
+#: A circle is wider than so many gaps, and a helix rises more than so many.
+_GAPS: Final = 10.0
+
+
 class ArcError(WordedError):
     """The reason why a block programs no circle."""
 
@@ -77,6 +84,20 @@ class ArcMap:
             return None
         normal = np.cross(ways[:, 0], ways[:, 1]) * (float(arc.normal.sum()) / lengths[0] ** 2)
         return self.linear @ arc.centre + self.shift, normal, arc.radius * float(lengths[0])
+
+
+def gap_of_turn(start: Floats, arc: Arc) -> float:
+    """Return how far off a full turn a circle or helix ends, mm; 0 if it does not end right beside its start.
+
+    A last digit decides there between a whole turn and nearly none. A short arc that does not rise is one.
+    """
+    first, chord = start - arc.centre, arc.end - start
+    rise = float(chord @ arc.normal)
+    gap = float(np.linalg.norm(chord - rise * arc.normal))
+    if arc.turns or not SAME_POINT < gap < _GAP or arc.radius < _GAPS * gap:
+        return 0.0
+    turns_on = float(np.cross(first, chord) @ arc.normal) > 0.0
+    return 0.0 if turns_on and abs(rise) < _GAPS * gap else gap
 
 
 def normal_of(plane: int, clockwise: bool) -> Floats:
