@@ -1,6 +1,6 @@
 """What a machine's definition leaves open that a program for it would take for granted."""
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.output.coordinates.approach_leg import ApproachLegs, tilts_tool
 from trunnion.output.program import Program
@@ -40,4 +40,4 @@ def machine_problems(program: Program) -> list[Problem]:
 
 
 def _warning(program: Program, wording: Wording) -> Problem:
-    return Problem(program.machine.key, 0, wording, severity=Severity.WARNING)
+    return warning(program.machine.key, 0, wording)
