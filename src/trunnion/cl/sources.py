@@ -22,7 +22,7 @@ from typing import BinaryIO, Final, cast
 from trunnion.cl.byte_streams import Bzip2Stream, SharedStream
 from trunnion.cl.dialects import recognize_dialect
 from trunnion.encoding import EncodingDetector
-from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.errors import InputError, Problem, unusable_file, warning
 from trunnion.messages import Wording
 from trunnion.wording import one_line
 
@@ -210,7 +210,7 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         why = _why_no_cl_file(inside, info, opened)
         if why:
             wording = Wording("FIL170", "left_out", reason=why)
-            left_out.append(Problem(inside, 0, wording, severity=Severity.WARNING))
+            left_out.append(warning(inside, 0, wording))
         else:
             sources.append(ClSource(inside, opened))
     if not sources:

@@ -6,7 +6,7 @@ from typing import TypeGuard
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.controls.inches import literal_length
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, Insert, LoadTool, SelectTool
@@ -43,13 +43,7 @@ def event_problems(
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
         return [Problem(*location, Wording("CTL430", "gohome_before_operation"))]
     if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
-        return [
-            Problem(
-                *location,
-                Wording("CTL440", "select_tool_not", number=event.number, control=control.name),
-                severity=Severity.WARNING,
-            )
-        ]
+        return [warning(*location, Wording("CTL440", "select_tool_not", number=event.number, control=control.name))]
     if isinstance(event, Insert) and control.unit != 1.0 and not event.template:
         literal = literal_length(control, event.text)
         if literal:
@@ -88,11 +82,10 @@ def block_skip_problems(program: Program) -> list[Problem]:
             continue
         if k + 1 == len(motions) or motions[k + 1].starts_operation:
             problems.append(
-                Problem(
+                warning(
                     program.file_of(motion.operation),
                     skip.line,
                     Wording("CTL460", "opskip_ends_operation", operation=motion.operation.name),
-                    severity=Severity.WARNING,
                 )
             )
             skip = None

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from trunnion.controls.setting_rules import tool_number
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import LoadTool, Operation, Tool
 from trunnion.output.program import Program
@@ -69,13 +69,12 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
 
 def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Problem:
     """Return a warning of a register for the length, which the control does not take."""
-    return Problem(
+    return warning(
         program.file_of(operation),
         load.line,
         Wording(
             "CTL715", "length_is_that_of_tool", tool=load.number, register=load.adjust, control=program.control.name
         ),
-        severity=Severity.WARNING,
     )
 
 
@@ -100,7 +99,7 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
     name = operation.tool.name
     named = next((other for other in before if other.tool.name and other.tool.name != name), None)
     if name and named is not None and all(other.tool.name != name for other in before):
-        yield Problem(
+        yield warning(
             file,
             operation.line,
             Wording(
@@ -112,7 +111,6 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
                 name=name,
                 operation=operation.name,
             ),
-            severity=Severity.WARNING,
         )
 
 
