@@ -107,14 +107,15 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         example="0.002",
     ),
     "zero": RunSetting(
-        "Position of the workpiece zero on the machine, mm. With it, and tool_length for slides along the tool, every "
-        "slide is checked against its limits; without it only whether the program fits into the travel somewhere.",
+        "Position of the workpiece zero on the machine, mm. With it, and tool_length for linear axes along the "
+        "tool, every linear axis is checked against its limits; without it only whether the program fits into the "
+        "travel somewhere.",
         "the definition's workpiece.zero_mm",
         form="X,Y,Z",
         example="0,0,120.5",
     ),
     "tcp": _choice(
-        "With off the program holds positions of slides and rotary axes instead of the tip, with points inserted.",
+        "With off the program holds positions of linear and rotary axes instead of the tip, with points inserted.",
         "on",
         "off",
         default="on where the control has TCP",
@@ -148,7 +149,7 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         default="as the control's definition says",
     ),
     "listing": _choice(
-        "What the listing has besides the tip and both rotary axes: nothing, or the positions of the slides.",
+        "What the listing has besides the tip and both rotary axes: nothing, or the positions of the linear axes.",
         "tip",
         "slides",
     ),
