@@ -290,7 +290,7 @@ def _value(goal: str, place: PartPlace) -> str:
     """Return the value of a goal in words."""
     what = {
         "rotary": "the rotary axes turn",
-        "slides": "the slides travel",
+        "slides": "the linear axes travel",
         "time": "as the planner of speeds has it, it takes",
         "overspeed": "the axes do not reach the feed in",
     }

@@ -74,7 +74,7 @@ def check_home(context: Context) -> Check:
     if not (motions.at_home & motions.named).any():
         return _check_other_positions(context)
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
-    good = "slides and rotary axes at home before, after and at every tool change"
+    good = "linear and rotary axes at home before, after and at every tool change"
     return check_from_places("home", _TITLE, places, good)
 
 
@@ -107,7 +107,7 @@ def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator
         was_home = k >= 0 and motions.at_home[k, slides].all()
         if not (was_home and _slides_stay_home(run, int(motions.rows[k]) + 1, row + 1)):
             what = "changes the tool" if event.kind == "tool_change" else "ends"
-            text = f"{what} in line {event.line} while the slides are not at home; this is the last motion before"
+            text = f"{what} in line {event.line} while the linear axes are not at home; this is the last motion before"
             yield context.place(row, 0.0, text)
 
 
