@@ -122,8 +122,8 @@ _PLACE: Final = job(
     Option("setup", "--setup", Text("NAME"), "the set-up of a project with several", own=True),
     Option(
         "goal", "--goal", Choice(GOALS, "GOAL"),
-        "what the best place is best for: margin to the limits, travel of rotary axes or of linear ones (slides), time,"
-        " fewest blocks whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions)",
+        "what the best place is best for: margin to the limits, travel of rotary or linear axes, time, fewest blocks"
+        " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions)",
         default="margin",
     ),
     Option(

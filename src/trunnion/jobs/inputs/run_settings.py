@@ -107,8 +107,9 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         example="0.002",
     ),
     "zero": RunSetting(
-        "Position of the workpiece zero on the machine, mm. With it, and tool_length for linear axes along the tool, "
-        "each is checked against its limits; without it only whether the program fits into the travel somewhere.",
+        "Position of the workpiece zero on the machine, mm. With it, and tool_length for linear axes along the "
+        "tool, every linear axis is checked against its limits; without it only whether the program fits into the "
+        "travel somewhere.",
         "the definition's workpiece.zero_mm",
         form="X,Y,Z",
         example="0,0,120.5",
