@@ -27,7 +27,7 @@ from tests.support.dask_clusters import Cluster
 import make_cls
 import trunnion
 from trunnion.batch import run_batch
-from trunnion.batch.cluster import DaskWorkers
+from trunnion.batch.cluster import DaskWorkers, Scheduler
 from trunnion.batch.jobs import Batch, BatchJob
 from trunnion.batch.records import Record
 from trunnion.batch.result_keys import program_version
@@ -230,7 +230,7 @@ def costs(folder: Path, count: int) -> None:
 
 def dask_workers(cluster: Cluster, store: Store) -> Callable[[int], DaskWorkers]:
     """Return what makes workers that do nothing, and write to a store themselves where they reach it."""
-    return lambda _: DaskWorkers(cluster.address, nothing, writing=store.worker_url)
+    return lambda _: DaskWorkers(Scheduler(cluster.address), nothing, writing=store.worker_url)
 
 
 def processor_of(process: int) -> float:

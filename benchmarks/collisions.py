@@ -113,7 +113,7 @@ def check_times(blocks: int) -> list[float]:
             f"{len(run) * 10 / asked:.0f} rows and pairs for each, {len(found)} findings"
         )
         for each in found[:5]:
-            print(f"    {each.between}: rows {each.row} to {each.last_row}, {each.depth_mm:.2f} mm deep")
+            print(f"    {each.between}: rows {each.rows[0]} to {each.rows[1]}, {each.depth:.2f} mm deep")
     return times
 
 

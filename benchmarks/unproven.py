@@ -13,11 +13,12 @@ from trunnion.cli import configure_process
 def main() -> None:
     """Run from the command line."""
     configure_process()
+    from trunnion.cl.read import AS_IT_SAYS
     from trunnion.cli.cl_files import begin_reading
 
     source, name, target = sys.argv[1:]
     with ThreadPoolExecutor(1) as executor:
-        coming = begin_reading([source], None, False, executor)
+        coming = begin_reading([source], AS_IT_SAYS, executor)
         # As the command does, all else is imported while the file is read.
         from trunnion.files import atomic_file
         from trunnion.jobs.post.planning import plan_program

@@ -23,17 +23,10 @@ _LISTENING: Final = 0.5
 def prefetch(work: Callable[[Item], Result], items: Sequence[Item]) -> Iterator[Result]:
     """Yield the results of ``work`` for all items in order, computing at most one item ahead.
 
-    Parameters
-    ----------
-    work
-        Computes the result of an item, in a second thread.
-    items
-        None of them is None.
+    work   computes the result of an item, in a second thread
+    items  none of them is None
 
-    Raises
-    ------
-    Exception
-        Whatever ``work`` raises, when its result is due.
+    Raises whatever ``work`` raises, when its result is due.
     """
     if len(items) < _MIN_ITEMS:
         yield from map(work, items)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from trunnion.messages import LIBRARY, Wording, Words, foreign
+from trunnion.messages import LIBRARY, Wording, Words
 from trunnion.wording import one_line
 
 
@@ -46,7 +46,7 @@ def key_subject(path: str) -> Subject:
     return Subject(SubjectKind.KEY, path)
 
 
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True)
 class Problem:
     """One thing that is wrong, its location, and how to correct it.
 
@@ -60,26 +60,8 @@ class Problem:
     file: str
     line: int
     wording: Wording
-    severity: Severity
-    subject: Subject | None
-
-    def __init__(
-        self,
-        file: str,
-        line: int,
-        wording: Wording | str,
-        cure: str = "",
-        severity: Severity = Severity.ERROR,
-        *,
-        subject: Subject | None = None,
-        code: str = "",
-    ) -> None:
-        """Make a problem of a wording; a text, with its cure and its code, is for those who have no catalogue."""
-        object.__setattr__(self, "file", file)
-        object.__setattr__(self, "line", line)
-        object.__setattr__(self, "wording", foreign(wording, cure, code) if isinstance(wording, str) else wording)
-        object.__setattr__(self, "severity", severity)
-        object.__setattr__(self, "subject", subject)
+    severity: Severity = Severity.ERROR
+    subject: Subject | None = None
 
     @property
     def what(self) -> str:
@@ -129,6 +111,11 @@ class Problem:
         return one_line(f"{place}: {self.severity}: {self.wording.text('what', words)}{cure}{code}")
 
 
+def warning(file: str, line: int, wording: Wording, *, subject: Subject | None = None) -> Problem:
+    """Return a problem that does not stop the work."""
+    return Problem(file, line, wording, Severity.WARNING, subject)
+
+
 def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     """Problems that differ only in their lines become one: at the first line, with their number."""
     alike: dict[tuple[object, ...], list[Problem]] = {}
@@ -140,12 +127,9 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     )
 
 
-def argument_problem(
-    name: str, wording: Wording | str, cure: str = "", severity: Severity = Severity.ERROR, *, code: str = ""
-) -> Problem:
+def argument_problem(name: str, wording: Wording, severity: Severity = Severity.ERROR) -> Problem:
     """Return a problem with an argument of a function of the library."""
-    subject = Subject(SubjectKind.ARGUMENT, name)
-    return Problem(name, 0, wording, cure, severity, subject=subject, code=code)
+    return Problem(name, 0, wording, severity, Subject(SubjectKind.ARGUMENT, name))
 
 
 def setting_problem(name: str, wording: Wording) -> Problem:

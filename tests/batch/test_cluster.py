@@ -18,7 +18,7 @@ from tests.support.dask_clusters import Cluster, needs_dask
 from tests.support.divided import write_divided, write_jobs
 from tests.support.locations import YL569
 from trunnion.batch import Status, run_batch
-from trunnion.batch.cluster import DaskWorkers
+from trunnion.batch.cluster import DaskWorkers, Scheduler
 from trunnion.batch.divided_files import SHARES
 from trunnion.batch.jobs import Batch
 from trunnion.batch.records import Record
@@ -66,7 +66,7 @@ def run_disturbed(cluster: Cluster, batch: Batch, folder: Path, place: str) -> B
     return run_jobs(
         batch,
         store,
-        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url, patience=600.0),
+        lambda _: DaskWorkers(Scheduler(cluster.address, patience=600.0), simple_work, writing=store.worker_url),
         Disturber(9, disturb),
     )
 
@@ -161,7 +161,7 @@ def test_a_scheduler_without_workers_is_told_and_left_in_the_end(
         run_jobs(
             simple_batch(tmp_path / "in"),
             FolderStore(tmp_path / "out"),
-            lambda _: DaskWorkers(cluster.address, simple_work, wait=2.5, observer=listener),
+            lambda _: DaskWorkers(Scheduler(cluster.address, wait=2.5), simple_work, observer=listener),
         )
     assert listener.codes == ["BAT240"]
 
@@ -174,7 +174,7 @@ def test_workers_of_another_version_end_the_batch(cluster: Cluster) -> None:
     task = Task("", Action.POST, {}, "files/a.cls", {"files/a.cls": b""}, {"files/m": b"shared"}, "a.mpf", "")
     record = Record("a.mpf", "a.cls", "", "post", "", Status.BROKEN)
     with (
-        DaskWorkers(cluster.address, _other_version) as workers,  # type: ignore[arg-type]
+        DaskWorkers(Scheduler(cluster.address), _other_version) as workers,  # type: ignore[arg-type]
         pytest.raises(InputError, match=r"a worker has Trunnion 0.*BAT210"),
     ):
         list(workers.run([(Assignment(0, record), task)]))
@@ -183,5 +183,5 @@ def test_workers_of_another_version_end_the_batch(cluster: Cluster) -> None:
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tls://127.0.0.1:9", "nonsense://x"])
 def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
     monkeypatch.setattr("trunnion.batch.cluster._ATTEMPT", 0.2)
-    with pytest.raises(InputError, match="BAT220"), DaskWorkers(address, simple_work):
+    with pytest.raises(InputError, match="BAT220"), DaskWorkers(Scheduler(address), simple_work):
         pass

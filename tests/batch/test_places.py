@@ -9,6 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.support.locations import YL569
+from trunnion.batch.batch_run import run_batch
 from trunnion.batch.jobs import BatchJob, folder_files
 from trunnion.batch.patterns import matches, pattern_fault
 from trunnion.batch.places import units_of
@@ -68,7 +70,7 @@ def test_places_are_unique_and_safe_on_every_system(one: list[str], other: list[
     units = units_of(jobs)
     folded = [unicodedata.normalize("NFC", unit.place).casefold() for unit in units]
     assert len(set(folded)) == len(units) == len(one) + len(other)
-    assert [name_fault(PurePosixPath(unit.place)) for unit in units] == [""] * len(units)
+    assert not [unit for unit in units if name_fault(PurePosixPath(unit.place))]
     alone = [
         unit
         for job in jobs
@@ -135,3 +137,15 @@ def test_files_of_a_folder_are_those_within(tmp_path: Path) -> None:
 def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="FIL110"):
         folder_files(tmp_path / "no")
+
+
+def test_results_never_take_the_places_of_files_that_are_read(tmp_path: Path) -> None:
+    """Not even where an earlier run of the same batch has written them."""
+    nc = tmp_path / "nc"
+    nc.mkdir()
+    program = (YL569 / "2_hub_rough.expected.mpf").read_bytes()
+    (nc / "part.mpf").write_bytes(program)
+    for results in (nc, f"file://{nc}"):
+        with pytest.raises(InputError, match=r"^results: error: would hold part\.mpf, which a job reads .*FIL240"):
+            run_batch(nc, results=results, action="convert", machine="yl569", to_machine="yl569", workers=1)
+    assert (nc / "part.mpf").read_bytes() == program

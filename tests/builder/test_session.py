@@ -13,6 +13,7 @@ from trunnion import InputError, load_machine
 from trunnion.builder.chains import CHAINS
 from trunnion.builder.document import with_value, without_value
 from trunnion.builder.draft import MOST_LETTERS
+from trunnion.builder.likeness import definition_like
 from trunnion.builder.sample import shipped_sample
 from trunnion.builder.saved_file import file_text, page_text
 from trunnion.builder.session import BuilderSession, RequestError
@@ -40,18 +41,23 @@ def field(data: dict[str, Any], *path: Any) -> dict[str, Any]:
     return next(each for page in data["pages"].values() for each in page if each["path"] == wanted)
 
 
-def test_a_definition_that_extends_says_only_what_differs(session: BuilderSession) -> None:
+def test_a_definition_that_extends_marks_what_it_takes_over_as_trunnion_new_does(session: BuilderSession) -> None:
     text = begun(session)
-    assert text == first_line("machine") + 'extends = "yl569"\nname = "Ours"\n'
+    assert text == definition_like(load_machine("yl569"), "Ours")
+    mark = "limits_deg = [-11, 100] # measure: software limits of the control\n"
+    assert text.count(mark) == 1
     limits = ["axis", ["B"], "limits_deg"]
     changed = ask(session, "change", text=text, path=limits, value=[-5, 95])
-    assert changed["text"] == text + '\n[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n'
+    assert changed["text"] == text.replace(mark, "limits_deg = [-5, 95]\n")
     assert changed["problems"] == []
     told = field(changed, "axis", ("B",), "limits_deg")
     assert (told["value"], told["inherited"], told["own"]) == ([-5, 95], [-11, 100], True)
     back = ask(session, "change", text=changed["text"], path=limits, value=[-11, 100])
-    assert back["text"] == text
+    assert back["text"] == text.replace(mark, "")
     assert not field(back, "axis", ("B",), "limits_deg")["own"]
+    # Measured, and the same as the other machine's: it stays, without the mark.
+    same = ask(session, "change", text=text, path=limits, value=[-11, 100])
+    assert same["text"] == text.replace(mark, "limits_deg = [-11, 100]\n")
 
 
 @pytest.mark.parametrize(
@@ -114,7 +120,7 @@ def test_what_is_not_known_of_a_new_machine_is_left_out_or_marked(session: Build
     assert found["marks"] == []
     assert "#" not in found["text"].removeprefix(first_line("machine"))
     warned = ask(session, "sample", text=found["text"])
-    assert any("travel" in each["what"] and not each["error"] for each in warned["problems"])
+    assert any("travel" in each["text"] and each["severity"] == "warning" for each in warned["problems"])
 
 
 def test_a_comment_of_the_users_own_is_no_mark(session: BuilderSession) -> None:
@@ -140,7 +146,7 @@ def test_a_sample_that_is_refused_has_a_reason(session: BuilderSession, path: li
     sample = ask(session, "sample", text=changed["text"])
     assert not sample["passed"]
     failed = [each for each in sample["checks"] if each["state"] == "FAIL"]
-    assert failed or any(each["error"] for each in sample["problems"])
+    assert failed or any(each["severity"] == "error" for each in sample["problems"])
     assert "force" not in str(sample)
     assert (sample["lines"], sample["all"]) == ([], 0)
     assert told in str(sample["problems"]) + str(sample["checks"])

@@ -7,7 +7,7 @@ import pytest
 
 from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Body, Fail, Read
-from trunnion.cl import read_cl
+from trunnion.cl import ClReading, read_cl
 from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import Operation, Toolpath
 
@@ -22,7 +22,7 @@ def read(tmp_path: Path) -> Read:
     def reader(text: str | bytes, **options: object) -> Toolpath:
         path = tmp_path / "a.cls"
         path.write_bytes(text.encode() if isinstance(text, str) else text)
-        return read_cl(path, **options)  # type: ignore[arg-type]
+        return read_cl(path, ClReading(**options))  # type: ignore[arg-type]
 
     return reader
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.support.cl_dialects import EVERY, Step, Vector, Z, write_in
 from tests.support.examples import examples
-from trunnion.cl import read_cl
+from trunnion.cl import ClReading, read_cl
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.writers import WRITERS as OURS
 from trunnion.model.toolpath import CutterComp, CycleOn, Event, Kind, Message, Operation, SpindleOn, Toolpath
@@ -161,7 +161,7 @@ def test_a_path_is_the_same_in_every_dialect(tmp_path: Path, steps: list[Step], 
             continue
         path = tmp_path / f"{dialect}.txt"
         path.write_text(text, encoding="utf-8")
-        toolpath = read_cl(path, strict=True)
+        toolpath = read_cl(path, ClReading(strict=True))
         assert toolpath.dialect == dialect
         found[dialect] = content(toolpath)
         for ours in OURS:
@@ -183,7 +183,7 @@ def rewritten(toolpath: Toolpath, dialect: str, inch: bool, path: Path) -> Toolp
     writer.write(sink)
     path.write_bytes(sink.getvalue())
     assert not read_back_problems(writer.toolpath, path, dialect)
-    return read_cl(path, strict=True)
+    return read_cl(path, ClReading(strict=True))
 
 
 def test_the_writers_say_what_they_are_asked() -> None:

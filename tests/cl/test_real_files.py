@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.locations import SHARED, TESTS
 from tests.support.plain_cl_scan import counts_of, plain_scan
-from trunnion.cl import read_cl
+from trunnion.cl import ClReading, read_cl
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Kind, Phase
 
@@ -32,7 +32,7 @@ NAMES = {
 @needs_files
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_a_real_file_is_read_without_a_remark(path: Path) -> None:
-    toolpath = read_cl(path, strict=True)
+    toolpath = read_cl(path, ClReading(strict=True))
     assert toolpath.remarks == ()
     assert all(len(operation.moves) for operation in toolpath.operations)
 
@@ -82,7 +82,7 @@ DIALECT_OF = {".cls": "clsf", ".apt": "solidworks"}
 @pytest.mark.parametrize("path", ALL_FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_a_real_file_is_read_whole(path: Path) -> None:
     """Points, arcs, holes, tools and extents are those of a scan that shares nothing with the reader."""
-    toolpath = read_cl(path, strict=True)
+    toolpath = read_cl(path, ClReading(strict=True))
     assert toolpath.dialect == DIALECT_OF.get(path.suffix, "ncl")
     assert counts_of(toolpath) == plain_scan(path)
 

@@ -13,7 +13,7 @@ from tests.support.examples import examples
 from tests.support.naive import cl_scan as naive
 from trunnion.arrays import Floats, Lines
 from trunnion.cl.read import read_cl, read_source
-from trunnion.cl.scan import COMMENT, MAKES_ROW, SPAN_COLUMNS, UNFINISHED, PointColumns, fill_modal_axes, scan
+from trunnion.cl.scan import COMMENT, MAKES_ROW, SPAN_COLUMNS, UNFINISHED, Piece, PointColumns, fill_modal_axes, scan
 from trunnion.cl.sources import cl_sources
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Toolpath
@@ -34,7 +34,7 @@ def scan_all(
     found = []
     while at < len(data):
         at, number, rows, count = scan(
-            apt, array, at, len(data), True, number, rows, PointColumns(tip, axis, line), room
+            apt, Piece(array, at, len(data), number, True), rows, PointColumns(tip, axis, line), room
         )
         for begin, length, where, row, mark in room[:count].tolist():
             found.append((naive.blank(data[begin : begin + length].decode("latin-1")), where, row, mark))
@@ -83,7 +83,7 @@ def test_a_point_is_read_to_the_last_bit_or_left_to_python(fields: list[str], bl
 def test_what_the_reader_gives_is_what_python_reads(tmp_path: Path, fields: list[str]) -> None:
     path = tmp_path / "a.cls"
     path.write_text(f"TOOL PATH/A,TOOL,T\nGOTO/{','.join(fields)}\nEND-OF-PATH\n")
-    (operation,) = read_source(cl_sources(path)[0], 1 << 16).operations
+    (operation,) = read_source(cl_sources(path)[0], chunk=1 << 16).operations
     assert [bits(number) for number in operation.moves.tip[0]] == [bits(float(field)) for field in fields]
 
 
@@ -197,7 +197,7 @@ def fingerprint(toolpath: Toolpath) -> object:
 
 def outcome(path: Path, chunk: int) -> object:
     try:
-        return fingerprint(read_source(cl_sources(path)[0], chunk))
+        return fingerprint(read_source(cl_sources(path)[0], chunk=chunk))
     except InputError as error:
         return error.problems
 

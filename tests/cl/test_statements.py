@@ -1,11 +1,13 @@
 """What each statement becomes."""
 
+import io
 import math
 
 import numpy as np
 import pytest
 
 from tests.support.cl_reading import Body, Fail, Read
+from trunnion.cl import read_cl_files
 from trunnion.cl.statements import HANDLERS
 from trunnion.model.toolpath import (
     BlockSkip,
@@ -478,9 +480,9 @@ def test_majors_are_written_without_blanks() -> None:
 # -- progress -----------------------------------------------------------------------------------------------------
 
 
-def test_progress_is_told_the_bytes_done(read: Read) -> None:
+def test_progress_is_told_the_bytes_done() -> None:
     text = "TOOL PATH/A,TOOL,T\nGOTO/0,0,0\nEND-OF-PATH\n"
     seen: list[int] = []
-    read(text, progress=seen.append)
+    read_cl_files(io.BytesIO(text.encode()), progress=seen.append)
     assert seen == sorted(seen)
     assert seen[-1] == len(text)

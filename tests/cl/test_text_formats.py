@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 from tests.support.apt_heads import HEADS
-from trunnion.arrays import Bytes, Ints2
+from trunnion.arrays import Ints2
 from trunnion.cl import is_cl_file, read_cl, shop_statement, unknown_statements
 from trunnion.cl.conventions import CycleWords
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import Dialect, marks
 from trunnion.cl.dialects import DIALECTS, recognize_dialect
-from trunnion.cl.read import read_source
-from trunnion.cl.scan import MAKES_ROW, UNFINISHED, PointColumns
+from trunnion.cl.read import ClReading, read_source
+from trunnion.cl.scan import MAKES_ROW, UNFINISHED, Piece, PointColumns
 from trunnion.cl.sources import cl_sources
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
@@ -33,10 +33,9 @@ from trunnion.messages import foreign
 from trunnion.model.toolpath import Event, Toolpath
 
 
-def scan_pairs(
-    data: Bytes, start: int, stop: int, last: bool, line: int, row: int, columns: PointColumns, spans: Ints2
-) -> tuple[int, int, int, int]:
-    text, at, count = data[:stop].tobytes(), start, 0
+def scan_pairs(piece: Piece, row: int, columns: PointColumns, spans: Ints2) -> tuple[int, int, int, int]:
+    data, at, stop, line, last = piece
+    text, count = data[:stop].tobytes(), 0
     while at < stop and count < len(spans) and row < len(columns.line):
         middle = text.index(b"\n", at) + 1
         end, mark = text.find(b"\n", middle) + 1, 0
@@ -190,13 +189,13 @@ def _unplaced(event: Event) -> Event:
 
 def refused(folder: Path, text: str, **options: object) -> tuple[Problem, ...]:
     with pytest.raises(InputError) as caught:
-        read_cl(file_of(folder, text), **options)  # type: ignore[arg-type]
+        read_cl(file_of(folder, text), ClReading(**options))  # type: ignore[arg-type]
     return caught.value.problems
 
 
 def test_both_texts_of_a_path_are_one_toolpath(tmp_path: Path) -> None:
-    paired = read_cl(file_of(tmp_path, PAIRED), strict=True)
-    in_apt = read_cl(file_of(tmp_path, IN_APT), strict=True)
+    paired = read_cl(file_of(tmp_path, PAIRED), ClReading(strict=True))
+    in_apt = read_cl(file_of(tmp_path, IN_APT), ClReading(strict=True))
     assert (paired.dialect, in_apt.dialect) == ("pairs", "apt")
     assert repr(list(said(paired))) == repr(list(said(in_apt)))
     assert paired.operations[1].moves.line.tolist() == [15, 17, 19, 21]
@@ -205,7 +204,7 @@ def test_both_texts_of_a_path_are_one_toolpath(tmp_path: Path) -> None:
 @pytest.mark.parametrize("chunk", [1, 7, 64])
 def test_the_pieces_in_which_a_file_is_read_change_nothing(tmp_path: Path, chunk: int) -> None:
     (source,) = cl_sources(file_of(tmp_path, PAIRED.replace("\n", "\r\n").removesuffix("\r\n")))
-    found, whole = read_source(source, chunk), read_source(source)
+    found, whole = read_source(source, chunk=chunk), read_source(source)
     assert repr(list(said(found))) == repr(list(said(whole)))
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.cl import read_cl
+from trunnion.cl import ClReading, read_cl
 from trunnion.cli import main
 from trunnion.model.toolpath import Tool
 
@@ -23,7 +23,7 @@ SEVEN = "CUTTER/10,1,4,1,0,2,50\n"
 def tools(tmp_path: Path, dialect: str, text: str) -> list[Tool]:
     file = tmp_path / "part.txt"
     file.write_text(HEADS[dialect] + text + ("END-OF-PATH\n" if dialect == "clsf" else "FINI\n"), encoding="utf-8")
-    toolpath = read_cl(file, dialect=dialect)
+    toolpath = read_cl(file, ClReading(dialect=dialect))
     assert toolpath.remarks == ()
     return [operation.tool for operation in toolpath.operations]
 

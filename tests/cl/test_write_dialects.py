@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.cl_reading import Body, Read
 from tests.support.locations import SHARED
-from trunnion.cl import read_cl
+from trunnion.cl import ClReading, read_cl
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.write import write_cl
 from trunnion.cl.writers import WRITERS
@@ -28,7 +28,7 @@ def again(toolpath: Toolpath, dialect: str, folder: Path, *, inch: bool = False)
     writer.write(sink)
     path.write_bytes(sink.getvalue())
     assert read_back_problems(writer.toolpath, path, dialect) == []
-    return read_cl(path, strict=True), [remark.what for remark in writer.remarks]
+    return read_cl(path, ClReading(strict=True)), [remark.what for remark in writer.remarks]
 
 
 def refused(dialect: str, *operations: Operation) -> str:

@@ -267,7 +267,8 @@ def test_a_stdout_that_is_full_is_said(command: str) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run([sys.executable, "-m", "trunnion", *arguments], stdout=full, stderr=-1, check=False)
     assert done.returncode == 2
-    assert b"cannot be written: No space left on device" in done.stderr
+    cure = b"make space there, or write to another disk [FIL230]"
+    assert b"stdout: error: cannot be written: No space left on device; " + cure in done.stderr
     assert b"Traceback" not in done.stderr
 
 

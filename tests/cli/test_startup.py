@@ -1,5 +1,6 @@
 """A command imports what it needs, and ``post`` while its first CL file is being read."""
 
+import re
 import subprocess
 import sys
 import weakref
@@ -9,11 +10,21 @@ from pathlib import Path
 import pytest
 
 from tests.support.locations import GOLDEN, YL569
+from trunnion.cl.read import AS_IT_SAYS
 from trunnion.cli import main
 from trunnion.cli.cl_files import begin_reading
 from trunnion.errors import InputError
 
 FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(GOLDEN / "dmu65" / "corner.cls")]
+
+#: What neither posts nor proves a program: pages and papers, simulation, projects, impellers, hooks, ...
+NOT_ASKED_FOR = (
+    r"jinja2|ssl|http|trimesh|asyncio|multiprocessing$|tqdm"
+    r"|trunnion\.(simulation|impeller|geometry|viewer|twin|batch|builder|conversion|capability|schemas|explanations)"
+    r"|trunnion\.reporting\.(?!text$)"
+    r"|trunnion\.jobs\.(project|post_project|simulate|convert|view|place|describe|capability|impeller)"
+    r"|trunnion\.(hooks\.calling|controls\.texts|jobs\.post\.papers\.manifests)"
+)
 
 
 def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> None:
@@ -29,6 +40,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.cli.command_line.help_texts",
         "trunnion.cli.command_line.parser",
         "trunnion.cli.command_line.post_mistakes",
+        "trunnion.cli.printing",
         "trunnion.cli.process",
         "trunnion.cli.terminal_text",
         "trunnion.dialect_names",
@@ -55,6 +67,56 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
     }
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["post", FILES[1], "--machine", "yl569", "--output", "part.mpf"],
+        ["verify", str(YL569 / "3_blade_finish.expected.mpf"), "--machine", "yl569", "--cl", FILES[1]],
+    ],
+    ids=["post", "verify"],
+)
+def test_a_command_imports_nothing_of_what_it_is_not_asked_for(words: list[str], tmp_path: Path) -> None:
+    imported = imported_by(words, tmp_path)
+    assert {f"trunnion.cli.{words[0]}", "trunnion.verification.verifier", "numba"} <= imported
+    assert not {name for name in imported if name == "xml" or re.match(NOT_ASKED_FOR, name)}
+
+
+def test_the_version_is_said_without_the_commands(tmp_path: Path) -> None:
+    imported = imported_by(["--version"], tmp_path)
+    assert not imported & {"argparse", "hashlib", "json", "shutil", "tempfile", "numpy"}
+    assert {name for name in imported if name.startswith("trunnion.")} == {
+        "trunnion.cli",
+        "trunnion.cli.printing",
+        "trunnion.cli.process",
+        "trunnion.cli.terminal_text",
+        "trunnion.errors",
+        "trunnion.messages",
+        "trunnion.version",
+        "trunnion.wording",
+    }
+
+
+def test_help_needs_the_declarations_of_commands_alone(tmp_path: Path) -> None:
+    for words in (["--help"], ["post", "--help"]):
+        imported = imported_by(words, tmp_path)
+        assert not imported & {"hashlib", "json", "tempfile", "numpy"}
+        assert not {
+            name for name in imported if re.match(r"trunnion\.(files|results|jobs\.(guard|inputs|post))\b", name)
+        }
+
+
+def imported_by(words: list[str], folder: Path) -> set[str]:
+    """Return the modules that a command imports in a process of its own."""
+    script = (
+        "import sys\nfrom trunnion.cli import main\n"
+        "try:\n    code = main(sys.argv[1:])\nexcept SystemExit as end:\n    code = end.code\n"
+        "assert code == 0\nprint('imported', *sys.modules)"
+    )
+    command = [sys.executable, "-c", script, *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder)
+    return set(done.stdout.splitlines()[-1].split()[1:])
+
+
 def test_numba_is_imported_before_what_would_import_it_many_calls_deeper() -> None:
     script = "import sys\nimport trunnion.cli.startup\nprint(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
@@ -64,7 +126,7 @@ def test_numba_is_imported_before_what_would_import_it_many_calls_deeper() -> No
 
 def test_toolpaths_come_in_order_and_are_not_kept() -> None:
     with ThreadPoolExecutor(1) as executor:
-        coming = begin_reading(FILES, None, False, executor)
+        coming = begin_reading(FILES, AS_IT_SAYS, executor)
         (first,) = next(coming)
         assert first.file == FILES[0]
         gone = weakref.ref(first.operations[0].moves.tip)
@@ -76,7 +138,7 @@ def test_toolpaths_come_in_order_and_are_not_kept() -> None:
 
 def test_a_file_that_cannot_be_read_is_said_where_its_toolpath_is_wanted(tmp_path: Path) -> None:
     with ThreadPoolExecutor(1) as executor:
-        coming = begin_reading([str(tmp_path / "none.cls"), *FILES], None, False, executor)
+        coming = begin_reading([str(tmp_path / "none.cls"), *FILES], AS_IT_SAYS, executor)
         with pytest.raises(InputError, match="file not found"):
             next(coming)
 

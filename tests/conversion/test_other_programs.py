@@ -26,6 +26,7 @@ from trunnion.model.toolpath import (
     Stop,
 )
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 MACHINE = load_machine("yl569")
 CONTROL = load_control(MACHINE.control)
@@ -41,7 +42,8 @@ class Programs:
         """The program as a whole."""
         (self.folder / "part.mpf").write_text("\n".join(lines) + "\nM30\n", encoding="utf-8")
         return convert(
-            run_program(self.folder / "part.mpf", MACHINE, subprograms=sorted(self.folder.glob("*.SPF"))), CONTROL
+            run_program(self.folder / "part.mpf", MACHINE, RunOptions(subprograms=sorted(self.folder.glob("*.SPF")))),
+            CONTROL,
         )
 
     def one(self, *lines: str) -> Operation:

@@ -9,7 +9,7 @@ import pytest
 from tests.support.definition_files import loaded
 from trunnion.definitions import (
     MAX_FILE_BYTES,
-    key_lines,
+    layout,
     load_table,
 )
 from trunnion.errors import InputError
@@ -56,7 +56,7 @@ last = "end"'''
 
 
 def test_keys_are_found_on_their_lines_among_strings_arrays_and_comments() -> None:
-    lines = key_lines(TRICKY)
+    lines = layout(TRICKY).lines
     assert {path: line for path, line in lines.items() if not any(isinstance(key, int) for key in path)} == {
         ("top",): 2,
         ("text",): 3,
@@ -90,12 +90,12 @@ def test_keys_are_found_on_their_lines_among_strings_arrays_and_comments() -> No
 
 
 def test_lines_are_the_same_with_windows_line_ends() -> None:
-    assert key_lines(TRICKY.replace("\n", "\r\n")) == key_lines(TRICKY)
+    assert layout(TRICKY.replace("\n", "\r\n")).lines == layout(TRICKY).lines
 
 
 @pytest.mark.parametrize("text", ["", "\n", "=", "[", "[[", "[[a", "a", "a=", 'a="', "a={", "a=[{", '"', "a.", "]]"])
 def test_a_text_that_is_no_toml_does_not_trip_the_index(text: str) -> None:
-    key_lines(text)
+    layout(text)
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,7 @@ def test_a_text_that_is_no_toml_does_not_trip_the_index(text: str) -> None:
 def test_a_string_ends_where_the_toml_parser_ends_it(value: str, lines: int) -> None:
     """0: it does not end, and nothing follows it."""
     text = f"a = {value}\nb = 2\n"
-    assert key_lines(text).get(("b",), 0) == (lines + 1 if lines else 0)
+    assert layout(text).lines.get(("b",), 0) == (lines + 1 if lines else 0)
     if lines:
         assert tomllib.loads(text)["b"] == 2
 

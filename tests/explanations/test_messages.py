@@ -8,6 +8,7 @@ import pytest
 import trunnion
 from trunnion.cli import main
 from trunnion.errors import Problem, Severity
+from trunnion.messages import foreign
 from trunnion.reporting.content import refused_content
 
 HEAD = """TOOL PATH/ONE,TOOL,D10
@@ -113,7 +114,10 @@ def test_a_usage_error_ends_with_its_code(arguments: list[str], capsys: pytest.C
 
 
 def test_the_report_of_a_refused_program_has_codes() -> None:
-    problems = [Problem("a.cls", 3, "wrong", "right", code="CL310"), Problem("a.cls", 4, "odd", "", Severity.WARNING)]
+    problems = [
+        Problem("a.cls", 3, foreign("wrong", "right", "CL310")),
+        Problem("a.cls", 4, foreign("odd"), Severity.WARNING),
+    ]
     (check,) = refused_content(trunnion.load_machine("yl569"), "a.mpf", problems[:1]).checks
     assert [place.told for place in check.places] == ["wrong; right [CL310]"]
 

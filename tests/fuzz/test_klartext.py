@@ -15,6 +15,7 @@ from tests.support.fuzz.mangle import mangle
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +85,7 @@ def test_a_program_without_end_is_stopped_with_a_message(folder: Path, text: str
     path = folder / "MAIN.H"
     path.write_text(text)
     with pytest.raises(InputError, match=STOPPED):
-        run_program(path, load_machine("dmu65"), step_limit=3000)
+        run_program(path, load_machine("dmu65"), RunOptions(step_limit=3000))
 
 
 DEEP = {
@@ -99,7 +100,7 @@ def test_calls_inside_calls_have_an_end(folder: Path, text: str) -> None:
     path = folder / "MAIN.H"
     path.write_text(text)
     with pytest.raises(InputError, match="deeper than"):
-        run_program(path, load_machine("dmu65"), subprograms=sorted(folder.glob("*.H")))
+        run_program(path, load_machine("dmu65"), RunOptions(subprograms=sorted(folder.glob("*.H"))))
 
 
 BOUNDED = {

@@ -5,16 +5,12 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.support.locations import YL569
-from trunnion.jobs.registry import JOBS
+from tests.support.locations import DOCS, YL569
+from trunnion.jobs.registry import JOBS, WITHOUT_HOOKS
 from trunnion.jobs.view.viewing import prepare_view
 from trunnion.options.kinds import FileIn
 
 CL = YL569 / "2_hub_rough.cls"
-
-#: Commands that read CL files, or run a post, and take no hooks: hooks see a machine, which info has not; convert and
-#: impeller make the toolpaths of their posts themselves; and no job of a batch runs code.
-WITHOUT = {"batch", "convert", "impeller", "info"}
 
 
 @pytest.fixture
@@ -37,7 +33,11 @@ def test_commands_that_read_cl_files_take_hooks() -> None:
         for job in JOBS.values()
         if any(isinstance(each.kind, FileIn) and "CL" in each.value_name.split("|") for each in job.options)
     }
-    assert {name for name in reads if JOBS[name].option("hooks") is None} == WITHOUT - {"batch", "impeller"}
+    assert {name for name in reads if JOBS[name].option("hooks") is None} == {*WITHOUT_HOOKS} - {"batch", "impeller"}
+    page = (DOCS / "hooks.md").read_text(encoding="utf-8")
+    for name, why in WITHOUT_HOOKS.items():
+        assert JOBS[name].option("hooks") is None
+        assert f"`{name}` ({why})" in page
 
 
 def test_a_place_is_that_of_the_lifted_path_and_its_program_is_lifted_once(lifted: Path) -> None:

@@ -14,7 +14,7 @@ from tests.support.golden_controls import CASES as CONTROL_CASES
 from tests.support.locations import FIDIA, FIDIA_HEAD, GOLDEN, HEADS, YL569
 from trunnion.cli import main
 from trunnion.cli.wording import in_command_words, problem_line
-from trunnion.verification import check_lines, place_lines, time_lines
+from trunnion.verification import check_lines, place_lines, stand_lines, time_lines
 
 Capture = pytest.CaptureFixture[bytes]
 
@@ -70,7 +70,12 @@ def test_a_program_is_the_same_and_so_is_its_proof(name: str, tmp_path: Path, ca
     others = [problem_line(problem) for problem in result.problems][len(remarks) :]
     decisions = [in_command_words(str(decision)) for decision in result.decisions]
     found = result.verification
-    proof = [*check_lines(found), *place_lines(found, failed_only=True), result.standing.told]
+    proof = [
+        *check_lines(found),
+        *place_lines(found, failed_only=True),
+        *stand_lines(found.checks),
+        result.standing.told,
+    ]
     printed = err.decode().splitlines()
     assert printed[: len(remarks) + len(decisions)] == [*remarks, *(decisions or [""])][: len(remarks) + len(decisions)]
     assert [line for line in printed if line][len(remarks) + len(decisions) :] == [*others, *proof]
@@ -95,7 +100,13 @@ def test_a_verification_is_the_same(with_cl: bool, capfdbinary: Capture) -> None
     command = ["verify", str(program), "--machine", "yl569", "--span", "1", *(["--cl", str(cl)] if with_cl else [])]
     code = main(command)
     found = trunnion.verify(program, machine="yl569", cl=[cl] if with_cl else (), span=1.0, columns=False)
-    lines = [*check_lines(found), *place_lines(found), *time_lines(found), found.standing.told]
+    lines = [
+        *check_lines(found),
+        *place_lines(found),
+        *time_lines(found),
+        *stand_lines(found.checks),
+        found.standing.told,
+    ]
     assert capfdbinary.readouterr().out.decode().splitlines() == lines
     assert (code, found.passed) == (1, False)
 

@@ -41,6 +41,7 @@ from trunnion.output.subprograms import SubprogramOutput
 from trunnion.output.validation import check_program
 from trunnion.planning import ControlCapabilities, PlanOptions, plan
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 
 def roomy(machine: Machine) -> Machine:
@@ -186,7 +187,7 @@ def judged(name: str, toolpath: Toolpath, folder: Path, subroutines: Path | None
     text, motions = found
     canon = accepted(text, folder)
     named = [] if subroutines is None else sorted(subroutines.glob("*.ngc"))
-    run = run_program(folder / "part.ngc", MACHINES[name], subprograms=named)
+    run = run_program(folder / "part.ngc", MACHINES[name], RunOptions(subprograms=named))
     assert [str(each) for each in run.errors] == []
     made = control_moves(canon)
     spindle: SpindleOn | None = None

@@ -29,7 +29,7 @@ def test_a_problem_has_the_text_of_its_wording() -> None:
 def test_problems_are_compared_kept_and_sent_as_data() -> None:
     problem = Problem("a.nc", 3, FILE, severity=Severity.WARNING)
     assert pickle.loads(pickle.dumps(problem)) == problem
-    assert len({problem, Problem("a.nc", 3, Wording("FIL130", "folder_not", subject="an NC program"), "",
+    assert len({problem, Problem("a.nc", 3, Wording("FIL130", "folder_not", subject="an NC program"),
                                  Severity.WARNING)}) == 1  # fmt: skip
     assert dict(problem.wording.parameters) == {"subject": "an NC program"}
 
@@ -75,7 +75,7 @@ def test_a_parameter_that_is_missing_hides_no_problem() -> None:
 
 
 def test_texts_of_others_are_said_as_they_are() -> None:
-    assert str(Problem("a.nc", 1, "is odd", "mend it", code="X")) == "a.nc:1: error: is odd; mend it [X]"
+    assert str(Problem("a.nc", 1, foreign("is odd", "mend it", "X"))) == "a.nc:1: error: is odd; mend it [X]"
     assert foreign("{x}").what == "{x}"
 
 

@@ -11,6 +11,7 @@ from trunnion.machines import load_machine
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 MACHINES = ["yl569", "dmu65", "hs664rt", "matsuura_mx330", "xyzac_trt", "generic_head_head_ca"]
 
@@ -94,7 +95,7 @@ def test_blocks_behind_skipped_ones_do_the_same(
     last = text.rstrip().rpartition("OPSKIP/")[2]
     assert last.startswith("OFF") or "OPSKIP/ON ends with operation ONE" in capsys.readouterr().err
     model = load_machine(machine)
-    whole, short = run_program(out, model), run_program(out, model, skip=True)
+    whole, short = run_program(out, model), run_program(out, model, RunOptions(skip=True))
     lines = out.read_text(encoding="utf-8").splitlines()
     skipped = {k for k, line in enumerate(lines, 1) if line.startswith("/")}
     assert skipped
@@ -120,7 +121,7 @@ def test_a_hole_behind_a_retract_that_may_be_skipped_is_gone_to_from_above(
     path, out = tmp_path / "part.cls", tmp_path / "part.nc"
     path.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
     assert main(["post", str(path), "--machine", machine, "--output", str(out)]) == 0
-    run = run_program(out, load_machine(machine), skip=True)
+    run = run_program(out, load_machine(machine), RunOptions(skip=True))
     across = np.flatnonzero((np.abs(np.diff(run.tip[:, 0])) > 1.0) & ~run.machine_frame[1:])
     assert len(across)
     assert (run.tip[across + 1, 2] > 22.0).any()

@@ -239,6 +239,24 @@ def test_the_cl_files_own_plunges_are_no_holes(tmp_path: Path) -> None:
             assert failed(lines[:k] + lines[k + 1 :], cl, tmp_path), line
 
 
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "xyzac_trt", "dmu65", "yl569", "hs664rt"])
+@pytest.mark.parametrize("tool", [1, 4])
+def test_the_next_operation_may_begin_where_the_last_hole_ends(tool: int, machine: str, tmp_path: Path) -> None:
+    """The way to its first point is another motion than the way out of the hole, and is missed."""
+    drill = operation("DRILL", f"RAPID\nGOTO/25,50,25,0,0,1\nCYCLE/{CYCLES['DRILL,BRKCHP']}\nGOTO/25,50,0\nCYCLE/OFF\n")
+    drill = drill.replace("FEDTO", "RTRCTO,25,FEDTO")
+    mill = operation("HELIX", "RAPID\nGOTO/25,50,25,0,0,1\nRAPID\nGOTO/25,50,2.5\nFEDRAT/MMPM,120\nGOTO/29,50,-8\n")
+    mill = mill.replace("LOAD/TOOL,1,ADJUST,1", f"LOAD/TOOL,{tool},ADJUST,{tool}")
+    cl, program = made(drill + mill, tmp_path, "cycles=off", machine=machine)
+    if machine != "xyzac_trt":
+        return
+    lines = program.read_text(encoding="utf-8").splitlines()
+    assert failed(lines, cl, tmp_path) == []
+    for k, line in enumerate(lines):
+        if re.search(" X25| Z25", line):
+            assert failed(lines[:k] + lines[k + 1 :], cl, tmp_path), line
+
+
 def test_holes_at_one_place_are_told_apart(tmp_path: Path) -> None:
     """Centred, drilled and reamed, one behind the other and each in its own turn."""
     spot, drill = "CYCLE/DRILL,RAPTO,3,FEDTO,-2,MMPM,90", f"CYCLE/{CYCLES['DRILL,BRKCHP']}"

@@ -48,6 +48,7 @@ from trunnion.output.subprograms import END_RESERVE_BYTES, MIN_SUBPROGRAM_BYTES,
 from trunnion.output.validation import check_program
 from trunnion.planning import plan
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 from trunnion.verification.comparison import compare
 
 
@@ -111,7 +112,7 @@ class WrittenProgram:
     others: list[Path]
 
     def run(self, machine: str) -> Run:
-        return run_program(self.main, MACHINES[machine], subprograms=self.others)
+        return run_program(self.main, MACHINES[machine], RunOptions(subprograms=self.others))
 
 
 def written(

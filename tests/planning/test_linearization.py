@@ -13,6 +13,7 @@ from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, forward, inverse, load_machine, shipped_machines, slide_positions
 from trunnion.planning.linearization.intermediate_points import DividedPath, divide_path
+from trunnion.planning.linearization.leg_division import PathRows
 
 NAMES = sorted(shipped_machines())
 ZERO = (37.0, -21.0, 110.0)
@@ -101,7 +102,12 @@ def divided(
     assume(np.isfinite(rotary).all())
     divisible = np.ones(len(tip), bool)
     return rotary, divide_path(
-        model, tip, axis, rotary, divisible, tcp=tcp, tip_tolerance=tip_tolerance, axis_tolerance=axis_tolerance
+        model,
+        PathRows(tip, axis, rotary),
+        divisible,
+        tcp=tcp,
+        tip_tolerance=tip_tolerance,
+        axis_tolerance=axis_tolerance,
     )
 
 
@@ -192,7 +198,7 @@ def test_with_tcp_a_short_turn_needs_no_points_and_without_it_does() -> None:
     counts = [
         len(
             divide_path(
-                model, tip, axis, rotary, np.ones(2, bool), tcp=tcp, tip_tolerance=0.001, axis_tolerance=0.1
+                model, PathRows(tip, axis, rotary), np.ones(2, bool), tcp=tcp, tip_tolerance=0.001, axis_tolerance=0.1
             ).tip
         )
         for tcp in (True, False)
@@ -212,7 +218,9 @@ def test_a_turn_in_the_pole_is_cut_into_pieces_at_rest() -> None:
     candidates = options.reshape(-1, 2)
     same_side = [c for c in candidates if abs(c[1] - first[1]) < 1e-6 and abs(c[0] - first[0]) > 90.0]
     rotary = np.array([first, same_side[0]])
-    spans = divide_path(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.01, axis_tolerance=0.1)
+    spans = divide_path(
+        model, PathRows(tip, axis, rotary), np.ones(2, bool), tcp=False, tip_tolerance=0.01, axis_tolerance=0.1
+    )
     assert off(model, tip, axis, spans, tcp=False)[0] <= 0.01
     upright = np.abs(spans.axis[:, 2] - 1.0) < 1e-9
     assert upright.sum() > 50
@@ -226,7 +234,9 @@ def test_the_tip_stays_on_a_short_line_along_which_it_goes_back_while_the_tool_t
     axis = np.array([[0.0, -0.347, 1.0], [0.0, 0.597, 1.0]])
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     rotary = axes_of(model, tip, axis)
-    spans = divide_path(model, tip, axis, rotary, np.ones(2, bool), tcp=False, tip_tolerance=0.001, axis_tolerance=0.5)
+    spans = divide_path(
+        model, PathRows(tip, axis, rotary), np.ones(2, bool), tcp=False, tip_tolerance=0.001, axis_tolerance=0.5
+    )
     assert off(model, tip, axis, spans, tcp=False)[0] <= 0.001
 
 
@@ -237,7 +247,12 @@ def test_rows_that_are_not_divisible_stay_as_they_are() -> None:
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     rotary = axes_of(model, tip, axis)
     spans = divide_path(
-        model, tip, axis, rotary, np.array([True, False, True]), tcp=False, tip_tolerance=0.01, axis_tolerance=1.0
+        model,
+        PathRows(tip, axis, rotary),
+        np.array([True, False, True]),
+        tcp=False,
+        tip_tolerance=0.01,
+        axis_tolerance=1.0,
     )
     assert (spans.source == 1).sum() == 1
     assert (spans.source == 2).sum() > 1

@@ -61,7 +61,7 @@ def test_every_m_word_and_event_is_in_the_page() -> None:
 
 def test_limits_are_those_of_the_page() -> None:
     plain = PAGE.replace(" 000", "000")
-    assert str(options.DEFAULT_STEP_LIMIT) in plain
+    assert str(options.DEFAULT_OPTIONS.step_limit) in plain
     assert f"After {limits.MAX_DIAGNOSTICS} diagnostics" in plain
     assert f"at most {MAX_NESTING} inside" in plain
     assert f"At most {limits.MAX_CALL_DEPTH} programs" in plain

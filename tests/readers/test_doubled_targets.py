@@ -7,6 +7,7 @@ import pytest
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 
 def faults(folder: Path, machine: str, text: str) -> list[tuple[int, str]]:
@@ -50,7 +51,7 @@ def test_labels_of_a_called_program_are_its_own(tmp_path: Path) -> None:
     )
     for second, expected in (("LBL 6", []), ("LBL 5", [(4, str(called))])):
         called.write_text(f"BEGIN PGM SUB MM\nLBL 5\nL X+1 R0 FMAX\n{second}\nEND PGM SUB MM\n", encoding="utf-8")
-        run = run_program(main, load_machine("dmu65"), subprograms=[called])
+        run = run_program(main, load_machine("dmu65"), RunOptions(subprograms=[called]))
         assert [(each.line, each.file) for each in run.diagnostics if each.code == "NC163"] == expected
 
 

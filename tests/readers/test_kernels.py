@@ -19,6 +19,7 @@ from trunnion.model.run import Run
 from trunnion.model.subdivision import circle_points
 from trunnion.readers import run_program
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
+from trunnion.readers.program.options import RunOptions
 
 YL569 = load_machine("yl569")
 GOLDEN = sorted((TESTS / "golden" / "yl569").glob("*.mpf"))
@@ -175,7 +176,7 @@ def test_damaged_programs_give_a_run_or_an_input_error(
     path = tmp_path / "P.MPF"
     path.write_bytes(bytes(data))
     try:
-        run = run_program(path, YL569, step_limit=3000)
+        run = run_program(path, YL569, RunOptions(step_limit=3000))
     except InputError:
         return
     assert len(run.tip) == len(run) == len(run.tool)
@@ -189,6 +190,6 @@ def test_any_bytes_give_a_run_or_an_input_error(data: bytes, tmp_path: Path) -> 
     path = tmp_path / "P.MPF"
     path.write_bytes(data)
     try:
-        run_program(path, YL569, step_limit=1000)
+        run_program(path, YL569, RunOptions(step_limit=1000))
     except InputError:
         return

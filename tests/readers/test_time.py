@@ -8,7 +8,7 @@ from trunnion.errors import InputError
 from trunnion.machines import load_machine
 from trunnion.readers import run_program
 from trunnion.readers.program import interpreter, limits
-from trunnion.readers.program.options import DEFAULT_STEP_LIMIT
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 
 KLARTEXT = "0 BEGIN PGM A MM\n"
 FANUC = "%\nO1\nG21 G90 G94 F100.\n"
@@ -54,11 +54,11 @@ TO_THE_END = "loop"
 @pytest.mark.parametrize("name", ENDLESS)
 def test_what_never_ends_is_ended_with_its_line(name: str, tmp_path: Path) -> None:
     machine, text = ENDLESS[name]
-    limit = DEFAULT_STEP_LIMIT if name == TO_THE_END else 5_000
+    limit = DEFAULT_OPTIONS.step_limit if name == TO_THE_END else 5_000
     path = tmp_path / ("A.H" if machine == "dmu65" else "A.MPF" if machine == "yl569" else "A.NC")
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match="does it end") as raised:
-        run_program(path, load_machine(machine), step_limit=limit)
+        run_program(path, load_machine(machine), RunOptions(step_limit=limit))
     assert all(problem.line > 0 for problem in raised.value.problems)
 
 
@@ -105,7 +105,7 @@ def test_a_program_of_many_holes_is_not_taken_for_a_loop(machine: str, tmp_path:
     begin, hole, end = HOLES[machine]
     path = tmp_path / ("A.H" if machine == "dmu65" else "A.MPF" if machine == "yl569" else "A.NC")
     path.write_text("\n".join([begin, *(hole.format(k % 100) for k in range(1000)), end]), encoding="utf-8")
-    run = run_program(path, load_machine(machine), step_limit=100)
+    run = run_program(path, load_machine(machine), RunOptions(step_limit=100))
     assert len(run) >= 3000
 
 
@@ -114,7 +114,7 @@ def test_holes_of_a_loop_are_bounded_by_its_lines(tmp_path: Path, monkeypatch: p
     path = tmp_path / "A.NC"
     path.write_text("%\nO1\nG21 G0 X0. Y0. Z50.\nG91 G81 X1. R-2. Z-5. F100. K500\nG80\nM30\n", encoding="utf-8")
     with pytest.raises(InputError, match="more than 200 motions in cycles"):
-        run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+        run_program(path, load_machine("matsuura_mx330"), RunOptions(step_limit=100))
 
 
 def test_calls_of_a_macro_in_many_lines_are_sound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,15 +122,15 @@ def test_calls_of_a_macro_in_many_lines_are_sound(tmp_path: Path, monkeypatch: p
     path = tmp_path / "A.NC"
     path.write_text("%\nO1\nG21 G94 F100.\n" + 300 * "M98 P9\n" + "M30\n" + macro, encoding="utf-8")
     # 300 calls of 22 blocks, 100 of which every program may execute.
-    run = run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+    run = run_program(path, load_machine("matsuura_mx330"), RunOptions(step_limit=100))
     assert len(run) == 300 * 19
     monkeypatch.setattr(limits, "BLOCKS_PER_LINE", 10)
     with pytest.raises(InputError, match=r"executes more than 3[0-9]{3} blocks; does it end\? if it does, divide it"):
-        run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+        run_program(path, load_machine("matsuura_mx330"), RunOptions(step_limit=100))
     monkeypatch.undo()
     monkeypatch.setattr(limits, "MOST_BLOCKS", 1_000)
     with pytest.raises(InputError, match="executes more than 1100 blocks"):
-        run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+        run_program(path, load_machine("matsuura_mx330"), RunOptions(step_limit=100))
 
 
 def test_turns_of_helices_are_bounded_by_the_lines(tmp_path: Path) -> None:
@@ -138,13 +138,13 @@ def test_turns_of_helices_are_bounded_by_the_lines(tmp_path: Path) -> None:
     begin = "G17 G90 G94 G710\nG0 X10 Y0 Z0\nF1000\n"
     sound = begin + "".join(f"G2 X10 Y0 Z{-k} I-10 J0 TURN=50\n" for k in range(100)) + "M30\n"
     path.write_text(sound, encoding="utf-8")
-    assert int(run_program(path, load_machine("yl569"), step_limit=100).arcs.full_turns.sum()) == 5000
+    assert int(run_program(path, load_machine("yl569"), RunOptions(step_limit=100)).arcs.full_turns.sum()) == 5000
     path.write_text(sound.replace("TURN=50", "TURN=999"), encoding="utf-8")
     with pytest.raises(InputError, match="turns in helices") as raised:
-        run_program(path, load_machine("yl569"), step_limit=100)
+        run_program(path, load_machine("yl569"), RunOptions(step_limit=100))
     assert raised.value.problems[0].code == "NC140"
 
 
 def test_the_limit_is_a_few_seconds_of_blocks() -> None:
     # An interpreter executes 20,000 to 50,000 blocks a second.
-    assert DEFAULT_STEP_LIMIT <= 50_000
+    assert DEFAULT_OPTIONS.step_limit <= 50_000

@@ -13,8 +13,8 @@ import pytest
 from tests.support.page_columns import decode_column
 from tests.support.reports import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
 from trunnion.model.columns import StepColumn
-from trunnion.reporting import write_report
 from trunnion.reporting.html_text import format_number
+from trunnion.reporting.write import write_report
 from trunnion.verification.results import Check, Verification
 from trunnion.wording import format_duration
 

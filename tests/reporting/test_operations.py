@@ -12,7 +12,7 @@ from tests.support.locations import YL569
 from tests.support.reports import Page, blade
 from trunnion.cli import main
 from trunnion.model.motion import Decision, DecisionTopic
-from trunnion.reporting import write_report
+from trunnion.reporting.write import write_report
 from trunnion.verification import OperationRows
 
 DECIDED = [

@@ -9,8 +9,8 @@ from tests.support.locations import YL569
 from tests.support.reports import blade
 from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording, foreign
-from trunnion.reporting import write_report
 from trunnion.reporting.remarks import remark_groups
+from trunnion.reporting.write import write_report
 
 
 def warning(line: int, operation: str) -> Problem:
@@ -20,7 +20,7 @@ def warning(line: int, operation: str) -> Problem:
 
 def test_what_is_said_of_fifteen_places_is_one_line_with_a_count() -> None:
     problems = [warning(k, f"OP{k}") for k in range(1, 16)]
-    other = Problem("part.cls", 3, "another\x00 thing", severity=Severity.WARNING)
+    other = Problem("part.cls", 3, foreign("another\x00 thing"), severity=Severity.WARNING)
     groups = remark_groups([*problems[:7], other, *problems[7:]])
     assert [(group.count, group.line, group.code) for group in groups] == [(15, 1, "CTL530"), (1, 3, "")]
     assert groups[1].text == "another\ufffd thing"

@@ -11,7 +11,8 @@ import pytest
 
 from tests.support.reports import blade, waves
 from trunnion.errors import InputError
-from trunnion.reporting import write, write_report
+from trunnion.reporting import write
+from trunnion.reporting.write import write_report
 
 
 @pytest.mark.parametrize("name", ["report.pdf", "report", "report.html.txt"])

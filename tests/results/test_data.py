@@ -12,6 +12,7 @@ import pytest
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem, key_subject
 from trunnion.machines.machine import Vector
+from trunnion.messages import foreign
 from trunnion.results import (
     EXACT,
     FIRST,
@@ -112,7 +113,7 @@ def test_some_keys_of_a_record_are_in_the_order_in_which_they_are_named() -> Non
 
 
 def test_problems_have_one_shape() -> None:
-    warning = Problem("a.cls", 12, "is odd", "mend it", Severity.WARNING, code="CL110")
+    warning = Problem("a.cls", 12, foreign("is odd", "mend it", "CL110"), Severity.WARNING)
     assert to_data(warning) == {
         "severity": "warning",
         "code": "CL110",
@@ -122,10 +123,10 @@ def test_problems_have_one_shape() -> None:
         "cure": "mend it",
         "subject": None,
     }
-    of_key = Problem("mill.toml", 0, "is missing", subject=key_subject("axis[1].kind"))
+    of_key = Problem("mill.toml", 0, foreign("is missing"), subject=key_subject("axis[1].kind"))
     assert to_data([of_key])[0]["subject"] == {"kind": "key", "name": "axis[1].kind"}
     assert to_data(of_key)["line"] is to_data(of_key)["cure"] is to_data(of_key)["code"] is None
-    of_argument = to_data(InputError(argument_problem("zero", "is missing")).problems)[0]
+    of_argument = to_data(InputError(argument_problem("zero", foreign("is missing"))).problems)[0]
     assert (of_argument["file"], of_argument["subject"]) == (None, {"kind": "argument", "name": "zero"})
 
 

@@ -17,6 +17,7 @@ from trunnion.batch.share_seals import BrokenSealError, unsealed_all
 from trunnion.batch.worker_task import SHARE_FILE, Outcome, Status, Task
 from trunnion.batch.workers import damaged
 from trunnion.errors import Problem
+from trunnion.messages import foreign
 
 
 def simple_work(task: Task) -> Outcome:
@@ -37,9 +38,11 @@ def simple_work(task: Task) -> Outcome:
     if word == "sleep":
         time.sleep(float(rest))
     if word == "fail":
-        return Outcome(Status.UNUSABLE, (Problem(task.file, 3, "is wrong", code="CL310"),))
+        return Outcome(Status.UNUSABLE, (Problem(task.file, 3, foreign("is wrong", code="CL310")),))
     if word == "refuse":
-        return Outcome(Status.FAILED, (Problem(task.file, 0, "must not run", code="tip"),), figures={"points": 2})
+        return Outcome(
+            Status.FAILED, (Problem(task.file, 0, foreign("must not run", code="tip")),), figures={"points": 2}
+        )
     if task.share is not None:
         return Outcome(Status.PASSED, files={SHARE_FILE: f"{task.share} of {text}".encode()})
     if task.shares:

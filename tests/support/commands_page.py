@@ -42,7 +42,7 @@ def _rows(job: Job, said: Mapping[str, str]) -> Iterator[str]:
         if said.get(option.name, "").startswith("="):
             continue
         together = [option, *(each for each in job.options if said.get(each.name) == f"={option.name}")]
-        meaning = said.get(option.name, option.help)
+        meaning = said.get(option.name, option.explained)
         required = ". Required" if option.required else ""
         yield f"| {', '.join(map(_label, together))} | {_cell(meaning)}{required} |"
 

@@ -10,6 +10,7 @@ from tests.support.reading import Runner
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 
 @pytest.fixture(scope="session")
@@ -35,7 +36,7 @@ def run(tmp_path: Path, dmu65: Machine) -> Runner:
         program.write_text(text, encoding="utf-8")
         family = None if machine is dmu65 else "heidenhain_itnc530"
         named = [tmp_path / name for name in files or {}]
-        found = run_program(program, machine, subprograms=named, family=family, **settings)  # type: ignore[arg-type]
+        found = run_program(program, machine, RunOptions(subprograms=named, **settings), family=family)  # type: ignore[arg-type]
         return found if "BEGIN PGM" in text else of_blocks(found)
 
     return runner

@@ -225,7 +225,7 @@ def _coolant(run: Run) -> Floats:
     coolant = np.zeros(len(run))
     for event in run.events:
         if event.kind == "coolant":
-            coolant[event.before_row :] = {"off": 0, "flood": 1, "mist": 2}[str(event.value)]
+            coolant[event.before_row :] = {"off": 0, "flood": 1, "mist": 2, "through": 3}[str(event.value)]
     return coolant
 
 

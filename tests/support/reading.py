@@ -11,6 +11,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 Runner = Callable[..., Run]
 
@@ -48,6 +49,6 @@ def run(tmp_path: Path, yl569: Machine) -> Runner:
         program = tmp_path / "MAIN.MPF"
         program.write_bytes(text.encode() if isinstance(text, str) else text)
         named = [tmp_path / name for name in files or {}]
-        return run_program(program, machine, subprograms=named, **settings)  # type: ignore[arg-type]
+        return run_program(program, machine, RunOptions(subprograms=named, **settings))  # type: ignore[arg-type]
 
     return runner

@@ -88,3 +88,16 @@ def test_largest_and_rms_are_of_the_same_quantity(tmp_path: Path) -> None:
     tip = next(check for check in trunnion.verify(program, machine="yl569", cl=cl).checks if check.key == "tip")
     assert tip.worst == pytest.approx(0.4)
     assert "largest 0.400000 mm in X, Y or Z, rms 0.400000, allowed" in tip.summary
+
+
+def test_a_fanuc_whose_length_counts_along_z_in_every_plane(tmp_path: Path) -> None:
+    cl, program = cl_file(tmp_path), tmp_path / "p.nc"
+    machine = tmp_path / "own.toml"
+    base = 'schema = 1\nextends = "{}"\nname = "Own"\n'
+    machine.write_text(base.format("matsuura_mx330"), "utf-8")
+    trunnion.post(cl, machine=machine, output=program)
+    changed(program, "G54", "G54 G18")
+    own = base.format("matsuura_mx330") + "[control.reading]\nlength_along_z = true\n"
+    assert not trunnion.verify(program, machine=machine, cl=cl).passed
+    machine.write_text(own, "utf-8")
+    assert trunnion.verify(program, machine=machine, cl=cl).passed

@@ -8,9 +8,13 @@ import pytest
 import trunnion
 from tests.support.locations import YL569
 from tests.support.verifying import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
+from trunnion.definitions.marked_values import MarkedValue
 from trunnion.errors import InputError, Severity
 from trunnion.machines import Machine, load_machine
+from trunnion.machines.unmeasured import unmeasured_values
+from trunnion.messages import foreign
 from trunnion.verification import check_lines
+from trunnion.verification.checks import table
 from trunnion.verification.results import Check, State, Verification
 
 HUB = YL569 / "2_hub_rough.cls"
@@ -50,20 +54,22 @@ def test_without_cl_files_the_checks_that_need_them_are_one_line(verified: Verif
 
 def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured(verified: Verifier) -> None:
     found = verified(PROGRAM, CL_HEAD + CL_FOOT)
-    bare = replace(found, machine=replace(found.machine, unmeasured=("C point_mm (a.toml:3)",), assumed=("Z home_mm",)))
+    travel = next(check for check in found.checks if check.key == "travel")
+    values = ("C point_mm (a.toml:3)", "Z home_mm (a.toml:9)")
+    others = [replace(check, stands_on=()) for check in found.checks if check is not travel]
+    bare = replace(found, checks=(*others, replace(travel, stands_on=values)))
     standing = bare.standing
     assert (standing.failed > 0, standing.passed) == (True, False)
     sound = replace(bare, checks=tuple(check for check in bare.checks if check.passed))
     ok, every = sound.standing.ok, len(sound.checks)
-    count = len(sound.machine.nobody_measured)
     assert sound.standing.told == (
-        f"Passed: {ok} of {every} checks; {every - ok} not checked; stands on {count} values nobody measured"
+        f"Passed: {ok} of {every} checks; {every - ok} not checked; stands on 2 values nobody measured"
     )
 
 
 def test_overruled_errors_do_not_pass(verified: Verifier) -> None:
     found = verified(PROGRAM)
-    problem = trunnion.Problem("a.cls", 1, "axis X would leave its travel", severity=Severity.ERROR)
+    problem = trunnion.Problem("a.cls", 1, foreign("axis X would leave its travel"))
     assert found.standing.passed
     assert not replace(found, remarks=(problem,)).standing.passed
 
@@ -102,8 +108,72 @@ def test_a_definition_demands_what_its_proofs_stand_on(tmp_path: Path) -> None:
         load_machine(file)
 
 
-def test_marks_of_a_definition_are_what_nobody_measured() -> None:
-    machine = load_machine("matsuura_mx330")
-    assert any("limits_deg" in name for name in machine.nobody_measured)
-    bodies = tuple(f"{body.name} " for body in machine.bodies)
-    assert not any(name.startswith(bodies) for name in machine.nobody_measured)
+def test_a_remark_behind_a_value_marks_it_wherever_it_says_that_it_is_assumed() -> None:
+    for name, value in (("mikron_600u", "B limits_deg"), ("mikron_600u", "X limits_mm"), ("ucp800", "C endless")):
+        assert value in [each.name for each in load_machine(name).assumed]
+    assert all(each.table == "body" for each in load_machine("hs664rt").assumed if "size_mm" in each.name)
+
+
+def stands_on(found: Verification) -> dict[str, list[str]]:
+    return {check.key: [value.partition(" (")[0] for value in check.stands_on] for check in found.checks}
+
+
+#: What a shop has still to measure.
+MARKED = """schema = 1
+extends = "yl569"
+name = "Own"
+[spindle]
+gauge_point_mm = [0, 0, 0] # measure: where tool lengths begin
+max_rpm = 12000 # measure: the plate
+[[axis]]
+name = "C"
+point_mm = [0, 0, 0] # measure: by probe
+[[axis]]
+name = "B"
+point_mm = [0, 0, 0] # measure: by probe
+limits_deg = [-11, 100] # measure
+home_deg = 0
+[[axis]]
+name = "X"
+limits_mm = [-250, 250] # measure: software limits
+rapid_mm_min = 24000 # published; an assumption for this one
+[[axis]]
+name = "Y"
+limits_mm = [-150, 150] # measure: software limits
+"""
+
+
+def test_only_values_that_matter_to_a_program_are_counted(tmp_path: Path, verified: Verifier) -> None:
+    file = tmp_path / "own.toml"
+    file.write_text(MARKED.replace("# measure\n", "# measure: software limits\n"))
+    still = stands_on(verified(PROGRAM, machine=load_machine(file)))
+    # X alone moves: no point of a rotary axis matters, and nothing of Y and B.
+    assert still["travel"] == ["X limits_mm"]
+    assert still["speed"] == ["X rapid_mm_min"]
+    assert still["acceleration"] == still["words"] == []
+    turned = PROGRAM.replace("G1 X10 F500", "G1 X10 C30 F500")
+    assert stands_on(verified(turned, machine=load_machine(file)))["travel"] == [
+        "spindle gauge_point_mm", "C point_mm", "X limits_mm",
+    ]  # fmt: skip
+
+
+def test_a_demand_for_measured_values_counts_those_that_matter(tmp_path: Path, verified: Verifier) -> None:
+    file = tmp_path / "own.toml"
+    file.write_text(MARKED + '[proof]\nrequire = ["measured"]\n')
+    basis = next(check for check in verified(PROGRAM, machine=load_machine(file)).checks if check.key == "basis")
+    assert not basis.passed
+    assert "X limits_mm" in basis.summary
+    assert "B point_mm" not in basis.summary
+
+
+def test_what_nobody_measured_is_asked_once_for_all_checks(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def counted(*given: object) -> tuple[MarkedValue, ...]:
+        asked.append(given)
+        return unmeasured_values(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(table, "unmeasured_values", counted)
+    found = trunnion.verify(YL569 / "2_hub_rough.expected.mpf", machine="yl569", cl=HUB)
+    assert sum(bool(check.stands_on) for check in found.checks) > 1
+    assert len(asked) == 1

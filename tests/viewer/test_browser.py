@@ -183,6 +183,25 @@ def test_a_page_made_large_scrolls_down_only(size: tuple[int, int], view: Page) 
     view.set_viewport_size(before)
 
 
+def test_what_is_not_checked_is_folded_below_the_listing(view: Page) -> None:
+    before = view.viewport_size
+    assert before is not None
+    view.set_viewport_size({"width": 1280, "height": 720})
+    banner = view.locator("#basis")
+    lines = "document.getElementById('listing').clientHeight / 18"
+    assert view.locator("#standing").inner_text().startswith("Passed: ")
+    assert banner.evaluate("it => parseFloat(getComputedStyle(it).paddingLeft)") >= 8
+    assert not view.locator("#unchecked").is_visible()
+    assert view.evaluate(lines) >= 10
+    view.locator("#standing").focus()
+    view.keyboard.press(" ")
+    assert not view.evaluate("page.playing")
+    assert "acceleration: not checked: no acceleration stated" in view.locator("#unchecked li").all_inner_texts()
+    assert view.evaluate(lines) >= 8
+    view.keyboard.press(" ")
+    view.set_viewport_size(before)
+
+
 def test_all_that_takes_the_focus_has_a_name(view: Page) -> None:
     assert view.get_by_role("img", name="3_blade_finish.expected.mpf", exact=True).get_attribute("id") == "space"
     assert view.get_by_role("img", name="3_blade_finish.expected.mpf Curves as CSV").get_attribute("id") == "curves"
@@ -350,12 +369,15 @@ def test_two_machines_go_along_one_tool_path(tmp_path: Path, browser: Browser) -
         found = np.array(poses)
         np.testing.assert_allclose(found[:, 0], found[:, 1], atol=2e-3)
         assert page.locator("#listing-b .line.current").count() == 1
-        page.locator("#scrub").evaluate("it => { it.value = 0.4; it.dispatchEvent(new Event('input')); }")
+        page.locator("#scrub").evaluate(
+            "it => { it.value = 0.4; for (const kind of ['input', 'change']) it.dispatchEvent(new Event(kind)); }"
+        )
         tips = page.evaluate("[page.space, page.twin.space].map(space => space.shownTool().tip)")
         assert np.linalg.norm(np.subtract(*tips)) < 1.0
         line = page.evaluate("page.twin.program.line[page.twin.twos[40]]")
         page.evaluate("line => page.twin.onLine(line)", line)
         assert page.evaluate("page.row === page.twin.ones[40] && page.twin.row === page.twin.twos[40]")
+        page.wait_for_function("() => !page.space.isMoving && !page.twin.space.isMoving")
         check_picture(browser, page.screenshot(), "viewer-against.png")
         assert errors == []
 

@@ -5,9 +5,10 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Final, Literal, TypedDict, Unpack
 
-from trunnion.batch.cluster import DaskWorkers, Tls
+from trunnion.batch.cluster import DaskWorkers, Scheduler, Tls
 from trunnion.batch.jobs import Batch, folder_batch
 from trunnion.batch.jobs_file import load_batch
+from trunnion.batch.places import units_of
 from trunnion.batch.processing import work
 from trunnion.batch.running import BatchResult, local_workers, run_jobs
 from trunnion.batch.stores import Store, open_store
@@ -16,6 +17,7 @@ from trunnion.batch.worker_task import Action
 from trunnion.batch.workers import Workers
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import check_outputs
+from trunnion.files.places import file_identity
 from trunnion.jobs.arguments import taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath
@@ -139,6 +141,7 @@ def run_batch(
     if place is None:
         raise InputError(argument_problem("results", Wording("ARG130", "missing")))
     store = open_store(place if isinstance(place, str) else Path(place))
+    _check_results(batch, store)
     result = run_jobs(batch, store, team(store), observer)
     if summary is not None:
         write_summary(result, summary)
@@ -170,6 +173,17 @@ def _check_written(written: Sequence[FilePath], jobs: Path, batch: Batch) -> Non
         check_outputs(written, [*([] if jobs.is_dir() else [jobs]), *shared, *names])
 
 
+def _check_results(batch: Batch, store: Store) -> None:
+    """Refuse results that would take the places of files that the jobs read."""
+    if store.folder is None or not store.folder.is_dir():
+        return
+    read = {file_identity(batch.folder / name): name for job in batch.jobs for name in job.files}
+    for unit in units_of(batch.jobs):
+        if file := read.get(file_identity(store.folder / unit.place)):
+            wording = Wording("FIL240", "result_over_input", result=unit.place, file=file)
+            raise InputError(argument_problem("results", wording))
+
+
 def _team(
     given: BatchArguments, observer: Observer
 ) -> Callable[[Store], Callable[[int], AbstractContextManager[Workers]]]:
@@ -194,6 +208,5 @@ def _team(
             raise InputError(argument_problem(name, Wording("ARG130", "processes_computer_workers")))
     if wait is not None and not wait > 0.0:
         raise InputError(argument_problem("wait", Wording("ARG140", "is_or_give", wait=wait)))
-    return lambda store: (
-        lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url, wait=wait, observer=observer)
-    )
+    dask = Scheduler(scheduler, tls or Tls(), wait=wait)
+    return lambda store: lambda _: DaskWorkers(dask, work, writing=store.worker_url, observer=observer)

@@ -22,7 +22,7 @@ from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Kept, Store, open_store
 from trunnion.batch.worker_task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.extras import import_extra
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.messages import Wording
@@ -68,41 +68,42 @@ class _Asked:
     future: Any
 
 
+@dataclass(frozen=True, slots=True)
+class Scheduler:
+    """A scheduler of Dask.
+
+    address   such as ``tcp://host:8786`` or ``tls://host:8786``
+    patience  seconds for which it is awaited where it is gone
+    wait      seconds for which it may be without any worker before the batch ends; None: any time
+    """
+
+    address: str
+    tls: Tls = Tls()
+    patience: float = PATIENCE
+    wait: float | None = None
+
+
 class DaskWorkers:
     """The workers of a scheduler. Use it as a context manager.
 
-    Parameters
-    ----------
-    address
-        Of the scheduler, such as ``tcp://host:8786`` or ``tls://host:8786``.
-    function
-        What they do; they must be able to import it.
-    writing
-        Address of the store to which workers write themselves; empty: they give results back.
-    patience
-        Seconds for which a scheduler that is gone is awaited.
-    wait
-        Seconds for which it is without any worker before it ends; None: any time.
-    observer
-        Is told that the scheduler is gone, or has no workers.
+    function  what they do; they must be able to import it
+    writing   address of the store to which workers write themselves; empty: they give results back
+    observer  is told that the scheduler is gone, or has no workers
     """
 
     def __init__(
         self,
-        address: str,
+        scheduler: Scheduler,
         function: Callable[[Task], Outcome],
         *,
-        tls: Tls | None = None,
         writing: str = "",
-        patience: float = PATIENCE,
-        wait: float | None = None,
         observer: Observer = SILENT,
     ) -> None:
         self._observer = observer
         self._function = function
         self._distributed = import_extra("distributed", "cluster")
-        self._address, self._tls, self._writing, self._patience = address, tls or Tls(), writing, patience
-        self._wait, self._alone_since, self._silent_for = wait, time.monotonic(), SILENCE
+        self._scheduler, self._address, self._writing = scheduler, scheduler.address, writing
+        self._alone_since, self._silent_for = time.monotonic(), SILENCE
         self._client: Any = None
         self._blobs: dict[str, Any] = {}
         self._told: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -171,7 +172,7 @@ class DaskWorkers:
                 time.sleep(_LOOK)
 
     def _security(self) -> Any:
-        tls = self._tls
+        tls = self._scheduler.tls
         if tls == Tls():
             return None
         return self._distributed.Security(
@@ -279,16 +280,13 @@ class DaskWorkers:
         if not is_running:
             self._observer.problems(
                 [
-                    Problem(
-                        self._address,
-                        0,
-                        Wording("BAT230", "scheduler_gone_awaited", patience=self._patience),
-                        severity=Severity.WARNING,
+                    warning(
+                        self._address, 0, Wording("BAT230", "scheduler_gone_awaited", patience=self._scheduler.patience)
                     )
                 ]
             )
         self._leave()
-        self._connect(self._patience)
+        self._connect(self._scheduler.patience)
         for each in asked.values():
             each.future = self._submit(each.assignment, each.task)
 
@@ -299,7 +297,7 @@ class DaskWorkers:
             self._alone_since, self._silent_for = now, SILENCE
             return
         alone = now - self._alone_since
-        if self._wait is not None and alone >= self._wait:
+        if self._scheduler.wait is not None and alone >= self._scheduler.wait:
             raise InputError(
                 Problem(
                     self._address,
@@ -313,7 +311,7 @@ class DaskWorkers:
             self._silent_for = alone + _REMIND
             self._observer.problems(
                 [
-                    Problem(
+                    warning(
                         self._address,
                         0,
                         Wording(
@@ -322,7 +320,6 @@ class DaskWorkers:
                             format_duration=format_duration(alone),
                             address=self._address,
                         ),
-                        severity=Severity.WARNING,
                     )
                 ]
             )

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from trunnion.batch.argument_checks import beside_fault
 from trunnion.batch.jobs import Batch, BatchJob, folder_files, judged
@@ -22,7 +22,7 @@ from trunnion.files import name_fault
 from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.project.stated_values import StatedValues
 from trunnion.jobs.registry import JOBS
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.options.kinds import FileOut, Setting
 from trunnion.options.option import Option
 
@@ -161,7 +161,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         if "settings" in values:
             values["settings"] = of_defaults.get("settings", {}) | stated.get("settings", {})
         inputs = _inputs(table, found, path, results)
-        jobs += _judged(table, name, action, inputs, values, output, path.parent)
+        jobs += _judged(_Entry(table, name, action, inputs, output), values, path.parent)
     defaults.report_unread_keys()
     for table in own:
         table.report_unread_keys()
@@ -182,12 +182,21 @@ def _with_settings(table: Table, values: Mapping[str, Any], action: Action) -> d
     return {**found, "settings": {**place, **own}} if place else found
 
 
-def _judged(
-    table: Table, name: str, action: Action, inputs: list[str], values: dict[str, Any], output: str, folder: Path
-) -> list[BatchJob]:
-    """Return the job of a table, if its arguments can be used; else its problems are told where the table
+class _Entry(NamedTuple):
+    """A table of a job, and what the job is called, does, reads, and where its results go."""
+
+    table: Table
+    name: str
+    action: Action
+    inputs: list[str]
+    output: str
+
+
+def _judged(entry: _Entry, values: dict[str, Any], folder: Path) -> list[BatchJob]:
+    """Return a job with the values of its options, if they can be used; else its problems are told where its table
     states them.
     """
+    table, name, action, inputs, output = entry
     if table.problems:
         return []
     beside = {key: values.pop(key) for key in ("cl", "subprograms") if values.get(key)}
@@ -234,12 +243,13 @@ def _folder_name(table: Table, key: str) -> str:
     name = table.text(key, "").rstrip("/")
     if not name:
         return ""
-    fault = pattern_fault(name) or ("begins with ~, which stands for no folder here" if name[0] == "~" else "")
-    fault = f'"{name[:100]}" {fault}' if fault else name_fault(PurePosixPath(name))
-    if fault:
-        table.add_problem(key, fault, 'name a folder, such as "out"', code="FIL340")
-        return ""
-    return name
+    if fault := pattern_fault(name) or (phrase("begins_with_tilde") if name[0] == "~" else None):
+        table.add_problem(key, Wording("FIL340", "no_folder_name", name=name[:100], fault=fault))
+    elif fault := name_fault(PurePosixPath(name)):
+        table.add_problem(key, Wording("FIL340", "name_of_no_folder", fault=fault))
+    else:
+        return name
+    return ""
 
 
 def _values(tables: _Tables, table: Table) -> dict[str, Any]:

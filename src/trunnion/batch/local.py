@@ -59,17 +59,11 @@ class _Given:
 class LocalWorkers:
     """Processes that work on tasks. Use it as a context manager: they end with it.
 
-    Parameters
-    ----------
-    count
-        How many.
-    function
-        What they do; it must be importable.
-    timeout
-        Seconds that a task may take; None: any time. It is ended by ending its process. The start of a process does not
-        count: if its first task took too long, it does it once more.
-    start
-        Seconds that a start may take beyond that.
+    count     how many
+    function  what they do; it must be importable
+    timeout   seconds that a task may take; None: any time. It is ended by ending its process. The start of a process
+              does not count: if its first task took too long, it does it once more
+    start     seconds that a start may take beyond that
     """
 
     def __init__(

@@ -17,10 +17,8 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import atomic_file
+from trunnion.files.places import FULL
 from trunnion.messages import Wording
-
-#: The cure where a disk is full.
-_SPACE: Final = "make space there, and run the batch again: it goes on where it was"
 
 #: Files that are asked for at once where that takes a journey each.
 _AT_ONCE: Final = 256
@@ -33,12 +31,14 @@ class Store(Protocol):
     address       by which any process of this computer opens it; empty: only this process does
     worker_url    by which workers write to it themselves; empty: they cannot
     is_exact      whether ``holds`` looks at the content
+    folder        of this computer; None: it is elsewhere
     """
 
     label: str
     address: str
     worker_url: str
     is_exact: bool
+    folder: Path | None
 
     def read(self, name: str) -> bytes | None:
         """Return a file; None: there is none."""
@@ -80,9 +80,6 @@ class Kept:
 class TakenError(InputError):
     """A name has no file, and cannot have one: something that is no file stands there, or in place of its folder."""
 
-
-#: What the system says where there is no more space.
-_FULL: Final = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 #: What the system says where a folder is in place of a file, or a file in place of a folder; or of names too long.
 _TAKEN: Final = (errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
@@ -130,6 +127,7 @@ class FolderStore:
     def __init__(self, folder: Path) -> None:
         self.label, self.address = str(folder), str(folder.absolute())
         self._folder = folder
+        self.folder: Path | None = folder
 
     def read(self, name: str) -> bytes | None:
         """Return a file; None: there is none."""
@@ -207,7 +205,7 @@ class FolderStore:
 
     def _unusable(self, name: str, what: str, error: OSError) -> InputError:
         reason = str(error.strerror or error)
-        if error.errno in _FULL:
+        if error.errno in FULL:
             wording = Wording("FIL230", "store_full", what_failed=what, reason=reason)
         else:
             wording = Wording("FIL230", "store", what_failed=what, reason=reason)
@@ -229,6 +227,7 @@ class UrlStore:
         self.address = self.worker_url = "" if self._protocol == "memory" else url
         self.is_exact = self._protocol in ("file", "local", "memory")
         self._is_local = self._protocol in ("file", "local")
+        self.folder = Path(self._root) if self._is_local else None
         self._moves = self._protocol in ("file", "local", "sftp", "ssh", "ftp", "smb")
 
     def read(self, name: str) -> bytes | None:
@@ -313,14 +312,12 @@ class UrlStore:
         return f"{self._root}/{name}"
 
     def _unusable(self, error: Exception) -> InputError:
-        is_full = isinstance(error, OSError) and error.errno in _FULL
+        is_full = isinstance(error, OSError) and error.errno in FULL
         return InputError(
             Problem(
                 self.label,
                 0,
-                Wording("BAT130", "does_not_take", error=error)
-                if is_full
-                else Wording("BAT130", "does_not_take_results", error=error),
+                Wording("BAT130", "does_not_take" if is_full else "does_not_take_results", error=error),
             )
         )
 

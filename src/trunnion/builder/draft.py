@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.builder.document import FieldPath
 from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named_path, tables_of, value_at
 from trunnion.controls import load_control
 from trunnion.controls.loading import with_control
@@ -24,6 +23,7 @@ from trunnion.machines import Machine
 from trunnion.machines.jog_table import jog_table
 from trunnion.machines.loading import machine_library, read_machine
 from trunnion.messages import Wording
+from trunnion.results import to_data
 from trunnion.simulation.collisions.bodies import machine_bodies
 from trunnion.viewer.content import body_scene, machine_scene
 
@@ -106,36 +106,23 @@ def _field(each: Field, root: LocatedValue | None, base: LocatedValue | None, dr
     found = None if root is None else value_at(root, each.path)
     below = None if base is None else value_at(base, each.path)
     return {
-        "path": _steps(each.path),
-        "key": each.key, "kind": each.kind, "unit": each.unit, "choices": each.choices, "size": each.size,
-        "optional": each.optional, "note": each.note, "allowed": each.allowed,
+        **to_data(each),
         "value": None if found is None else _shown(found, each),
         "inherited": None if below is None else _shown(below, each),
         "own": found is not None and found.file == str(draft.path),
         "from": "" if found is None else f"{Path(found.file).name}:{found.line}",
-    }  # fmt: skip
+    }
 
 
 def _problem(problem: Problem, draft: Draft) -> dict[str, Any]:
     own = problem.file == str(draft.path)
     path = () if draft.root is None else named_path(draft.root, problem.key)
-    return {
-        "line": problem.line if own else 0,
-        "place": "" if own else f"{Path(problem.file).name}:{problem.line}",
-        "path": _steps(path),
-        "what": problem.what,
-        "cure": problem.cure,
-        "code": problem.code,
-    }
+    place = "" if own else f"{Path(problem.file).name}:{problem.line}"
+    return {**to_data(problem), "line": problem.line if own else 0, "place": place, "path": to_data(path)}
 
 
-def _mark(root: LocatedValue, key: str, line: int, what: str) -> dict[str, Any]:
-    return {"line": line, "path": _steps(named_path(root, key)), "what": what}
-
-
-def _steps(path: FieldPath) -> list[str | list[str]]:
-    """Return a path as JSON has it."""
-    return [list(step) if isinstance(step, tuple) else step for step in path]
+def _mark(root: LocatedValue, key: str, line: int, text: str) -> dict[str, Any]:
+    return {"line": line, "path": to_data(named_path(root, key)), "text": text}
 
 
 def _base(draft: Draft) -> LocatedValue | None:

@@ -7,13 +7,14 @@ Out:    pages of fields. What each is called, its help and its unit in words are
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from trunnion.builder.document import FieldPath
 from trunnion.controls.loading import shipped_controls
 from trunnion.controls.vocabulary import FEEDS_WITHOUT_TCP, HOLE_APPROACH_HEIGHTS, PROGRAM_CHOICES, TEMPLATE_ORDER
 from trunnion.definitions import LocatedValue
 from trunnion.machines.machine import AngleOutput, AxisKind, Mount, PositiveDirection, PreferredSign
+from trunnion.results import NOT_DATA, Figure
 
 #: Pages, in their order.
 PAGES: Final = (
@@ -64,7 +65,7 @@ class Field:
     allowed   what it may be, in English; may be empty
     """
 
-    page: str
+    page: Annotated[str, NOT_DATA]
     path: FieldPath
     kind: str
     choices: tuple[str, ...] = ()
@@ -74,6 +75,7 @@ class Field:
     allowed: str = ""
 
     @property
+    @Figure()
     def key(self) -> str:
         """Its path without names, by which texts are found: ``axis.limits_deg``."""
         return ".".join(step for step in self.path if isinstance(step, str))
@@ -84,6 +86,7 @@ class Field:
         return 2 if self.kind == "interval" else self.size
 
     @property
+    @Figure()
     def unit(self) -> str:
         """Its unit, as it stands behind the field."""
         last = str(self.path[-1])

@@ -8,15 +8,17 @@ import difflib
 import io
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any, Final
 
-from trunnion.errors import Problem, Severity, TrunnionError
+from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.post.result import ProofFailedError
 from trunnion.machines import Machine
 from trunnion.results import to_data
-from trunnion.verification import Check
+from trunnion.verification import Check, Standing
+from trunnion.viewer.shown import checks_data
 
 #: So many lines are shown; the proof is always that of the whole program.
 _MOST_LINES: Final = 20_000
@@ -44,16 +46,32 @@ def shipped_sample() -> bytes:
     return files("trunnion.builder").joinpath("sample.cls").read_bytes()
 
 
+@dataclass(frozen=True, slots=True)
+class _Sample:
+    """A sample program, what its proof says, and what differs from an earlier one.
+
+    lines    as many of ``all`` as are shown
+    changed  numbers of those that are new, from 0
+    removed  how many are gone
+    """
+
+    checks: Sequence[dict[str, Any]]
+    problems: Sequence[Problem]
+    passed: bool = False
+    standing: Standing | None = None
+    lines: Sequence[str] = ()
+    all: int = 0
+    changed: Sequence[int] = ()
+    removed: int = 0
+
+
 def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[str]) -> dict[str, Any]:
-    """Post and prove a CL file, and mark what differs from an earlier program.
+    """Post and prove a CL file, and mark what differs from an earlier program; return it as JSON has it.
 
     machine  the machine
     cl       the CL file; None: the shipped one
     name     of the CL file, for messages
     before   lines of the earlier program; none: nothing is marked
-
-    dict  ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
-          and ``problems``; ``passed``
     """
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
@@ -63,28 +81,18 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
         return without_program(error.problems, ())
     lines = (result.text or "").splitlines()
     changed, removed = _changes(before, lines)
-    return {
-        "lines": lines[:_MOST_LINES],
-        "all": len(lines),
-        "changed": changed,
-        "removed": removed,
-        "checks": list(map(_check, result.checks)),
-        "problems": [_problem(each) for each in result.problems],
-        "passed": result.passed,
-        "standing": result.standing and to_data(result.standing),
-    }
+    shown, checks = lines[:_MOST_LINES], checks_data(result.checks)
+    found: dict[str, Any] = to_data(
+        _Sample(checks, result.problems, result.passed, result.standing, shown, len(lines), changed, removed)
+    )
+    return found
 
 
 def without_program(problems: Sequence[Problem] = (), checks: Sequence[Check] = ()) -> dict[str, Any]:
     """Return the answer where there is no program: the CL file cannot be posted, or it fails its proof."""
-    told = [_problem(each) for each in problems if each.code != _NOTHING_WRITTEN]
-    shown = list(map(_check, checks))
-    none = {"lines": [], "changed": [], "removed": 0, "all": 0, "standing": None}
-    return {**none, "checks": shown, "problems": told, "passed": False}
-
-
-def _check(check: Check) -> dict[str, Any]:
-    return {"key": check.key, "state": check.state, "summary": check.told}
+    told = [each for each in problems if each.code != _NOTHING_WRITTEN]
+    found: dict[str, Any] = to_data(_Sample(checks_data(checks), told))
+    return found
 
 
 def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]:
@@ -99,11 +107,3 @@ def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]
     changed = [line for kind, _, _, first, end in found if kind in ("replace", "insert") for line in range(first, end)]
     removed = sum(end - first for kind, first, end, _, _ in found if kind in ("replace", "delete"))
     return changed, removed
-
-
-def _problem(problem: Problem) -> dict[str, Any]:
-    subject = f"{problem.file} " if problem.argument else ""
-    return {
-        "what": subject + problem.what, "cure": problem.cure, "line": problem.line,
-        "error": problem.severity is Severity.ERROR, "code": problem.code,
-    }  # fmt: skip

@@ -25,6 +25,7 @@ from trunnion.builder.document import (
     without_value,
 )
 from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
+from trunnion.builder.likeness import definition_like
 from trunnion.builder.sample import sample_data, without_program
 from trunnion.builder.saved_file import check_length, check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
@@ -115,7 +116,7 @@ class BuilderSession:
         if base:
             if base not in shipped_machines():
                 raise RequestError
-            text = with_value(f'{first_line("machine")}extends = "{base}"\n', ("name",), name)
+            text = definition_like(load_machine(base), name)
         else:
             if control not in shipped_controls() or chain not in CHAINS:
                 raise RequestError
@@ -136,12 +137,7 @@ class BuilderSession:
                     raise RequestError
                 text = with_table_moved(text, "axis", _text(given, "move"), by)
             else:
-                path, value = _path(given.get("path")), given.get("value")
-                if value is None or same(value, inherited_value(draft, path)):
-                    text = without_value(text, path)
-                else:
-                    changed = with_value(text, path, _value(value))
-                    text = without_mark(changed, located(tomllib.loads(changed), path))
+                text = _with_entry(draft, text, _path(given.get("path")), given.get("value"))
         except RequestError:
             raise
         except (UnclearPlaceError, KeyError, TypeError, ValueError, RecursionError):
@@ -192,6 +188,19 @@ def _text(given: Mapping[str, Any], key: str) -> str:
     if not isinstance(value, str):
         raise RequestError
     return value
+
+
+def _with_entry(draft: Draft, text: str, path: FieldPath, value: Any) -> str:
+    """Return a text with what was entered at a place; None, or what it inherits anyway, leaves the place out.
+
+    A value with a mark has been measured now, even if it is the one that another machine has.
+    """
+    was = tomllib.loads(text)
+    is_marked = without_mark(text, located(was, path)) != text
+    if value is None or (same(value, inherited_value(draft, path)) and not is_marked):
+        return without_value(text, path)
+    changed = with_value(text, path, _value(value))
+    return without_mark(changed, located(tomllib.loads(changed), path))
 
 
 def _path(given: object) -> FieldPath:

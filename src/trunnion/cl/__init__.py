@@ -2,7 +2,7 @@
 
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialects import DIALECTS
-from trunnion.cl.read import read_cl, read_cl_files
+from trunnion.cl.read import ClReading, read_cl, read_cl_files
 from trunnion.cl.scan import fill_modal_axes, scan
 from trunnion.cl.sources import is_cl_file, not_one_file
 from trunnion.cl.systems import other_system
@@ -21,6 +21,7 @@ KERNELS = (scan, fill_modal_axes)
 __all__ = [
     "DIALECTS",
     "KERNELS",
+    "ClReading",
     "StatementError",
     "can_be_unknown",
     "events_of",

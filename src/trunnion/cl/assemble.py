@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Lines
+from trunnion.arrays import Flags, Floats, Lines
 from trunnion.cl.arcs import arcs_of, complete_circles, report_open_ends
 from trunnion.cl.builder import FeedChange, MoveColumns, OperationBuilder, SurfaceSpeed
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
@@ -56,7 +56,8 @@ def assemble_operation(
     kind[[circle.row for circle in circles]] = Kind.ARC
     arcs = arcs_of(circles, starts, tip, unit, diagnostics)
     report_open_ends(arcs, circles, tip, kind, diagnostics)
-    _inverse_to_per_minute(builder, feed, tip, arcs, columns.line[rows], kind, starts, diagnostics)
+    moves = Moves(tip, columns.axis[rows], kind, columns.phase[rows], feed, per_rev, columns.line[rows])
+    moves = _with_feeds_per_minute(builder, moves, arcs, starts, diagnostics)
     tool = _tool_in_mm(builder.tool, unit)
     _report_tool(builder, tool, diagnostics)
     events = [*(_event_in_mm(event, unit, tool, diagnostics) for event in builder.events), *starts]
@@ -64,7 +65,7 @@ def assemble_operation(
         name=builder.name,
         tool=tool,
         frame=_frame_in_mm(builder.frame, unit),
-        moves=Moves(tip, columns.axis[rows], kind, columns.phase[rows], feed, per_rev, columns.line[rows]),
+        moves=moves,
         arcs=arcs,
         events=tuple(sorted(events, key=lambda event: event.line)),
         line=builder.line,
@@ -92,23 +93,16 @@ def _fill_feeds(feed: Floats, per_rev: Flags, feeds: Sequence[FeedChange], unit:
     per_rev[begin:] = is_per_rev
 
 
-def _inverse_to_per_minute(
-    builder: OperationBuilder,
-    feed: Floats,
-    tip: Floats,
-    arcs: Arcs,
-    line: Lines,
-    kind: Codes,
-    starts: Sequence[From],
-    diagnostics: Diagnostics,
-) -> None:
-    """Turn feeds that are one over the minutes of a move into mm/min by the length of each move.
+def _with_feeds_per_minute(
+    builder: OperationBuilder, moves: Moves, arcs: Arcs, starts: Sequence[From], diagnostics: Diagnostics
+) -> Moves:
+    """Return moves with feeds that are one over the minutes of a move in mm/min, by the length of each move.
 
     Feeds of holes become NaN, since a cycle has moves of its own.
     """
     if not any(change.inverse for change in builder.feeds):
-        return
-    n = len(feed)
+        return moves
+    feed, tip, n = moves.feed.copy(), moves.tip, len(moves)
     ends = [change.row for change in builder.feeds[1:]] + [n]
     inverse = np.zeros(n, np.bool_)
     for change, end in zip(builder.feeds, ends, strict=True):
@@ -124,9 +118,10 @@ def _inverse_to_per_minute(
         in_hole[event.row :] = isinstance(event, CycleOn)
     feed[inverse] *= length[inverse]
     feed[inverse & in_hole] = np.nan
-    cuts = inverse & ~in_hole & (kind != Kind.RAPID)
+    cuts = inverse & ~in_hole & (moves.kind != Kind.RAPID)
     for row in np.flatnonzero(cuts & ~(length > 0.0))[: MAX_LISTED + 1].tolist():
-        diagnostics.error(int(line[row]), Wording("CL710", "fedrat_invers_move"))
+        diagnostics.error(int(moves.line[row]), Wording("CL710", "fedrat_invers_move"))
+    return replace(moves, feed=feed)
 
 
 def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics) -> None:

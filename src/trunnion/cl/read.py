@@ -7,7 +7,7 @@ sized; then for its content. Points never become Python objects.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Final
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.joining import join_cuts, join_first_tool
 from trunnion.cl.kept_states import report_kept_states
-from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED
+from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, Piece
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
 from trunnion.cl.text_format import TextFormat
@@ -58,72 +58,62 @@ class Survey:
     head: bytes
 
 
-def read_cl(
-    path: Path | BinaryIO,
-    *,
-    units: str | None = None,
-    dialect: str | None = None,
-    strict: bool = False,
-    spline_tolerance: float | None = None,
-    progress: Callable[[int], None] | None = None,
-) -> Toolpath:
-    """Read a CL file, as ``read_cl_files`` does.
+@dataclass(frozen=True, slots=True)
+class ClReading:
+    """How a CL file is read.
 
-    Raises
-    ------
-    InputError
-        If it cannot be used, with every problem found, or is an archive of several.
-    """
-    sources = cl_sources(path)
-    if len(sources) > 1:
-        raise not_one_file(sources[0].name, len(sources))
-    return read_source(
-        sources[0], units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance, progress=progress
-    )
-
-
-def read_cl_files(
-    path: Path | BinaryIO,
-    *,
-    units: str | None = None,
-    dialect: str | None = None,
-    strict: bool = False,
-    spline_tolerance: float | None = None,
-    progress: Callable[[int], None] | None = None,
-) -> list[Toolpath]:
-    """Read a CL file, or all those of an archive in the order of their names.
-
-    path              a plain file, one packed by gzip or bzip2, a ZIP archive, or a binary stream
     units             length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says
     dialect           a key of ``trunnion.cl.dialects.DIALECTS``; None: the content of the file decides
     strict            make an unknown statement an error instead of a remark
     spline_tolerance  how far the points that splines become may leave them between each other, mm; None: as INTOL and
                       OUTTOL say
-    progress          called from time to time with the number of bytes read
+    """
+
+    units: str | None = None
+    dialect: str | None = None
+    strict: bool = False
+    spline_tolerance: float | None = None
+
+
+#: As the file itself says, with remarks about what is unknown.
+AS_IT_SAYS: Final = ClReading()
+
+
+def read_cl(path: Path | BinaryIO, how: ClReading = AS_IT_SAYS) -> Toolpath:
+    """Read a CL file, as ``read_cl_files`` does.
+
+    Raises ``InputError`` if it cannot be used, with every problem found, or is an archive of several.
+    """
+    sources = cl_sources(path)
+    if len(sources) > 1:
+        raise not_one_file(sources[0].name, len(sources))
+    return read_source(sources[0], how)
+
+
+def read_cl_files(
+    path: Path | BinaryIO, how: ClReading = AS_IT_SAYS, progress: Callable[[int], None] | None = None
+) -> list[Toolpath]:
+    """Read a CL file, or all those of an archive in the order of their names.
+
+    path      a plain file, one packed by gzip or bzip2, a ZIP archive, or a binary stream
+    progress  called from time to time with the number of bytes read
 
     list of Toolpath  all lengths in mm, in the frame of each operation
 
     Raises ``InputError`` if a file cannot be used, with every problem found.
     """
-    return [
-        read_source(
-            source, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance, progress=progress
-        )
-        for source in cl_sources(path)
-    ]
+    return [read_source(source, how, progress=progress) for source in cl_sources(path)]
 
 
 def read_source(
     source: ClSource,
-    chunk: int = CHUNK,
+    how: ClReading = AS_IT_SAYS,
     *,
-    units: str | None = None,
-    dialect: str | None = None,
-    strict: bool = False,
-    spline_tolerance: float | None = None,
+    chunk: int = CHUNK,
     progress: Callable[[int], None] | None = None,
 ) -> Toolpath:
     """Read one CL file, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
+    units, dialect = how.units, how.dialect
     diagnostics = Diagnostics(source.name)
     if units is not None and units.lower() not in ("mm", "inch"):
         raise diagnostics.fatal(0, Wording("ARG140", "units", units=repr(units)))
@@ -136,7 +126,7 @@ def read_source(
         else:
             recognized = Recognition(DIALECTS[dialect], "as it was asked for")
         columns = MoveColumns.allocate(survey.rows)
-        interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, strict)
+        interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, how.strict)
         scanner = _Scanner(recognized.dialect.text, columns, interpreter, diagnostics)
         with source.open() as file:
             file.read(survey.bom_bytes)
@@ -152,7 +142,7 @@ def read_source(
     builders = join_first_tool(interpreter.builders, diagnostics)
     report_kept_states(builders, diagnostics)
     builders = join_cuts(builders, diagnostics, in_sections=recognized.dialect.in_sections)
-    columns = with_spline_points(builders, columns, scanner.rows, unit, spline_tolerance, diagnostics)
+    columns = with_spline_points(builders, columns, scanner.rows, unit, how.spline_tolerance, diagnostics)
     modal_axis = np.array([0.0, 0.0, 1.0])
     operations = tuple(assemble_operation(builder, columns, unit, modal_axis, diagnostics) for builder in builders)
     diagnostics.raise_errors()
@@ -264,9 +254,8 @@ class _Scanner:
         at = 0
         while at < stop:
             before = at
-            at, self.line, self.rows, count = self._text.scan(
-                array, at, stop, last, self.line, self.rows, self._columns.points(), self._spans
-            )
+            piece = Piece(array, at, stop, self.line, last)
+            at, self.line, self.rows, count = self._text.scan(piece, self.rows, self._columns.points(), self._spans)
             self._interpret(data, self._spans[:count])
             if self.rows == len(self._columns.line):
                 self._columns.grow()

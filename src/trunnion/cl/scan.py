@@ -69,16 +69,26 @@ class PointColumns(NamedTuple):
     line: Lines
 
 
+class Piece(NamedTuple):
+    """Whole lines of a file.
+
+    data   (b,) uint8  the lines are ``data[start:stop]``, and ``data[stop - 1]`` is a newline
+    line   of the file that begins at ``start``
+    last   the file ends at ``stop``
+    """
+
+    data: Bytes
+    start: int
+    stop: int
+    line: int
+    last: bool
+
+
 @kernel(writes="columns spans")
-def scan(
-    apt: bool, data: Bytes, start: int, stop: int, last: bool, line: int, row: int, columns: PointColumns, spans: Ints2
-) -> tuple[int, int, int, int]:
-    """Read the lines of ``data[start:stop]`` until these, the rows or the spans are used up.
+def scan(apt: bool, piece: Piece, row: int, columns: PointColumns, spans: Ints2) -> tuple[int, int, int, int]:
+    """Read a piece of a file until its lines, the rows or the spans are used up.
 
     apt      comments with an arrow are statements, and GOFWD and RETRCT are motions
-    data     (b,)   uint8      whole lines: ``data[stop - 1]`` is a newline
-    last     the file ends at ``stop``
-    line     line of the file that begins at ``start``
     row      first row of ``columns`` to write
     spans    (s, 5) int64      written from 0 on, see ``SPAN_COLUMNS``
     returns  where to go on in ``data``, the line there, the next row, number of spans written
@@ -87,8 +97,8 @@ def scan(
     """
     # Unpacked once: every access to a field would count references, which takes a quarter of the time.
     tip, axis, lines = columns.tip, columns.axis, columns.line
+    data, at, stop, line, last = piece.data, piece.start, piece.stop, piece.line, piece.last
     count = 0
-    at = start
     while at < stop and count < spans.shape[0] and row < lines.shape[0]:
         following, continued = _parse_goto(data, at, stop, tip, axis, row)
         if following > 0 and following - at <= MAX_STATEMENT_BYTES:

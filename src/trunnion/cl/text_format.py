@@ -9,29 +9,24 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Final, Protocol
 
-from trunnion.arrays import Bytes, Ints2
-from trunnion.cl.scan import PointColumns, scan
+from trunnion.arrays import Ints2
+from trunnion.cl.scan import Piece, PointColumns, scan
 from trunnion.cl.statement import Statement, parse
 
 
 class Scan(Protocol):
-    """Reads the lines of ``data[start:stop]`` until these, the rows or the spans are used up.
+    """Reads a piece of a file until its lines, the rows or the spans are used up.
 
-    data     (b,)   uint8   whole lines: ``data[stop - 1]`` is a newline
-    last     the file ends at ``stop``
-    line     line of the file that begins at ``start``
     row      first row of ``columns`` to write
     columns  of the points that the scan reads itself; the row of a span marked ``MAKES_ROW`` is NaN, for its handler
-    spans    (s, 5) int64   written from 0 on: offset in ``data``, bytes, line, row before which it stands, marks
-    returns  where to go on in ``data``, the line there, the next row, number of spans written
+    spans    (s, 5) int64   written from 0 on: offset in the data, bytes, line, row before which it stands, marks
+    returns  where to go on in the data, the line there, the next row, number of spans written
 
-    Before the end of the file, a statement whose rest lies behind ``stop`` is left for the next call; at the end it is
+    Before the end of the file, a statement whose rest lies behind the piece is left for the next call; at the end it is
     marked ``UNFINISHED``. Marks are those of ``trunnion.cl.scan``.
     """
 
-    def __call__(
-        self, data: Bytes, start: int, stop: int, last: bool, line: int, row: int, columns: PointColumns, spans: Ints2
-    ) -> tuple[int, int, int, int]: ...
+    def __call__(self, piece: Piece, row: int, columns: PointColumns, spans: Ints2) -> tuple[int, int, int, int]: ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)

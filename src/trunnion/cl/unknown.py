@@ -4,12 +4,11 @@ from collections.abc import Iterator
 
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.statement import parse
-from trunnion.errors import Problem, Severity, merge_repeated
+from trunnion.errors import Problem, merge_repeated, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import ShopStatement, Toolpath, UnknownStatement
 
 _CURE = "a program is refused unless the control's definition says what becomes of it ([control.statements])"
-_NO_EFFECT = "nothing becomes of it: check that nothing should, or say under [control.statements] or [cl.words] what"
 
 
 def statement_words(text: str) -> tuple[str, frozenset[str]]:
@@ -44,11 +43,9 @@ def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
 def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
     """Return what is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, Wording("CL210", "unknown", unknown=event.what), severity=Severity.WARNING)
+        warning(toolpath.file, event.line, Wording("CL210", "unknown", unknown=event.what))
         if event.acts
-        else Problem(
-            toolpath.file, event.line, Wording("CL220", "unknown", unknown=event.what), severity=Severity.WARNING
-        )
+        else warning(toolpath.file, event.line, Wording("CL220", "unknown", unknown=event.what))
         for event in _unknown_events(toolpath)
     )
 

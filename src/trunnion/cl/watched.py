@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
-from trunnion.cl.read import read_cl_files
+from trunnion.cl.read import ClReading, read_cl_files
 from trunnion.errors import unusable_file
 from trunnion.model.toolpath import Toolpath
 
@@ -13,15 +13,7 @@ from trunnion.model.toolpath import Toolpath
 Watch: TypeAlias = Callable[[str, int, str], AbstractContextManager[Callable[[int], None]]]
 
 
-def read_watched(
-    file: Path | BinaryIO,
-    watch: Watch,
-    *,
-    units: str | None,
-    dialect: str | None,
-    strict: bool,
-    spline_tolerance: float | None,
-) -> list[Toolpath]:
+def read_watched(file: Path | BinaryIO, watch: Watch, how: ClReading) -> list[Toolpath]:
     """Read as ``read_cl_files`` does, and let ``watch`` accompany it.
 
     Raises ``InputError`` if a file cannot be used, with every problem found.
@@ -36,6 +28,4 @@ def read_watched(
             advance(read - done)
             done = read
 
-        return read_cl_files(
-            file, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance, progress=so_far
-        )
+        return read_cl_files(file, how, so_far)

@@ -18,28 +18,15 @@ def write_cl(
 ) -> tuple[Problem, ...]:
     """Write a CL file.
 
-    Parameters
-    ----------
-    toolpath
-        Events in the order of their rows, as ``read_cl`` gives them.
-    sink
-        Takes UTF-8 bytes in order.
-    dialect
-        A key of ``trunnion.cl.writers.WRITERS``.
-    inch
-        Write lengths and feeds in inches instead of millimetres.
-    comments
-        Lines for the head of the file, as ``$$`` comments.
+    toolpath  events in the order of their rows, as ``read_cl`` gives them
+    sink      takes UTF-8 bytes in order
+    dialect   a key of ``trunnion.cl.writers.WRITERS``
+    inch      write lengths and feeds in inches instead of millimetres
+    comments  lines for the head of the file, as ``$$`` comments
 
-    Returns
-    -------
-    tuple of Problem
-        Remarks on what the dialect cannot express and reads back otherwise.
+    tuple of Problem  remarks on what the dialect cannot express and reads back otherwise
 
-    Raises
-    ------
-    InputError
-        Before anything is written, if the dialect cannot hold the toolpath at all.
+    Raises ``InputError`` before anything is written, if the dialect cannot hold the toolpath at all.
     """
     writer = WRITERS[dialect](toolpath, inch=inch)
     writer.write(sink, comments)

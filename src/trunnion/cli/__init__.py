@@ -8,16 +8,18 @@ import gc
 import logging
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
+from trunnion.cli.printing import print_result
 from trunnion.cli.process import Ended, end_cleanly, let_messages_go
 from trunnion.errors import Problem, RefusedError, TrunnionError
-from trunnion.jobs.job import Given
 from trunnion.messages import Wording
-from trunnion.options.kinds import FileIn, FileOut
-from trunnion.options.option import outputs
+from trunnion.version import __version__
+
+if TYPE_CHECKING:
+    from trunnion.jobs.job import Given
 
 
 def configure_process() -> None:
@@ -41,12 +43,15 @@ def run_and_exit() -> NoReturn:
     end_cleanly()
     let_messages_go()
     _show_log()
-    code = main()
+    try:
+        code = main()
+    except SystemExit as end:  # of help, and of a command line that cannot be understood
+        code = int(end.code or 0)
     try:
         sys.stdout.flush()
     except OSError as error:
         if code == 0 and not isinstance(error, BrokenPipeError):
-            print(Problem("stdout", 0, Wording("FIL230", "stdout_broken", reason=error.strerror)), file=sys.stderr)
+            print(Problem("stdout", 0, Wording("FIL230", "stdout_broken", strerror=error.strerror)), file=sys.stderr)
         code = code or 2
     sys.stderr.flush()
     os._exit(code)
@@ -62,13 +67,17 @@ def _show_log() -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    from trunnion.cli.command_line.parser import parse
-
+    words = list(sys.argv[1:] if argv is None else argv)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # Windows consoles and pipes are not UTF-8 by default
             stream.reconfigure(encoding="utf-8", errors="replace")
     try:
-        code = _carry_out(parse(sys.argv[1:] if argv is None else argv))
+        if words[:1] == ["--version"]:
+            print_result(f"trunnion {__version__}")
+            return 0
+        from trunnion.cli.command_line.parser import parse
+
+        code = _carry_out(parse(words))
     except TrunnionError as error:
         from trunnion.cli.wording import error_lines
 
@@ -85,16 +94,29 @@ def main(argv: Sequence[str] | None = None) -> int:
     return code
 
 
-def _carry_out(given: Given) -> int:
+def _carry_out(given: "Given") -> int:
     """Run a command, once it is known that it writes over nothing that it reads."""
+    from trunnion.options.kinds import FileIn, FileOut
+    from trunnion.options.option import outputs
+
     if any(given.values[each.name] for each in given.job.options if isinstance(each.kind, FileIn | FileOut)):
         from trunnion.cli.stopped_jobs import settle_stopped_jobs
 
         settle_stopped_jobs(given)
-    if not given.job.guards and any(given.values[each.name] is not None for each in outputs(given.job.options)):
+    written = [each for each in outputs(given.job.options) if given.values[each.name] is not None]
+    if written and not given.job.guards:
         from trunnion.jobs.guard import guard
 
         given.read = guard(given)
+    elif any(isinstance(each.kind, FileOut) and not each.kind.ends_so(given.values[each.name]) for each in written):
+        from trunnion.jobs.guard import check_names  # imports much that a command may want in another order
+
+        check_names(given)
     module, _, name = given.job.run.partition(":")
-    code: int = getattr(import_module(module), name)(given)
-    return code
+    run: Callable[[Given], int] = getattr(import_module(module), name)
+    if not given.typed:
+        return run(given)
+    from trunnion.jobs.inputs.settings import reported_as_arguments
+
+    with reported_as_arguments({setting: option.name for setting, option in given.typed.items()}):
+        return run(given)

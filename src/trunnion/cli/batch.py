@@ -12,8 +12,9 @@ from trunnion.batch.cluster import Tls
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
 from trunnion.batch.worker_task import Status
+from trunnion.cli.printing import tell
 from trunnion.cli.progress import progress, progress_lines
-from trunnion.cli.results import show, tell
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, argument_problem

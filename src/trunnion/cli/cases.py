@@ -4,7 +4,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from trunnion.cli.results import print_result, show, tell
+from trunnion.cli.printing import print_result, tell
+from trunnion.cli.results import show
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, RefusedError, TrunnionError
 from trunnion.jobs.job import Given

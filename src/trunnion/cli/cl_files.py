@@ -7,6 +7,7 @@ from pathlib import Path
 from threading import Event
 from typing import BinaryIO
 
+from trunnion.cl.read import ClReading
 from trunnion.cl.watched import read_watched
 from trunnion.cli.progress import progress
 from trunnion.errors import InputError, Problem
@@ -31,33 +32,28 @@ def result_stem(file: str) -> str:
 
 def begin_reading(
     files: Sequence[str],
-    units: str | None,
-    strict: bool,
+    how: ClReading,
     executor: Executor,
-    dialect: str | None = None,
-    spline_tolerance: str = "",
 ) -> Iterator[list[Toolpath]]:
     """Toolpaths of CL files, those of one file or archive after the other.
 
-    Units, dialect, ``strict`` and the tolerance of splines are as ``trunnion.cl.read_cl_files`` has them. The first
-    file is read at once in ``executor``, the others when they are due; none is kept. Returns when reading runs in its
-    kernel, which leaves the interpreter to the imports of the caller.
+    The first file is read at once in ``executor``, the others when they are due; none is kept. Returns when reading
+    runs in its kernel, which leaves the interpreter to the imports of the caller.
     """
-    scanning, within = Event(), _tolerance(spline_tolerance)
-    inputs = streams(files)
-    begun = [executor.submit(_read, inputs[0], units, dialect, strict, within, scanning)]
+    scanning, inputs = Event(), streams(files)
+    begun = [executor.submit(_read, inputs[0], how, scanning)]
     begun[0].add_done_callback(lambda _: scanning.set())
     scanning.wait()
 
     def one_by_one() -> Iterator[list[Toolpath]]:
         yield begun.pop().result()
         for file in inputs[1:]:
-            yield _read(file, units, dialect, strict, within, Event())
+            yield _read(file, how, Event())
 
     return one_by_one()
 
 
-def _tolerance(text: str) -> float | None:
+def spline_tolerance(text: str) -> float | None:
     """Return the tolerance of splines; None for a text that the check of the settings will refuse."""
     try:
         value = float(text)
@@ -66,9 +62,7 @@ def _tolerance(text: str) -> float | None:
     return value if 1e-4 <= value <= 1.0 else None
 
 
-def _read(
-    file: str | BinaryIO, units: str | None, dialect: str | None, strict: bool, within: float | None, scanning: Event
-) -> list[Toolpath]:
+def _read(file: str | BinaryIO, how: ClReading, scanning: Event) -> list[Toolpath]:
     @contextmanager
     def watch(name: str, size: int, unit: str) -> Iterator[Callable[[int], None]]:
         with progress(name, size, unit) as advance:
@@ -80,4 +74,4 @@ def _read(
             yield tell
 
     path = Path(file) if isinstance(file, str) else file
-    return read_watched(path, watch, units=units, dialect=dialect, strict=strict, spline_tolerance=within)
+    return read_watched(path, watch, how)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.cli.results import print_result
+from trunnion.cli.printing import print_result
 from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS
 from trunnion.machines import shipped_machines

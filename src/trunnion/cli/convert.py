@@ -1,21 +1,23 @@
 """``trunnion convert``: an NC program or a CL file to a toolpath, and out again as a CL file or for another machine."""
 
 import shlex
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 from trunnion.cli.cl_files import result_stem
-from trunnion.cli.results import show, tell
+from trunnion.cli.printing import tell, tell_problem
+from trunnion.cli.results import show
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
-from trunnion.cli.terminal_text import warning_line
+from trunnion.cli.wording import problem_line
 from trunnion.controls import load_control
 from trunnion.dialect_names import WRITTEN_DIALECTS
+from trunnion.errors import warning
 from trunnion.files import check_outputs
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.guard import files_read
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
+from trunnion.messages import Wording
 from trunnion.wording import counted
 
 
@@ -47,8 +49,8 @@ def run(given: Given) -> int:
 def _told_of_dialect(given: Given) -> None:
     """Take ``--dialect`` alone for ``--to-dialect``, as it was before; a warning says so until the next version."""
     if given.to_dialect is None and given.dialect is not None and given.to_cl:
-        what = "--dialect is what a CL file is read in; to say what it is written in, --to-dialect does"
-        print(warning_line("trunnion convert", what, "ARG190"), file=sys.stderr)
+        wording = Wording("ARG190", "dialect_of_written")
+        tell_problem(problem_line(warning("trunnion convert", 0, wording)))
         given.values["to_dialect"], given.values["dialect"] = given.dialect, None
 
 

@@ -4,10 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path, PurePath
 from typing import Any, Final
 
+from trunnion.cli.checked_files import checked_data, checked_file
 from trunnion.cli.controls import control_lines
 from trunnion.cli.machine_text import machine_data, machine_lines, machine_list
-from trunnion.cli.results import print_result, show
-from trunnion.controls import load_control
+from trunnion.cli.printing import print_result, tell_problem
+from trunnion.cli.results import show
+from trunnion.cli.wording import problem_line
+from trunnion.controls import Control, load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
 from trunnion.definitions import load_table
@@ -18,6 +21,7 @@ from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.describe.controls import describe_control
 from trunnion.jobs.describe.definition_checks import all_problems, machine_problems, stand_in
 from trunnion.jobs.describe.machines import describe_machine
+from trunnion.jobs.describe.template_motions import motions_in_branches
 from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.job import Given
 from trunnion.machines import load_machine, shipped_machines
@@ -61,12 +65,19 @@ def machines(given: Given) -> int:
 
 
 def check(given: Given) -> int:
-    """Validate the definition of a machine with its control, or of a control, and show what it means.
+    """Validate the definition of a machine with its control, or of a control, and show what it means; or another file.
 
     Every mistake comes at once.
     """
+    other = checked_file(given.file)
+    if other is not None:
+        for remark in other.remarks:
+            tell_problem(problem_line(remark))
+        show(given, lambda: checked_data(other), [f"{given.file}: good: {other.text}"])
+        return 0
     if given.file in shipped_controls() or is_control_file(Path(given.file)):
         _check_control_file(given.file)
+        _warn_of_branches(load_control(load_control_table(given.file)))
         control = describe_control(given.file)
         good = f"{given.file}: good"
         show(given, lambda: control, [good, "", *control_lines(control)])
@@ -74,10 +85,19 @@ def check(given: Given) -> int:
     _check_is_known(given.file)
     key = PurePath(given.file).name.removesuffix(".toml")
     _raise(machine_problems(load_table(given.file, machine_library(), kind="machine"), key))
+    machine = load_machine(given.file)
+    if machine.control.keys() not in ([], ["family"]):
+        _warn_of_branches(load_control(machine.control))
     found = describe_machine(given.file)
     good = f"{given.file}: good"
     show(given, lambda: machine_data(found), [good, "", *machine_lines(found)])
     return 0
+
+
+def _warn_of_branches(control: Control) -> None:
+    """Print what the proof of a program may not have seen."""
+    for problem in motions_in_branches(control):
+        tell_problem(problem_line(problem))
 
 
 def _raise(problems: Sequence[Problem]) -> None:
@@ -90,7 +110,7 @@ def _check_control_file(file: str) -> None:
     table = load_control_table(file)
     machine = stand_in(file, table)
     checks = (lambda: load_control(table), lambda: check_reading(machine), lambda: check_statements(machine))
-    _raise(all_problems(checks))
+    _raise(all_problems(checks, table.sources))
 
 
 def _check_is_known(name: str) -> None:

@@ -3,19 +3,18 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.jobs.capability.fitting import AxisMargin, FitStatus, MachineFit, fit
 from trunnion.jobs.job import Given
+from trunnion.messages import phrase
 from trunnion.wording import format_duration
 
 
 def run(given: Given) -> int:
     """Ask the machines; 0 if one of them can run it, else 1."""
-    files = as_read(given, given.files) if given.machine is None else given.files
-    found = fit(files, **given.arguments("files"), observer=Terminal())
+    found = fit(**given.arguments(), observer=Terminal())
     show(given, lambda: {"schema": 1, "machines": found}, fit_lines(found))
     return 0 if any(each.status is not FitStatus.NOT for each in found) else 1
 
@@ -29,6 +28,8 @@ def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
         yield f"{each.key:<{wide}}  {each.status:<12}  {_facts(each)}".rstrip()
         for reason in each.reasons:
             yield f"{'':<{wide}}  {in_command_words(reason)}"
+        if each.not_measured:
+            yield f"{'':<{wide}}  {phrase('stands_on', values=each.not_measured)}"
 
 
 def _facts(each: MachineFit) -> str:

@@ -36,15 +36,15 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
         "",
         "Where the tool points, in directions of the workpiece, and where the spindle's gauge point is then;",
     )
-    yield "slides at zero, positions in mm from the workpiece zero"
+    yield "linear axes at zero, positions in mm from the workpiece zero"
     yield from _pose_lines(jogs)
     yield ""
     yield from _solution_lines(jogs)
-    yield from ("", "What is assumed", *(f"  {in_command_words(each)}" for each in found.assumed))
     yield from ("", f"Texts of {found.control}; {{field}} stands for a value")
     for text in found.texts:
         yield f"  {text.name}"
         yield from (f"    {line}" for line in text.lines)
+    yield from ("", "What is assumed", *(f"  {in_command_words(each)}" for each in found.assumed))
 
 
 def machine_data(found: MachineDescription) -> dict[str, object]:

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from trunnion.builder.likeness import definition_like
 from trunnion.builder.saved_file import is_file_name
-from trunnion.cli.results import print_result, show
+from trunnion.cli.printing import print_result
+from trunnion.cli.results import show
 from trunnion.definitions.value_marks import marked_values
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file, check_outputs

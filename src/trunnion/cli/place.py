@@ -5,18 +5,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.arrays import Floats
-from trunnion.cli.cl_reading import as_read
-from trunnion.cli.results import print_result, show, tell
+from trunnion.cli.printing import print_result, tell
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, load_machine
 from trunnion.jobs.inputs.settings import as_texts
-from trunnion.jobs.job import Given
+from trunnion.jobs.job import Given, streams
 from trunnion.jobs.place.bodies import BodiesInput
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, BodyDistance, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
@@ -52,18 +52,19 @@ def run(given: Given) -> int:
     settings = {**({} if project is None else as_texts(project.settings)), **dict(given.settings)}
     length = given.tool_length or settings.get("tool_length")
     stated = BodiesInput() if project is None else project.bodies
-    placed: Sequence[ToolpathLike] = as_read(given, files)
+    placed: Sequence[ToolpathLike] = streams(files)
     if given.apply is not None:
-        placed = toolpaths_to_post(placed, machine=machine, settings=settings, observer=Terminal())
+        placed = toolpaths_to_post(placed, machine=machine, settings=settings, strict=given.strict, observer=Terminal())
     found = place(
         placed,
         machine=machine,
         goal=given.goal,
         turns=given.only_turns or given.turns,
         tilts=(_FREE_STEP if given.free else given.tilts) or (),
-        zero=given.zero or settings.get("zero"),
-        tool_length=length,
+        zero=given.zero,
+        tool_length=given.tool_length,
         settings=settings,
+        strict=given.strict,
         subprograms=given.subprograms,
         hooks=given.hooks,
         fixtures=given.fixtures or stated.fixtures,
@@ -165,6 +166,8 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
         if not found.region.is_box:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+    if found.not_measured:
+        yield f"  {phrase('stands_on', values=found.not_measured)}"
 
 
 def _table(found: Placement, best: PartPlace) -> Iterator[str]:
@@ -276,7 +279,7 @@ def _point(place: PartPlace) -> str:
 
 
 def _overlap(found: Placement) -> str:
-    """How much travel is missing, where both limits of one slide conflict and nothing else does."""
+    """How much travel is missing, where both limits of one linear axis conflict and nothing else does."""
     ends = {(limit.axis, limit.end) for limit in found.limits}
     if found.fits or found.best is None or len(ends) != 2 or len({axis for axis, _ in ends}) > 1:
         return ""
@@ -287,7 +290,7 @@ def _value(goal: str, place: PartPlace) -> str:
     """Return the value of a goal in words."""
     what = {
         "rotary": "the rotary axes turn",
-        "slides": "the slides travel",
+        "slides": "the linear axes travel",
         "time": "as the planner of speeds has it, it takes",
         "overspeed": "the axes do not reach the feed in",
     }

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Final, cast
 
 from trunnion.cli.cl_files import result_stem
-from trunnion.cli.results import show, tell
+from trunnion.cli.printing import tell
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place, warn_of_old
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, TrunnionError, argument_problem

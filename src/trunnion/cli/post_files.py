@@ -13,7 +13,8 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import trunnion.jit
-from trunnion.cli.cl_files import begin_reading
+from trunnion.cl.read import ClReading
+from trunnion.cli.cl_files import begin_reading, spline_tolerance
 from trunnion.jobs.job import Given
 
 if TYPE_CHECKING:  # imported while the first CL file is read
@@ -30,10 +31,9 @@ def post_files(given: Given, group: "OutputGroup | None" = None, observer: "Obse
     executor = ThreadPoolExecutor(1)
     try:
         settings = dict(given.settings)
-        coming = begin_reading(
-            given.cl, settings.get("cl_units"), given.strict, executor, settings.get("dialect"),
-            settings.get("spline_tolerance", ""),
-        )  # fmt: skip
+        within = spline_tolerance(settings.get("spline_tolerance", ""))
+        how = ClReading(settings.get("cl_units"), settings.get("dialect"), given.strict, within)
+        coming = begin_reading(given.cl, how, executor)
         from trunnion.cli.post import post
 
         return post(given, coming, group, observer)

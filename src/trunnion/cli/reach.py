@@ -8,7 +8,6 @@ import numpy as np
 from trunnion.capability.part_reach import PartReach
 from trunnion.capability.path_reach import PathReach
 from trunnion.capability.reach import Reach, TiltReach
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.jobs.capability.reach_report import write_reach_plot
@@ -26,7 +25,7 @@ _MOST: Final = 12
 def run(given: Given) -> int:
     """Tell and draw what is reached; 0 if all that was asked for is, else 1."""
     terminal = Terminal()
-    found = reach(**given.arguments("cl"), cl=as_read(given, given.cl), observer=terminal)
+    found = reach(**given.arguments(), observer=terminal)
     terminal.problems(found.remarks)
     if given.plot is not None:
         write_reach_plot(found, given.plot, given.read)
@@ -91,14 +90,14 @@ def _ranges(tilts: list[float], step: float) -> str:
 
 
 def _not_judged(found: Reach) -> str:
-    """Return what is not known of slides, in words, with what to give; empty where all are judged."""
+    """Return what is not known of linear axes, in words, with what to give; empty where all are judged."""
     slides, machine = found.unjudged_axes, found.machine
     if not slides:
         return ""
     free = [k for k in machine.linear if not machine.axes[k].has_limits]
     cure = "give --zero" if machine.workpiece_zero is None else "give --tool-length"
     cure = "the machine states no limits" if len(free) == len(slides) else cure
-    names = "slides are" if len(slides) == len(machine.linear) else f"{' and '.join(slides)} {_is(len(slides))}"
+    names = "linear axes are" if len(slides) == len(machine.linear) else f"{' and '.join(slides)} {_is(len(slides))}"
     return f"{names} not judged ({cure})"
 
 
@@ -115,7 +114,7 @@ def _part_lines(part: PartReach, found: Reach) -> Iterator[str]:
     yield f"{part.name}: {share}"
     for which, why in (
         (~part.axis, "no such tool axis"),
-        (part.axis & ~part.travel, "beyond the travel of the slides"),
+        (part.axis & ~part.travel, "beyond the travel of the linear axes"),
     ):
         if which.any():
             tilts = np.degrees(np.arccos(np.clip(part.normal[which, 2], -1.0, 1.0)))
@@ -123,7 +122,7 @@ def _part_lines(part: PartReach, found: Reach) -> Iterator[str]:
             yield f"  {why}: {lost:.1f} %, normals tilted from {tilts.min():.1f}° to {tilts.max():.1f}°"
     for k in missed[:_MOST].tolist():
         i, j, n = part.normal[k] + 0.0
-        why = "beyond the travel of the slides" if part.axis[k] else "no such tool axis"
+        why = "beyond the travel of the linear axes" if part.axis[k] else "no such tool axis"
         yield (
             f"  facet {k + 1}: {part.area[k]:.1f} mm² at {position(part.centre[k])},"
             f" normal {i:.3f} {j:.3f} {n:.3f}: {why}"

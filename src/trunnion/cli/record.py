@@ -3,7 +3,7 @@
 import getpass
 import sys
 
-from trunnion.cli.results import print_result, tell
+from trunnion.cli.printing import print_result, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.recording import record

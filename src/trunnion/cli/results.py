@@ -1,44 +1,12 @@
-"""Results on stdout."""
+"""Results on stdout, in lines or as data."""
 
-import sys
 from collections.abc import Callable, Iterable
 
-from trunnion.cli.terminal_text import severity_painted
-from trunnion.errors import InputError, Problem
+from trunnion.cli.printing import print_result, tell
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
-from trunnion.messages import Wording
 from trunnion.results import as_json, to_data
-from trunnion.wording import one_line, printable
-
-
-def tell(*lines: str) -> None:
-    """Print lines to stderr, each as one line: names in them may come from any file."""
-    for line in lines:
-        print(one_line(line), file=sys.stderr)
-
-
-def tell_problem(line: str) -> None:
-    """Print the line of a problem to stderr, with its severity in colour where that is a terminal."""
-    print(severity_painted(one_line(line)), file=sys.stderr)
-
-
-def print_result(*lines: str, end: str = "\n") -> None:
-    """Print lines to stdout, without characters that a terminal obeys.
-
-    Raises ``InputError`` if stdout takes no more, as on a disk that is full.
-
-    Raises ``BrokenPipeError`` if its reader has gone away.
-    """
-    try:
-        print(*map(printable, lines), sep="\n", end=end)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        raise InputError(
-            Problem("stdout", 0, Wording("FIL230", "stdout_takes_no_more", reason=error.strerror or error))
-        ) from None
+from trunnion.wording import one_line
 
 
 def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:

@@ -3,13 +3,12 @@
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.cli.cl_reading import as_read
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.jobs.job import Given
 from trunnion.jobs.simulate.report import write_simulation_report
-from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number
 from trunnion.simulation.meshes import save_mesh
@@ -24,7 +23,7 @@ _MOST: Final = 20
 
 def run(given: Given) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
-    found = simulate(**given.arguments("cl"), cl=as_read(given, given.cl), observer=Terminal())
+    found = simulate(**given.arguments(), observer=Terminal())
     if given.save_stock is not None:
         save_mesh(stock_surface(found.simulation.stock), given.save_stock, inputs=given.read)
     if given.report is not None:
@@ -63,6 +62,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             yield f"{_of_setup(each.setup)}places are those of the part as it is drawn; it is {how}"
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
+    yield from not_measured_lines(found)
     errors = sum(remark.severity is Severity.ERROR for remark in found.remarks)
     parts = [counted(len(found.findings), "finding"), *([counted(errors, "error")] if errors else [])]
     yield "nothing found" if found.passed else f"{' and '.join(parts)}: the program must not run"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from trunnion.cli.results import tell_problem
+from trunnion.cli.printing import tell_problem
 from trunnion.cli.wording import problem_line
 from trunnion.errors import TrunnionError
 from trunnion.files import settle_dead_jobs

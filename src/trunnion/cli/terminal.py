@@ -7,15 +7,15 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
 
+from trunnion.cli.printing import tell, tell_problem
 from trunnion.cli.progress import progress
-from trunnion.cli.results import tell, tell_problem
 from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import InputError, Problem
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.observer import Observer
 from trunnion.messages import Wording
 from trunnion.model.motion import Plan
-from trunnion.verification import Verification, check_lines, place_lines, time_lines
+from trunnion.verification import Verification, check_lines, place_lines, stand_lines, time_lines
 
 #: Warnings about a program that is converted which are printed one by one.
 _MOST_PRINTED = 20
@@ -51,7 +51,8 @@ class Terminal(Observer):
     def verified(self, verification: Verification) -> None:
         """Print one line a check, the places of failed checks, and times."""
         places = place_lines(verification, failed_only=True)
-        tell(*check_lines(verification), *places, *time_lines(verification), verification.standing.told)
+        stands = stand_lines(verification.checks)
+        tell(*check_lines(verification), *places, *time_lines(verification), *stands, verification.standing.told)
         if not self._explained and _exceeds_rotary_speed(verification):
             what = "a rotary axis cannot follow the feed everywhere; --explain says where, and what helps"
             tell(f"{verification.program}: {what}")

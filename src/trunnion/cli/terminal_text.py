@@ -1,4 +1,4 @@
-"""Text on a terminal: colours, unless ``NO_COLOR`` forbids them, and lines that say what is wrong."""
+"""Text on a terminal: colours, unless ``NO_COLOR`` forbids them."""
 
 import os
 import sys
@@ -27,13 +27,3 @@ def severity_painted(line: str) -> str:
         if mark:
             return f"{before}: {painted(word, word)}: {rest}"
     return line
-
-
-def error_line(where: str, what: str, code: str) -> str:
-    """Return a line about a command that cannot be understood."""
-    return severity_painted(f"{where}: error: {what} [{code}]")
-
-
-def warning_line(where: str, what: str, code: str) -> str:
-    """Return a line about something that the command does all the same."""
-    return severity_painted(f"{where}: warning: {what} [{code}]")

@@ -4,11 +4,11 @@ import getpass
 import sys
 from typing import TYPE_CHECKING
 
-from trunnion.cli.results import print_result
+from trunnion.cli.printing import print_result
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 if TYPE_CHECKING:
     from trunnion.twin.serving import TwinAddresses
@@ -44,6 +44,8 @@ def _announce(addresses: "TwinAddresses", given: Given) -> None:
     lines = [f"OPC UA: {addresses.opcua} ({how})"]
     if addresses.mtconnect:
         lines.append(f"MTConnect: an agent connects to {addresses.mtconnect} (SHDR); --device-xml writes its devices")
+    if addresses.not_measured:
+        lines.append(f"positions and times: {phrase('stands_on', values=addresses.not_measured)}")
     if given.hold:
         lines.append("the program waits for a client to call Start in the object Twin")
     print(*lines, "Ctrl-C ends it", sep="\n", file=sys.stderr, flush=True)

@@ -4,17 +4,17 @@ import io
 import json
 from typing import Any, Final
 
-from trunnion.cli.results import show, tell
+from trunnion.cli.printing import tell
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
-from trunnion.jobs.post.papers.manifests import verify_manifest
 from trunnion.jobs.verify.reports import add_report, write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.messages import Wording
-from trunnion.verification import Verification, check_lines, place_lines, time_lines
+from trunnion.verification import Verification, check_lines, place_lines, stand_lines, time_lines
 from trunnion.wording import counted, one_line
 
 #: Fewer errors do not suggest that the program is for another control.
@@ -38,7 +38,8 @@ def run(given: Given) -> int:
     if hint := _control_hint(verification):
         tell(hint)
     lines = (
-        *check_lines(verification), *place_lines(verification), *time_lines(verification), verification.standing.told,
+        *check_lines(verification), *place_lines(verification), *time_lines(verification),
+        *stand_lines(verification.checks), verification.standing.told,
     )  # fmt: skip
     show(given, lambda: _report_data(verification), lines)
     if given.report is not None:
@@ -48,6 +49,8 @@ def run(given: Given) -> int:
 
 def _run_manifest(given: Given) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
+    from trunnion.jobs.post.papers.manifests import verify_manifest  # a program has no need of it
+
     stated = (each for each in given.job.options if each.name not in _OF_MANIFESTS)
     if wrong := [each for each in stated if given.values[each.name] != each.empty]:
         raise InputError(argument_problem(wrong[0].name, Wording("ARG130", "not_for_manifest")))

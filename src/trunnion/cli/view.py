@@ -2,13 +2,10 @@
 
 import sys
 from functools import partial
-from pathlib import Path
 from typing import Any, Final
 
-from trunnion.cl import is_cl_file
-from trunnion.cli.cl_reading import as_read
+from trunnion.cli.printing import print_result
 from trunnion.cli.record import machine_password
-from trunnion.cli.results import print_result
 from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
@@ -35,9 +32,7 @@ def run(given: Given) -> int:
         raise InputError(argument_problem("nc", Wording("ARG130", "missing_what_is_viewed")))
     if given.live is not None and given.output is not None:
         raise InputError(argument_problem("live", Wording("ARG130", "live_is_served")))
-    shown = given.arguments("output", "cl", *_LIVE) | {"cl": as_read(given, given.cl)}
-    if given.strict:
-        as_read(given, [file for file in given.nc if is_cl_file(Path(file))])
+    shown = given.arguments("output", *_LIVE)
     if given.output is not None:
         write_view(**shown, output=given.output, observer=Terminal())
         print_result(f"{given.output}: written")

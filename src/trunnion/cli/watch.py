@@ -9,10 +9,10 @@ from typing import Protocol
 from trunnion.cli.command_line.post_mistakes import names_project
 from trunnion.cli.post import files_by_target, simulation_of
 from trunnion.cli.post_files import post_files
+from trunnion.cli.printing import print_result, tell
 from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of
-from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import warn_of_old
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, Problem, RefusedError, TrunnionError

@@ -50,9 +50,14 @@ def problem_line(problem: Problem) -> str:
     return in_command_words(problem.line_of_text(_WORDS, called))
 
 
+def painted_line(problem: Problem) -> str:
+    """Return the same with its severity in colour on a terminal."""
+    return severity_painted(problem_line(problem))
+
+
 def error_lines(error: TrunnionError) -> str:
-    """Return the problems of an error, each in its line, with the severity in colour on a terminal."""
-    return "\n".join(severity_painted(problem_line(problem)) for problem in error.problems)
+    """Return the problems of an error, each in its line."""
+    return "\n".join(map(painted_line, error.problems))
 
 
 def _option(argument: str) -> str:

@@ -150,16 +150,7 @@ def _field_problems(
                 k,
                 Wording(
                     "DEF540",
-                    "prints_length_format",
-                    template=template.name,
-                    name=name,
-                    number_format=number_format,
-                    number_format_2=repr(number_format),
-                )
-                if is_length(name)
-                else Wording(
-                    "DEF540",
-                    "prints_no_length",
+                    "prints_length_format" if is_length(name) else "prints_no_length",
                     template=template.name,
                     name=name,
                     number_format=number_format,

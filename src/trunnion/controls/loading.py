@@ -26,7 +26,7 @@ from trunnion.controls.vocabulary import (
     TOOL_TYPES,
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
-from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
+from trunnion.definitions import LocatedValue, Table, TextForm, definition_names, resolve_extends
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.errors import InputError
 from trunnion.families import FAMILIES, load_writer
@@ -50,15 +50,9 @@ def shipped_controls() -> list[str]:
 def load_control(own: Table) -> Control:
     """Read the definition of a control.
 
-    Parameters
-    ----------
-    own
-        The ``[control]`` table of a machine. The definition that its ``extends`` names is merged under it.
+    own  the ``[control]`` table of a machine. The definition that its ``extends`` names is merged under it
 
-    Raises
-    ------
-    InputError
-        With every mistake, each at its file and line.
+    Raises ``InputError`` with every mistake, each at its file and line.
     """
     table = resolve_extends(own, control_library())
     family = _load_family(table)
@@ -138,7 +132,7 @@ def _read_format(entry: Table) -> FormatPair:
         "trailing_zeros": entry.flag("trailing_zeros", False),
         "plus": entry.flag("plus", False),
     }
-    zero = entry.text("zero", "", pattern=_ZERO, form=phrase("zero_of_control"))
+    zero = entry.text("zero", "", written=TextForm(phrase("zero_of_control"), _ZERO))
     least, greatest = entry.number("least", -99999999.0), entry.number("greatest", 99999999.0)
     pair = [
         NumberFormat(n, zero=zero, least=least, greatest=greatest, **common) for n in (decimals, decimals_three_axis)
@@ -171,7 +165,7 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
     name = entry.text("name", one_of=words)
     rotary = name.startswith(("primary", "secondary"))
     letter = entry.text("letter", "") if rotary else entry.text("letter")
-    closing = entry.text("closing", "", pattern="[ -~]?", form=phrase("one_character"))
+    closing = entry.text("closing", "", written=TextForm(phrase("one_character"), "[ -~]?"))
     most = 4 if rotary else 8
     if len(letter.encode()) > most:
         entry.add_problem("letter", Wording("DEF530", "is", letter=repr(letter), most=most))

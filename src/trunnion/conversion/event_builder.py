@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.conversion.program_events import ProgramEvent
+from trunnion.conversion.states import Fate, loss_of
 from trunnion.conversion.unsupported import Warnings
 from trunnion.messages import Wording
 from trunnion.model.run import Run
@@ -138,7 +139,7 @@ class EventBuilder:
                 else:
                     self._warn(line, Wording("CNV150", "t_not_carried", value=value))
             case "coolant":
-                yield Coolant(row, line, self._coolants.get(_COOLANT_CODE[str(value)], str(value).upper()))
+                yield Coolant(row, line, self._coolant_word(str(value)))
             case "dwell":
                 assert isinstance(value, float)
                 yield Dwell(row, line, abs(value), value < 0)
@@ -165,11 +166,23 @@ class EventBuilder:
                 yield Insert(row, line, str(value))
             case "delta" if isinstance(value, tuple) and str(value[0]).startswith("TOOL DEF"):
                 self._warn(line, Wording("CNV173", "length_radius_tool"), event.file)
-            case "delta":
-                self._warn.refuse(line, Wording("CNV173", "dl_dr_tool"), event.file)
             case kind if kind in self._smoothing:
                 name, cure = self._smoothing[kind]
                 self._warn(line, Wording("CNV140", "not_carried_over", name=name, cure=cure), event.file)
+            case kind:
+                self._lose(kind, event)
+
+    def _coolant_word(self, value: str) -> str:
+        """Return the CL word of coolant that the reader knows."""
+        if value == "through":
+            return "THRU"
+        return self._coolants.get(_COOLANT_CODE[value], value.upper())
+
+    def _lose(self, kind: str, event: ProgramEvent) -> None:
+        """Say of an event that no operation holds what the table of states has."""
+        fate, loss = loss_of(kind)
+        if loss is not None:
+            (self._warn.refuse if fate is Fate.REFUSED else self._warn)(event.line, loss, event.file)
 
 
 def _one_line(text: str) -> str:

@@ -7,7 +7,8 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.conversion.program_text import ProgramText
-from trunnion.errors import Problem, Severity
+from trunnion.conversion.states import SAID_ANYHOW
+from trunnion.errors import Problem, Severity, warning
 from trunnion.messages import Wording
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Moves
@@ -16,12 +17,6 @@ from trunnion.planning.poses.selection import choose_poses
 #: Lines with lost words that get a warning each; the others are only counted.
 _MAX_WORD_WARNINGS = 5
 
-#: Words that the header of every operation writes again, or that are converted by other means.
-_NOT_LOST = frozenset(
-    {"G40", "G60", "G601", "FNORM", "COMPOF", "EXTERN", "G49", "G80", "G90", "G94", "G8", "G97"}
-    | {"G43", "G43.1", "G43.2", "G44"}  # tool lengths
-    | {"G15", "G50", "G50.1", "G13.1", "G22", "G23", "G91.1", "G90.1"}  # cancellations
-)
 _SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
 
 #: How findings of readers begin where the path is that of the wall, or of the tool centre as programmed.
@@ -48,7 +43,7 @@ class Warnings:
 
     def __call__(self, line: int, wording: Wording, file: int = 0) -> None:
         """Add a warning; ``file`` is an index as in ``Run.file``."""
-        self._found.append(Problem(self._files[file], line, wording, severity=Severity.WARNING))
+        self._found.append(warning(self._files[file], line, wording))
 
     def refuse(self, line: int, wording: Wording, file: int = 0) -> None:
         """Add an error: the program must not be converted without it."""
@@ -70,7 +65,7 @@ def warn_of_machine_words(
     template_lines  lines of the program that were written from templates
     """
     count = 0
-    lost_words = machine_words - _NOT_LOST - _SURFACE_SPEED
+    lost_words = machine_words - SAID_ANYHOW - _SURFACE_SPEED
     for file, text in enumerate(texts):
         for line, words in text.sparse_words():
             plain = [_ZEROS.sub(r"\1", word) for word in words]

@@ -17,8 +17,8 @@ from trunnion.definitions.extends import (
     own_keys,
     resolve_extends,
 )
-from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, key_lines, layout
-from trunnion.definitions.table import Table
+from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, layout
+from trunnion.definitions.table import Table, TextForm
 from trunnion.definitions.units import unit_of
 
 __all__ = [
@@ -27,9 +27,9 @@ __all__ = [
     "Layout",
     "LocatedValue",
     "Table",
+    "TextForm",
     "definition_names",
     "in_order",
-    "key_lines",
     "layout",
     "load_draft",
     "load_table",

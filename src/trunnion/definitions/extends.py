@@ -135,7 +135,6 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
     """Return the file that ``extends`` names; the child may reach the library and its own folder, nothing else."""
     file, line, name = extends.file, extends.line, extends.value
     if not isinstance(name, str):
-        cure = 'write one name, such as extends = "generic_head_table_bc"'
         raise InputError(Problem(file, line, Wording("DEF210", "extends", name=as_written(name))))
     if len(name) > _MAX_NAME:
         raise InputError(Problem(file, line, Wording("DEF210", "extends_text_letters", count=len(name))))
@@ -152,45 +151,22 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
                 wording = Wording("DEF210", "extends_no_name", name=name)
             raise InputError(Problem(file, line, wording))
         return found
-    cure = "write the name of a shipped definition, or the path of a .toml file in the same folder or below it"
-    if name.casefold().endswith(".toml") and not name.endswith(".toml"):
-        cure += "; .toml in small letters"
+    in_capitals = name.casefold().endswith(".toml") and not name.endswith(".toml")
     pure = PurePosixPath(name)
     outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name)
     if "/" in name and pure.name and not pure.suffix:
         pure = pure.with_suffix(".toml")
     if outside or pure.suffix != ".toml" or child.folder is None:
-        raise InputError(
-            Problem(
-                file,
-                line,
-                Wording("DEF210", "extends_not_file", name=name)
-                if name.casefold().endswith(".toml") and (not name.endswith(".toml"))
-                else Wording("DEF210", "extends_not_file_definition", name=name),
-            )
-        )
+        variant = "extends_not_file" if in_capitals else "extends_not_file_definition"
+        raise InputError(Problem(file, line, Wording("DEF210", variant, name=name)))
     location = child.folder / pure
     # A link may lead out of the folder although its name does not.
     if not is_within(location, child.folder):
-        raise InputError(
-            Problem(
-                file,
-                line,
-                Wording("DEF210", "extends_leads_out", name=name)
-                if name.casefold().endswith(".toml") and (not name.endswith(".toml"))
-                else Wording("DEF210", "extends_leads_out_folder", name=name),
-            )
-        )
+        variant = "extends_leads_out" if in_capitals else "extends_leads_out_folder"
+        raise InputError(Problem(file, line, Wording("DEF210", variant, name=name)))
     if not _is_file(location):
-        raise InputError(
-            Problem(
-                file,
-                line,
-                Wording("DEF210", "extends_no_file", pure=pure)
-                if name.casefold().endswith(".toml") and (not name.endswith(".toml"))
-                else Wording("DEF210", "extends_no_file_beside", pure=pure),
-            )
-        )
+        variant = "extends_no_file" if in_capitals else "extends_no_file_beside"
+        raise InputError(Problem(file, line, Wording("DEF210", variant, pure=pure)))
     return _DefinitionFile(location, str(location), location.parent)
 
 

@@ -1,5 +1,6 @@
 """Values that count in a merged definition and have a mark behind them (``trunnion.definitions.value_marks``)."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,30 +14,50 @@ class MarkedValue:
     """A value with a mark.
 
     name        its key with the name of its table, such as ``C point_mm``
-    file, line  where it stands
+    file, line  where it stands; no file: nowhere, and a default counts
     mark        the comment, without its sign
+    table       the key of that table at the top of the definition, such as ``axis``; empty: it is there itself
     """
 
     name: str
     file: str
     line: int
     mark: str
+    table: str = ""
+
+    @property
+    def key(self) -> str:
+        """Its key in its own table."""
+        return self.name.rpartition(" ")[2]
+
+    @property
+    def of(self) -> str:
+        """The name of its own table."""
+        return self.name.rpartition(" ")[0]
 
     def __str__(self) -> str:
         """Return it with its place."""
-        return f"{self.name} ({Path(self.file).name}:{self.line})"
+        return f"{self.name} ({f'{Path(self.file).name}:{self.line}' if self.file else self.mark})"
 
 
-def marked_in(content: LocatedValue, begins: tuple[str, ...]) -> Iterator[MarkedValue]:
+def marked_in(content: LocatedValue, mark: re.Pattern[str]) -> Iterator[MarkedValue]:
     """Yield the marked values of a definition, in its order; values that another file replaces are none of them."""
     marks: dict[str, dict[int, str]] = {}
-    for name, value in _leaves(content, ""):
+    for name, value, table in _leaves_of_tables(content):
         if value.file not in marks:
             text = _text_of(value.file)  # finding the places of all its values takes a while
-            found = marked_values(text, begins) if any(begin in text for begin in begins) else []
-            marks[value.file] = {line: mark for _, line, mark in found}
-        if (mark := marks[value.file].get(value.line)) is not None:
-            yield MarkedValue(name, value.file, value.line, mark)
+            found = marked_values(text, mark) if mark.search(text) else []
+            marks[value.file] = {line: said for _, line, said in found}
+        if (said := marks[value.file].get(value.line)) is not None:
+            yield MarkedValue(name, value.file, value.line, said, table)
+
+
+def _leaves_of_tables(content: LocatedValue) -> Iterator[tuple[str, LocatedValue, str]]:
+    """Values that are no tables, each with its name and the key of its table at the top."""
+    inner = content.value
+    for key, item in inner.items() if isinstance(inner, dict) else ():
+        below = isinstance(item.value, dict | list) and not _is_plain(item)
+        yield from ((name, value, key if below else "") for name, value in _leaves(item, key))
 
 
 def _leaves(value: LocatedValue, name: str) -> Iterator[tuple[str, LocatedValue]]:

@@ -6,7 +6,7 @@ from pathlib import PurePath
 from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.toml_text import written, written_key
-from trunnion.definitions.value_marks import ASSUMED, MARKS
+from trunnion.definitions.value_marks import ANY_MARK
 
 
 def resolved_text(root: LocatedValue) -> str:
@@ -16,7 +16,7 @@ def resolved_text(root: LocatedValue) -> str:
     the files are listed at the top, with their folders.
     """
     names = _short_names(sorted(set(_files(root))))
-    marks = {(each.file, each.line): f"{each.mark}; " for each in marked_in(root, (*MARKS, *ASSUMED))}
+    marks = {(each.file, each.line): f"{each.mark}; " for each in marked_in(root, ANY_MARK)}
     head = "".join(f"# {name}: {file}\n" for file, name in names.items())
     lines = "\n".join(_table(root, (), names, marks))
     return f"# Where each value comes from:\n{head}\n{lines}\n"

@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final, NamedTuple, TypeAlias
 
 #: Deeper keys are refused unread: the time of the TOML parser grows with the cube of their depth.
@@ -60,7 +61,7 @@ def locate_values(
     """Attach file and lines to a raw TOML value and everything in it.
 
     value        as ``tomllib`` gives it
-    lines        from ``key_lines``
+    lines        of each key
     path         path of the value
     parent_line  line of values that have none of their own
     below        from ``texts_below``
@@ -103,8 +104,11 @@ class Layout:
     comments: list[tuple[int, int]]
 
 
+@lru_cache(8)
 def layout(text: str) -> Layout:
-    """Where everything stands in a TOML text, which ``tomllib`` does not keep.
+    """Where everything stands in a TOML text, which ``tomllib`` does not keep; nobody changes it.
+
+    It is kept for a while: a definition is loaded, and then searched for marks.
 
     Nothing is checked here: for a text that is not TOML, the places mean nothing.
 
@@ -114,14 +118,6 @@ def layout(text: str) -> Layout:
         return _Scanner(text).scan()
     except (IndexError, ValueError):
         return Layout({}, {}, [], [])
-
-
-def key_lines(text: str) -> dict[KeyPath, int]:
-    """Line of every key of a TOML text, as ``layout`` has them.
-
-    Raises ``RecursionError`` if tables nest too deeply.
-    """
-    return layout(text).lines
 
 
 def texts_below(text: str, found: Layout) -> frozenset[KeyPath]:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Final, TypedDict, Unpack, overload
+from typing import Final, NamedTuple, TypedDict, Unpack, overload
 
 from trunnion.definitions.account import TableAccount
 from trunnion.definitions.expected import GREATEST, Expected, Form
@@ -23,6 +23,16 @@ class Required:
 REQUIRED: Final = Required()
 
 _NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
+
+
+class TextForm(NamedTuple):
+    """How a text is written: the phrase that says it, and a regular expression of all of it; empty: any."""
+
+    phrase: Wording | None = None
+    pattern: str = ""
+
+
+_ANY_TEXT: Final = TextForm()
 
 
 class Bounds(TypedDict, total=False):
@@ -78,13 +88,13 @@ class Table(TableAccount):
     def text(
         self, key: str, default: str | Required = ..., *,
         one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
-        pattern: str = ..., form: Wording | None = ...,
+        written: TextForm = ...,
     ) -> str: ...  # fmt: skip
     @overload
     def text(
         self, key: str, default: None, *,
         one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
-        pattern: str = ..., form: Wording | None = ...,
+        written: TextForm = ...,
     ) -> str | None: ...  # fmt: skip
     def text(
         self,
@@ -94,18 +104,17 @@ class Table(TableAccount):
         one_of: Sequence[str] = (),
         other_names: Mapping[str, str] = _NO_NAMES,
         example: str = "",
-        pattern: str = "",
-        form: Wording | None = None,
+        written: TextForm = _ANY_TEXT,
     ) -> str | None:
         """Return a text; with ``one_of``, one of these words, to which ``other_names`` lead in a message.
 
-        With ``pattern`` all of it matches this regular expression, and ``form`` is the phrase of what to write. An
-        empty text, or one that does not match, is the default; a required one is returned as it is.
+        An empty text, or one that is not ``written`` so, is the default; a required one is returned as it is.
         """
+        pattern = written.pattern
         fallback = "" if isinstance(default, Required) else default
 
         def allowed() -> Wording:
-            return form or _a_text(one_of, example)
+            return written.phrase or _a_text(one_of, example)
 
         required = isinstance(default, Required)
         value = self._get(

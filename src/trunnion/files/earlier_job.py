@@ -102,14 +102,9 @@ class EarlierJob:
     ) -> None:
         """Record a program, and papers about it, that have been written; it does no harm where that is not possible.
 
-        Parameters
-        ----------
-        program
-            All files of the program.
-        papers
-            Files about it.
-        known
-            Digests of files that need not be read again.
+        program  all files of the program
+        papers   files about it
+        known    digests of files that need not be read again
         """
         if self._record is None:
             return

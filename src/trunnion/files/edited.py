@@ -16,19 +16,11 @@ from trunnion.messages import Wording
 def place_of_edited(place: OutputPlace, earlier: EarlierJob, edited: str) -> OutputPlace | None:
     """Return where an edited file is kept; None: it is as jobs have written it, or of somebody else, or replaced.
 
-    Parameters
-    ----------
-    place
-        Of the file.
-    earlier
-        The jobs.
-    edited
-        ``keep``, ``replace``, or anything else to refuse.
+    place    of the file
+    earlier  the jobs
+    edited   ``keep``, ``replace``, or anything else to refuse
 
-    Raises
-    ------
-    InputError
-        If it is refused.
+    Raises ``InputError`` if it is refused.
     """
     if edited == "replace" or place.is_stream or not earlier.has_edited(place.path):
         return None

@@ -189,15 +189,9 @@ class Journal:
 def begin(files: Sequence[tuple[Path, Path, Path]]) -> tuple[Move, ...]:
     """Return the moves of files, once those that they replace have second names under which they survive.
 
-    Parameters
-    ----------
-    files
-        Each the complete file, its place, and the hidden folder beside that.
+    files  each the complete file, its place, and the hidden folder beside that
 
-    Raises
-    ------
-    OSError
-        If a file that is replaced can be kept under no other name.
+    Raises ``OSError`` if a file that is replaced can be kept under no other name.
     """
     moves = []
     for k, (file, place, folder) in enumerate(files):

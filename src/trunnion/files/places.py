@@ -4,14 +4,19 @@ In:     what a caller names.
 Out:    an ``OutputPlace``, or an ``InputError`` that says what is wrong with it.
 """
 
+import errno
 import os
 import stat
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+
+#: What the system says where there is no more space.
+FULL: Final = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +111,15 @@ def _in_writable_folder(name: str, path: Path) -> Path:
 
 def cannot_write(name: str, error: OSError) -> InputError:
     """Return the error for a file that the system does not let us write."""
-    return InputError(Problem(name, 0, Wording("FIL230", "cannot_written", strerror=error.strerror or error)))
+    reason = error.strerror or error
+    return InputError(Problem(name, 0, of_full_disk(error) or Wording("FIL230", "cannot_written", strerror=reason)))
+
+
+def of_full_disk(error: BaseException) -> Wording | None:
+    """Return what is said where there is no more space; None where something else is wrong."""
+    if not isinstance(error, OSError) or error.errno not in FULL:
+        return None
+    return Wording("FIL230", "disk_full", strerror=error.strerror or error)
 
 
 def file_on_disk(name: str | os.PathLike[str]) -> str:

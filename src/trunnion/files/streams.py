@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import BinaryIO, Final, cast
 
 from trunnion.errors import InputError, Problem
-from trunnion.files.places import OutputPlace, cannot_write
+from trunnion.files.places import OutputPlace, cannot_write, of_full_disk
 from trunnion.messages import Wording
 
 _PIECE: Final = 1 << 20
@@ -25,7 +25,7 @@ def check_stream(stream: object, argument: str) -> None:
             wording = Wording("FIL190", "takes_text")
         except (OSError, ValueError) as error:
             name, reason = stream_name(stream), getattr(error, "strerror", None) or error
-            wording = Wording("FIL230", "stream", reason=reason)
+            wording = of_full_disk(error) or Wording("FIL230", "stream", strerror=reason)
         else:
             return
     raise InputError(Problem(name, 0, wording))
@@ -34,7 +34,7 @@ def check_stream(stream: object, argument: str) -> None:
 def stream_name(stream: object) -> str:
     """Return what messages call a stream."""
     name = getattr(stream, "name", None)
-    return name if isinstance(name, str) else "the stream"
+    return name.strip("<>") if isinstance(name, str) else "the stream"
 
 
 @contextmanager

@@ -20,12 +20,12 @@ from trunnion.impeller.flank.cutter import FlankCutter
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.paths.blade_finish import BladeFinish, blade_finish
 from trunnion.impeller.paths.channel import channels_of
-from trunnion.impeller.paths.channel_roughing import channel_roughing
+from trunnion.impeller.paths.channel_families import channel_roughing, hub_finish
+from trunnion.impeller.paths.channel_sheets import Ball
 from trunnion.impeller.paths.clear_poses import pose_check
 from trunnion.impeller.paths.clearance import SLACK, Margins, Obstacles, obstacles_of, tool_body
-from trunnion.impeller.paths.hub_finish import hub_finish
 from trunnion.impeller.paths.least_clearances import PartClearance, least_clearances
-from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Links, link_passes
+from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Links, Surroundings, link_passes
 from trunnion.impeller.paths.passes import Pass, PassFamily
 from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
@@ -147,12 +147,12 @@ class _StepMaker:
             turned = shroud_finish(impeller, half, step.stepover, step.tilt, step.allowance, chord)
             radius = half
         space = self._space(step, tool.shape(), half, radius, turned.axes)
-        check, progress = _outside(impeller, radius), self._within(step)
+        around = Surroundings(space, _outside(impeller, radius), step.name)
         before = stock_before(impeller, step, step.stepover.on(half))
         slotting = step.tilt > 0.0 and not is_roughed(impeller.definition, step)
         passes = list(zip(turned.passes, turned.axes, strict=True))
         clearance = stock_clearances(tool.shape(), radius, 0.0 if slotting else half, passes, before)
-        path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name, progress)
+        path = link_passes(turned.passes, turned.axes, around, _links(step), radius, self._within(step))
         return StepPaths(step, tool, radius, (step.name,), (path,), clearance=clearance, left=turned.left)
 
     def _space(
@@ -175,7 +175,8 @@ class _StepMaker:
         for family, angles in self._families(step, radius):
             found = choose_axes(family, shape, obstacles, wanted, self._everywhere(angles), progress)
             space = self._space(step, shape, radius, radius, found.axes)
-            path = link_passes(family.passes, found.axes, space, _links(step), radius, is_clear, step.name, progress)
+            around = Surroundings(space, is_clear, step.name)
+            path = link_passes(family.passes, found.axes, around, _links(step), radius, progress)
             copies += [(angle, path.turned(angle)) for angle in angles]
             families.append(family)
             fields.append(found)
@@ -214,7 +215,8 @@ class _StepMaker:
             clearance += least_clearances(obstacles, body, family.centres(), np.concatenate(turned), [own])
             share = min(share, _kept(step, tool, clearance))
             space = self._space(step, shape, radius, radius, turned)
-            path = link_passes(family.passes, turned, space, _links(step), radius, is_clear, step.name, within)
+            around = Surroundings(space, is_clear, step.name)
+            path = link_passes(family.passes, turned, around, _links(step), radius, within)
             copies += [(angle, path.turned(angle - first)) for angle in (first, *rest)]
             flanks += sides
         names, paths = _named(step, copies)
@@ -241,17 +243,12 @@ class _StepMaker:
         impeller, chord = self._impeller, _PASS_SHARE * step.tolerance
         pitch = 2.0 * np.pi / impeller.definition.number
         if step.kind in (StepKind.CHANNEL_ROUGHING, StepKind.HUB_FINISH):
+            ball = Ball(radius, chord, step.allowance, step.hub_allowance)
             for channel in channels_of(impeller):
                 if step.kind is StepKind.CHANNEL_ROUGHING:
-                    family = channel_roughing(
-                        channel, radius, step.stepover, step.step_down, tolerance=chord,
-                        blade_allowance=step.allowance, hub_allowance=step.hub_allowance, progress=self._within(step),
-                    )  # fmt: skip
+                    family = channel_roughing(channel, ball, step.stepover, step.step_down, self._within(step))
                 else:
-                    family = hub_finish(
-                        channel, radius, step.stepover, tolerance=chord, blade_allowance=step.allowance,
-                        hub_allowance=step.hub_allowance, progress=self._within(step),
-                    )  # fmt: skip
+                    family = hub_finish(channel, ball, step.stepover, self._within(step))
                 yield family, [k * pitch for k in range(impeller.definition.number)]
             return
         for blade in _kinds_of_blades(impeller):

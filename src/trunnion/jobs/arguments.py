@@ -6,13 +6,14 @@ declaration. Functions say in their docstrings what each means; here it stands u
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, TypeVar, cast
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
-from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.settings import Settings, reported_as_arguments
 from trunnion.jobs.registry import JOBS
 from trunnion.jobs.result_output import OutputLike
 from trunnion.messages import Wording
@@ -132,7 +133,9 @@ class DiffArguments(TypedDict, total=False):
     path: bool
 
 
-class SimulateArguments(BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, total=False):
+class SimulateArguments(
+    ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, total=False
+):
     """Arguments of ``trunnion.simulate``."""
 
     hooks: Sequence[FilePath]
@@ -144,12 +147,10 @@ class SimulateArguments(BodyArguments, CuttingArguments, SetUpArguments, Clampin
     threads: int | None
 
 
-class PlaceArguments(BodyArguments, SetUpArguments, total=False):
+class PlaceArguments(ReadingArguments, BodyArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.place``."""
 
     hooks: Sequence[FilePath]
-    units: Literal["mm", "inch"] | None
-    dialect: str | None
     goal: str
     turns: float | Sequence[float] | None
     tilts: float | Sequence[float]
@@ -166,7 +167,7 @@ class PlacedArguments(TypedDict, total=False):
     hooks: Sequence[FilePath]
 
 
-class ReachArguments(SetUpArguments, total=False):
+class ReachArguments(ReadingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.reach``."""
 
     hooks: Sequence[FilePath]
@@ -176,7 +177,7 @@ class ReachArguments(SetUpArguments, total=False):
     step: float
 
 
-class FitArguments(SetUpArguments, total=False):
+class FitArguments(ReadingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.fit``."""
 
     hooks: Sequence[FilePath]
@@ -195,7 +196,7 @@ class SensitivityArguments(SetUpArguments, total=False):
     zero_at: str | Mapping[str, float] | None
 
 
-class ViewArguments(BodyArguments, CuttingArguments, SetUpArguments, total=False):
+class ViewArguments(ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.write_view``."""
 
     hooks: Sequence[FilePath]
@@ -203,8 +204,6 @@ class ViewArguments(BodyArguments, CuttingArguments, SetUpArguments, total=False
     against: FilePath | Sequence[FilePath] | None
     against_machine: MachineLike | None
     setup: str | None
-    units: Literal["mm", "inch"] | None
-    dialect: str | None
     settings: Settings | None
     cl: ToolpathLike | Iterable[ToolpathLike]
     subprograms: Sequence[FilePath]
@@ -264,6 +263,12 @@ def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
     return cast(_Given, found)
 
 
+def reported_by_arguments(command: str, given: Mapping[str, Any]) -> AbstractContextManager[None]:
+    """Have problems with settings that were given as arguments told as problems with these."""
+    stated = [each for each in JOBS[command].options if each.setting and given.get(each.name) is not None]
+    return reported_as_arguments({each.setting: each.name for each in stated})
+
+
 def _check(option: Option, value: Any) -> None:
     """Refuse a value in the words of the command line; texts and lists are up to the function."""
     kind = option.kind
@@ -274,8 +279,7 @@ def _check(option: Option, value: Any) -> None:
     try:
         kind.check(value)
     except WrongValueError as error:
-        what, _, cure = str(error).partition("; ")
-        raise InputError(argument_problem(option.name, Wording("ARG140", "of_kind", what=what, cure=cure))) from None
+        raise InputError(argument_problem(option.name, error.wording)) from None
 
 
 def with_present_names(given: Mapping[str, Any]) -> dict[str, Any]:

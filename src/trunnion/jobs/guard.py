@@ -3,6 +3,9 @@
 In:     what a command was given, and the kinds of its options: they say which files are read, to which others these
         lead, and which are written.
 Out:    the files that are read; or an ``InputError``, before any work.
+
+What knows to which files a kind of file leads is imported for the first such file: a post of CL files has no project,
+no mesh and no manifest.
 """
 
 import os
@@ -13,19 +16,14 @@ from typing import Any, Final
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls
 from trunnion.errors import InputError, argument_problem
-from trunnion.files import check_outputs
+from trunnion.files import check_outputs, resolve_output
 from trunnion.jobs.inputs.input_files import definition_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, load_machine
 from trunnion.jobs.job import STDIN, Given
-from trunnion.jobs.post.papers.manifests import files_of_manifest
-from trunnion.jobs.project.file import load_project
-from trunnion.jobs.project.named_files import library_files, project_files, project_inputs
 from trunnion.jobs.result_output import check_output_name
 from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, FileOut
 from trunnion.options.option import Option, outputs
-from trunnion.simulation.meshes import check_mesh_name
-from trunnion.simulation.stock.solids import is_mesh
 
 #: What stands for stdout.
 _STDOUT: Final = "-"
@@ -45,11 +43,21 @@ def guard(given: Given) -> list[FilePath]:
     files = [(option, file) for option, file in written if file != _STDOUT]
     if not files:
         return []
-    for option, file in files:
-        _check_name(option, file)
     read = list(files_read(given))
     check_outputs([file for _, file in files], read)
+    check_names(given)
     return read
+
+
+def check_names(given: Given) -> None:
+    """Refuse an output whose name ends as something else does than what is written.
+
+    Raises ``InputError`` for the first one.
+    """
+    for option in outputs(given.job.options):
+        file = given.values[option.name]
+        if file is not None and file != _STDOUT and not _takes_folder(option, file):
+            _check_name(option, file)
 
 
 def files_read(given: Given) -> Iterator[FilePath]:
@@ -79,8 +87,10 @@ def _check_name(option: Option, file: str) -> None:
     kind = option.kind
     assert isinstance(kind, FileOut)
     if kind.form == "mesh":
+        from trunnion.simulation.meshes.writing import check_mesh_name
+
         check_mesh_name(file)
-    if kind.endings:
+    if kind.endings and not (len(kind.endings) == 1 and resolve_output(file).is_stream):
         check_output_name(option.name, file, kind.endings, kind.why)
 
 
@@ -108,7 +118,10 @@ def _of_definitions(names: Iterable[str]) -> Iterator[FilePath]:
 
 
 def _of_projects(names: Iterable[str]) -> list[FilePath]:
-    files = list(names)
+    if not (files := list(names)):
+        return []
+    from trunnion.jobs.project.named_files import project_files
+
     return [*files, *project_files(files, ("machine", "stock"))]
 
 
@@ -117,18 +130,32 @@ def _of_posted(names: Iterable[str]) -> Iterator[FilePath]:
     for name in names:
         yield name
         if name.endswith(".toml"):
+            from trunnion.jobs.project.file import load_project
+            from trunnion.jobs.project.named_files import project_inputs
+
             project = load_project(Path(name))
             yield from [*project_inputs(project), *(setup.output for setup in project.setups)]
 
 
-def _of_stocks(names: Iterable[str]) -> list[FilePath]:
-    return [name for name in names if is_mesh(name)]
+def _of_stocks(names: Iterable[str]) -> Iterator[FilePath]:
+    for name in names:
+        from trunnion.simulation.stock.solids import is_mesh
+
+        if is_mesh(name):
+            yield name
+
+
+def _of_libraries(names: Iterable[str]) -> Iterator[FilePath]:
+    for name in names:
+        from trunnion.jobs.project.named_files import library_files
+
+        yield from library_files([name])
 
 
 def _of_impellers(names: Iterable[str]) -> Iterator[FilePath]:
-    from trunnion.impeller.definition import read_impeller  # most commands are about none
-
     for name in names:
+        from trunnion.impeller.definition import read_impeller
+
         yield from [name, *read_impeller(Path(name)).files]
 
 
@@ -137,6 +164,8 @@ def _of_manifests(names: Iterable[str]) -> Iterator[FilePath]:
     for name in names:
         yield name
         if name.endswith(".json"):
+            from trunnion.jobs.post.papers.manifests import files_of_manifest
+
             yield from files_of_manifest(name)
 
 
@@ -151,7 +180,7 @@ LEADS: Final[dict[str, Callable[[list[Any]], Iterable[FilePath]]]] = {
     "machine": _of_machines,
     "machines": _of_list,
     "definition": _of_definitions,
-    "library": library_files,
+    "library": _of_libraries,
     "project": _of_projects,
     "posted": _of_posted,
     "stock": _of_stocks,

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, BinaryIO, Final
 
 from trunnion.errors import InputError, Problem
@@ -44,6 +45,11 @@ class Job:
         """Options that are known by their flag."""
         return [each for each in self.options if each.flag]
 
+    @property
+    def example(self) -> str:
+        """The first example that is the command itself."""
+        return next(line for line, _ in self.examples if f"trunnion {self.name}" in line)
+
     def option(self, name: str) -> Option | None:
         """Return the option of an argument; None if it has none."""
         return next((each for each in self.options if each.name == name), None)
@@ -59,13 +65,15 @@ def job(
 class Given:
     """What a command was given: each option's value under its name.
 
-    job   the command
-    read  files that it reads, none of which it writes over; known once ``jobs.guard`` has asked
+    job    the command
+    typed  options that stand for settings, by these: what is wrong with such a setting is wrong with the option
+    read   files that it reads, none of which it writes over; known once ``jobs.guard`` has asked
     """
 
-    def __init__(self, job: Job, values: Mapping[str, Any]) -> None:
+    def __init__(self, job: Job, values: Mapping[str, Any], typed: Mapping[str, Option] = MappingProxyType({})) -> None:
         self.job = job
         self.values = dict(values)
+        self.typed = typed
         self.read: list[str | os.PathLike[str]] = []
 
     def __getattr__(self, name: str) -> Any:
@@ -106,8 +114,3 @@ def streams(files: Iterable[str]) -> list[str | BinaryIO]:
     if named.count(STDIN) > 1:
         raise InputError(Problem("stdin", 0, Wording("ARG130", "stdin_twice", stdin=STDIN)))
     return [sys.stdin.buffer if file == STDIN else file for file in named]
-
-
-def named_files(files: Iterable[str]) -> list[str]:
-    """Files but stdin."""
-    return [file for file in files if file != STDIN]

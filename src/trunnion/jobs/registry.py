@@ -23,5 +23,15 @@ GROUPS: Final[Mapping[str, tuple[Job, ...]]] = MappingProxyType(
     }
 )
 
+#: Commands that read CL files, or run a post, and take no hooks, and why.
+WITHOUT_HOOKS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "info": "hooks see a machine, and it has none",
+        "convert": "what it writes does what the program does, and nothing else",
+        "impeller": "it makes its toolpaths itself",
+        "batch": "a file of jobs may come from anyone, and runs nothing",
+    }
+)
+
 #: All of them by their names.
 JOBS: Final[Mapping[str, Job]] = MappingProxyType({job.name: job for jobs in GROUPS.values() for job in jobs})

@@ -43,15 +43,15 @@ class Target:
         return tuple(self.path.with_name(file.name) for file in self.files.other_paths) if self.path else ()
 
 
-def check_output_name(argument: str, file: object, endings: Sequence[str], what: str) -> OutputPlace:
-    """Return the place of an output whose name tells its form, which is found out before any work; ``what`` says why it
+def check_output_name(argument: str, file: object, endings: Sequence[str], why: Wording | None) -> OutputPlace:
+    """Return the place of an output whose name tells its form, which is found out before any work; ``why`` says why it
     is so.
 
     Raises ``InputError`` if its name ends otherwise, or it cannot be written.
     """
     place = resolve_output(check_path(argument, file))
     if Path(place.name).suffix.lower() not in endings:
-        raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}", code="FIL260"))
+        raise InputError(Problem(place.name, 0, Wording("FIL260", "other_ending", why=why, endings=tuple(endings))))
     return place
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Final
 
-from trunnion.definitions import Table
+from trunnion.definitions import Table, TextForm
 from trunnion.machines.bodies import PLAIN_COLOUR, BodyBox, BodyCylinder, BodyFile, MachineBody, Vector
 from trunnion.machines.links import FIXED_LINKS
 from trunnion.messages import Wording, phrase
@@ -51,7 +51,7 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
     if name != name.strip() or any(not letter.isprintable() for letter in name):
         entry.add_problem("name", Wording("DEF430", "begins_ends_blanks"))
     link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
-    colour = entry.text("colour", PLAIN_COLOUR, pattern=_COLOUR, form=phrase("colour"))
+    colour = entry.text("colour", PLAIN_COLOUR, written=TextForm(phrase("colour"), _COLOUR))
     shape = entry.text("shape", one_of=SHAPES)
     made = _solid(entry, shape)
     entry.report_unread_keys()
@@ -73,7 +73,7 @@ def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
         centre, direction = entry.vector("centre_mm", 3), entry.vector("direction", 3, None)
         return BodyCylinder(diameter or 1.0, length or 1.0, _vector(centre), _unit_vector(entry, direction))
     if shape == "file":
-        file = entry.text("file", form=phrase("name_of_mesh_file"))
+        file = entry.text("file", written=TextForm(phrase("name_of_mesh_file")))
         unit = entry.text("unit", None, one_of=("mm", "inch", "m"))
         _check_file(entry, file)
         origin, turn = entry.vector("origin_mm", 3, None), entry.vector("turn_deg", 3, None)

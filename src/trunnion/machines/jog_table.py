@@ -23,9 +23,6 @@ STEP: Final = 10.0
 #: Rotary values of the poses, as far as they are inside the limits.
 _VALUES: Final = (-90.0, -30.0, 30.0, 90.0)
 
-#: Lengths below this are taken for zero.
-_TINY: Final = 1e-9
-
 _X: Final[Vector] = (1.0, 0.0, 0.0)
 _Y: Final[Vector] = (0.0, 1.0, 0.0)
 _Z: Final[Vector] = (0.0, 0.0, 1.0)

@@ -11,7 +11,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
-from trunnion.definitions import Table, definition_names, load_table
+from trunnion.definitions import Table, TextForm, definition_names, load_table
 from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.messages import meant_word
@@ -89,18 +89,11 @@ def check_is_shipped(name: str) -> None:
 def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | None = None) -> Machine:
     """Return the machine that a definition describes.
 
-    Parameters
-    ----------
-    name_or_path
-        The name of a shipped machine, or a path that ends in ``.toml``.
-    overrides
-        Values in place of those of the file, shaped like it:
-        ``{"workpiece": {"zero_mm": [0, 0, 80]}, "axis": [{"name": "B", "limits_deg": [-5, 95]}]}``.
+    name_or_path  the name of a shipped machine, or a path that ends in ``.toml``
+    overrides     values in place of those of the file, shaped like it: ``{"workpiece": {"zero_mm": [0, 0, 80]}, "axis":
+                  [{"name": "B", "limits_deg": [-5, 95]}]}``
 
-    Raises
-    ------
-    InputError
-        With every mistake of the definition, each at its file and line.
+    Raises ``InputError`` with every mistake of the definition, each at its file and line.
     """
     key = PurePath(str(name_or_path)).name.removesuffix(".toml")
     return read_machine(load_table(name_or_path, machine_library(), overrides, kind="machine"), key)
@@ -149,8 +142,8 @@ def read_machine(table: Table, key: str) -> Machine:
         cl_words=cl_words,
         bodies=bodies,
         spindle_point_is_stated="gauge_point_mm" in spindle,
-        unmeasured=tuple(map(str, marked_in(table.content, MARKS))),
-        assumed=tuple(map(str, marked_in(table.content, ASSUMED))),
+        unmeasured=tuple(marked_in(table.content, MARKS)),
+        assumed=tuple(marked_in(table.content, ASSUMED)),
         demands=demands,
     )
 
@@ -165,7 +158,7 @@ def _demands(proof: Table) -> tuple[str, ...]:
 
 
 def _axis(entry: Table) -> Axis:
-    name = entry.text("name", pattern=_AXIS_NAME, form=phrase("name_of_axis"))
+    name = entry.text("name", written=TextForm(phrase("name_of_axis"), _AXIS_NAME))
     word = entry.text("kind", one_of=tuple(AxisKind))
     mount = Mount(entry.text("carries", one_of=tuple(Mount)) or Mount.PART)
     direction = _direction(entry, "direction", None)
@@ -229,9 +222,7 @@ def _home(entry: Table, key: str, low: float, high: float) -> float:
     if not low <= home <= high:
         entry.add_problem(
             key,
-            Wording("DEF440", "outside_limits", home=home, low=low, high=high)
-            if key in entry
-            else Wording("DEF440", "outside_limits_0", home=home, low=low, high=high),
+            Wording("DEF440", "outside_limits" if key in entry else "outside_limits_0", home=home, low=low, high=high),
         )
     return home
 

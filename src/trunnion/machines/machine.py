@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definitions import LocatedValue, Table
+from trunnion.definitions.marked_values import MarkedValue
 from trunnion.machines.bodies import MachineBody
 from trunnion.machines.bodies import Vector as Vector
 from trunnion.results import Figure, to_data
@@ -207,17 +208,20 @@ class Machine:
     cl_words: Mapping[str, str] = field(default_factory=dict)
     bodies: tuple[MachineBody, ...] = ()
     spindle_point_is_stated: bool = True
-    unmeasured: tuple[str, ...] = ()
-    assumed: tuple[str, ...] = ()
+    unmeasured: tuple[MarkedValue, ...] = ()
+    assumed: tuple[MarkedValue, ...] = ()
     demands: tuple[str, ...] = ()
 
     @property
-    def nobody_measured(self) -> tuple[str, ...]:
-        """What counts although nobody has measured it: marked values of its motion, and what is assumed if unstated."""
-        bodies = tuple(f"{body.name} " for body in self.bodies)
-        marked = (value for value in (*self.unmeasured, *self.assumed) if not value.startswith(bodies))
-        homes = (f"home of {axis.name}" for axis in self.axes if not axis.home_is_stated)
-        return (*marked, *homes, *(() if self.spindle_point_is_stated else ("gauge point",)))
+    def nobody_measured(self) -> tuple[MarkedValue, ...]:
+        """What counts although nobody has measured it: marked values, and what is assumed if unstated."""
+        homes = (
+            MarkedValue(f"{axis.name} home_{'deg' if axis.is_rotary else 'mm'}", "", 0, "not stated", "axis")
+            for axis in self.axes
+            if not axis.home_is_stated
+        )
+        gauge = MarkedValue("spindle gauge_point_mm", "", 0, "not stated", "spindle")
+        return (*self.unmeasured, *self.assumed, *homes, *(() if self.spindle_point_is_stated else (gauge,)))
 
     @property
     def names(self) -> tuple[str, ...]:

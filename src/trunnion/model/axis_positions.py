@@ -62,30 +62,27 @@ class RotaryWords(NamedTuple):
 def resolve_rotary(
     machine: Machine,
     kinematics: KinematicParameters,
-    xyz: Floats,
     words: RotaryWords,
     start: Floats,
-    *,
-    xyz_is_tip: bool,
+    tips: Floats | None,
     deciding_axis: int = TOTAL_ROTATION,
 ) -> Codes:
     """Replace the rotary values of consecutive rows by the positions that the axes take.
 
-    xyz            (n, 3) float64, mm: tool tips in the workpiece frame if ``xyz_is_tip``, else slide positions in the
-                   order X, Y, Z
     words          rotary words and vectors; ``words.rotary`` is changed
     start          (2,) float64, deg: rotary positions before the first row
+    tips           (n, 3) float64, mm: tool tips in the workpiece frame; None if linear axes are programmed
     deciding_axis  the rotary axis, 0 or 1, whose rotation decides between the two solutions for a vector. If it is
                    equal in both, the rotation of the other axis decides, then the solution nearer to 0.
                    ``TOTAL_ROTATION``: the sum of both
 
     (n,) uint8  bits OUT_OF_TRAVEL, NO_ROTARY_SOLUTION and NO_SLIDE_SOLUTION
     """
-    status = np.zeros(len(xyz), np.uint8)
+    status = np.zeros(len(words.rotary), np.uint8)
     resolve_angles(machine, words, start, status, deciding_axis)
     # The slides can only fail where a rotary axis turns one of them against another.
-    if xyz_is_tip and len(set(kinematics.rotary_below)) > 1:
-        joints = joints_from_rows(machine, kinematics, np.ones(len(xyz), np.bool_), xyz, words.rotary)
+    if tips is not None and len(set(kinematics.rotary_below)) > 1:
+        joints = joints_from_rows(machine, kinematics, np.ones(len(tips), np.bool_), tips, words.rotary)
         status[np.isnan(joints).any(axis=1)] |= NO_SLIDE_SOLUTION
     return status
 

@@ -3,6 +3,7 @@
 from typing import Final
 
 from trunnion.dialect_names import READ_DIALECTS
+from trunnion.messages import phrase
 from trunnion.options.kinds import (
     Choice,
     FileIn,
@@ -69,9 +70,6 @@ READING: Final = Group(
     ),
 )
 
-#: The same where the command line reads the files itself, and hands their toolpaths on.
-READING_FIRST: Final = READING.but(**{name: {"own": True} for name in ("units", "dialect", "strict")})
-
 #: The same where units and dialect are settings too.
 READING_AS_SETTINGS: Final = READING.but(units={"setting": "cl_units"}, dialect={"setting": "dialect"})
 
@@ -86,7 +84,7 @@ POSTING: Final = Group(
         Option(
             "max_tilt",
             "--max-tilt",
-            angle("a tilt", 0.0, 180.0, "30"),
+            angle(phrase("kind_tilt"), 0.0, 180.0, "30"),
             "refuse operations whose tool axis leans more than this from Z of the program",
             setting="max_tilt",
         ),
@@ -126,11 +124,11 @@ WORK_OFFSET: Final = Option("work_offset", "--work-offset", Text("G", example="G
 CLAMPING: Final = Group(
     "how the part is clamped",
     (
-        Option("turn", "--turn", angle("a turn", -360.0, 360.0, "45"), key="turn_deg", level=Level.OWN),
+        Option("turn", "--turn", angle(phrase("kind_turn"), -360.0, 360.0, "45"), key="turn_deg", level=Level.OWN),
         Option(
             "tilt",
             "--tilt",
-            angle("a tilt", -90.0, 90.0, "30"),
+            angle(phrase("kind_tilt"), -90.0, 90.0, "30"),
             "before that it is tilted about X of the program, right-handed",
             key="tilt_deg",
             level=Level.OWN,
@@ -200,7 +198,7 @@ CUTTING: Final = Group(
         Option(
             "near",
             "--near",
-            length("a distance", "0.5"),
+            length(phrase("kind_distance"), "0.5"),
             "report bodies that come as near as this, too",
             key="near_mm",
             level=Level.WHOLE,
@@ -208,7 +206,7 @@ CUTTING: Final = Group(
         Option(
             "cell",
             "--cell",
-            length("a width of cells", "0.25"),
+            length(phrase("kind_width_of_cells"), "0.25"),
             "width of the cells; by default a 200th of the stock's side",
             key="cell_mm",
             level=Level.WHOLE,
@@ -216,7 +214,7 @@ CUTTING: Final = Group(
         Option(
             "accuracy",
             "--accuracy",
-            length("a tolerance", "0.001"),
+            length(phrase("kind_tolerance"), "0.001"),
             "of motions and tools; by default a tenth of a cell",
             key="accuracy_mm",
             level=Level.WHOLE,
@@ -228,19 +226,16 @@ CUTTING: Final = Group(
 JSON: Final = Option(
     "json",
     "--json",
-    FileOut("FILE|-", stdout=True),
+    FileOut("FILE|-", (".json",), phrase("data_is_json"), stdout=True),
     "the result as data: into a file, or with - to stdout in place of text",
     many=Many.MAYBE,
     own=True,
 )
 
-#: The same of commands whose ``--json`` had no value before: what follows it may be something else.
-BARE_JSON: Final = JSON.but(many=Many.BARE)
-
 REPORT: Final = Option(
     "report",
     "--report",
-    FileOut("FILE", PAGE_OR_DATA, "a report is a page or data"),
+    FileOut("FILE", PAGE_OR_DATA, phrase("report_is_page_or_data")),
     "what was checked, as a page (.html) or data (.json)",
     key="report",
 )
@@ -248,7 +243,7 @@ REPORT: Final = Option(
 SHEET: Final = Option(
     "sheet",
     "--sheet",
-    FileOut("FILE", PAGE_OR_DATA, "a setup sheet is a page or data"),
+    FileOut("FILE", PAGE_OR_DATA, phrase("sheet_is_page_or_data")),
     "setup sheet to print (.html), or its data (.json)",
     key="sheet",
 )
@@ -270,15 +265,15 @@ SERVING: Final = Group(
             "host",
             "--host",
             Text("ADDRESS"),
-            "serve other computers, too, on this address; with a token",
+            "with a token, serve other computers, too, on this address",
             default="127.0.0.1",
             own=True,
         ),
         Option(
             "port",
             "--port",
-            whole("a port", "a number, 0 for a free one", "N", most=65535),
-            "a free one by default",
+            whole(phrase("kind_port"), phrase("number_or_free"), "N", most=65535),
+            "port of the page, 0: a free one",
             default=0,
             own=True,
         ),
@@ -290,12 +285,12 @@ RATE: Final = Option(
     "--rate",
     Number(
         "MS",
-        "a rate",
-        f"milliseconds from {SHORTEST_RATE:g} to {LONGEST_RATE:g}",
+        phrase("kind_rate"),
+        phrase("milliseconds_from_to", least=SHORTEST_RATE, most=LONGEST_RATE),
         least=SHORTEST_RATE,
         most=LONGEST_RATE,
     ),
-    "milliseconds between two looks of the server; 20",
+    "milliseconds between two looks of the server",
     default=20.0,
 )
 
@@ -307,7 +302,7 @@ LIVE: Final = Group(
             "nodes",
             "--nodes",
             FileIn("NAME_OR_FILE", leads="named"),
-            "what is read: cnc (OPC 40502, such as a twin), sinumerik, heidenhain, or a file (.toml); cnc",
+            "what is read: cnc (OPC 40502, such as a twin), sinumerik, heidenhain, or a file (.toml)",
             default="cnc",
         ),
         RATE,

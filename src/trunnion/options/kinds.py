@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from trunnion.messages import Wording, phrase
 from trunnion.wording import nearest_word
 
 #: Lengths, widths and factors are below this.
@@ -16,7 +17,11 @@ GREATEST: Final = 1e6
 
 
 class WrongValueError(ValueError):
-    """A value that cannot be, with what to write instead."""
+    """A value that cannot be, with what to write instead: a wording of the code ``ARG140``."""
+
+    def __init__(self, wording: Wording) -> None:
+        super().__init__(wording)
+        self.wording = wording
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,15 +66,15 @@ class Measure(Text):
 class Number:
     """A number between bounds.
 
-    what   ``a tolerance``
-    how    what to write, after "write": ``a number above 0, such as 0.001``
+    what   the phrase of what it is: ``a tolerance``
+    how    the phrase of what to write: ``a number above 0, such as 0.001``
     above  a bound that it may not have; ``least`` and ``most`` are bounds that it may have
     words  texts that stand for a value of their own
     """
 
     metavar: str
-    what: str
-    how: str
+    what: Wording
+    how: Wording
     above: float = -math.inf
     below: float = math.inf
     least: float = -math.inf
@@ -102,26 +107,32 @@ class Number:
         return any(map(math.isfinite, (self.above, self.below, self.least, self.most)))
 
     def _error(self, value: object) -> WrongValueError:
-        return WrongValueError(f"{value!r} is not {self.what}; write {self.how}")
+        return WrongValueError(Wording("ARG140", "not_of_kind", value=repr(value), kind=self.what, form=self.how))
 
 
-def length(what: str, such_as: str, metavar: str = "MM") -> Number:
+def length(what: Wording, such_as: str, metavar: str = "MM") -> Number:
     """Return the kind of lengths, and other numbers, above 0."""
-    how = f"a number above 0 and below {GREATEST:.0f}, such as {such_as}"
+    how = phrase("number_above_zero", most=GREATEST, example=such_as)
     return Number(metavar, what, how, above=0.0, below=GREATEST)
 
 
-def angle(what: str, least: float, most: float, such_as: str) -> Number:
+def angle(what: Wording, least: float, most: float, such_as: str) -> Number:
     """Return the kind of angles between bounds, degrees."""
-    return Number("DEG", what, f"degrees, {least:g} to {most:g}, such as {such_as}", least=least, most=most)
+    how = phrase("degrees_from_to", least=least, most=most, example=such_as)
+    return Number("DEG", what, how, least=least, most=most)
 
 
 def seconds(most: float, metavar: str = "SECONDS") -> Number:
     """Return the kind of times above 0, s."""
-    return Number(metavar, "a time", "seconds above 0, such as 600", above=0.0, most=most)
+    return Number(metavar, phrase("kind_time"), phrase("seconds_above_zero"), above=0.0, most=most)
 
 
-def whole(what: str, how: str, metavar: str, least: int = 0, most: float = math.inf) -> Number:
+def any_number(metavar: str) -> Number:
+    """Return the kind of numbers whose range the function knows that takes them."""
+    return Number(metavar, phrase("kind_number"), phrase("one_such_as_five"))
+
+
+def whole(what: Wording, how: Wording, metavar: str, least: int = 0, most: float = math.inf) -> Number:
     """Return the kind of whole numbers."""
     return Number(metavar, what, how, least=least, most=most, is_whole=True)
 
@@ -141,11 +152,12 @@ class Choice:
         """Return the word itself; raises ``WrongValueError`` if it is none of them."""
         if value in self.words:
             return value
-        *others, last = self.words
         near = nearest_word(str(value), self.words)
-        asked = f'did you mean "{near}"? ' if near else ""
-        listed = f"{', '.join(others)} or {last}" if others else last
-        raise WrongValueError(f"{value!r} is unknown; {asked}write {listed}")
+        *others, last = self.words
+        wording = Wording("ARG140", "unknown_word", value=repr(value), others=tuple(others), last=last)
+        if near:
+            wording = Wording("ARG140", "unknown_word_but_near", near=near, **dict(wording.parameters))
+        raise WrongValueError(wording)
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +177,7 @@ class Switch:
     def check(self, value: object) -> Any:
         """Return the value, if it is on or off."""
         if not isinstance(value, bool):
-            raise WrongValueError(f"{value!r} is not a switch; write True or False")
+            raise WrongValueError(Wording("ARG140", "no_switch", value=repr(value)))
         return value
 
 
@@ -179,7 +191,7 @@ class Setting:
         """Key and value of a text."""
         key, equals, value = text.partition("=")
         if not equals or not key:
-            raise WrongValueError(f"{text!r} is not a setting; write KEY=VALUE")
+            raise WrongValueError(Wording("ARG140", "no_setting", value=repr(text)))
         return key, value
 
     def check(self, value: object) -> Any:
@@ -194,9 +206,9 @@ _TOO_LONG: Final = 256
 def _file_name(text: str) -> str:
     """Return the name of a file, unless there can be none of that name."""
     if not text:
-        raise WrongValueError("'' names no file; write its path")
+        raise WrongValueError(Wording("ARG140", "no_file_name"))
     if any(len(part.encode("utf-8", "replace")) >= _TOO_LONG for part in re.split(r"[/\\]", text)):
-        raise WrongValueError(f"{text[:40]!r}… is longer than the name of a file can be; write a shorter one")
+        raise WrongValueError(Wording("ARG140", "file_name_too_long", value=repr(text[:40])))
     return text
 
 
@@ -226,7 +238,7 @@ class FileOut:
     """A file that is written.
 
     endings  of its name, one of which it has; empty: any
-    why      the name ends so
+    why      the phrase of why the name ends so
     form     what is written, where others know its endings: ``mesh``; empty: ``endings`` says it
     stdout   whether ``-`` is stdout
     folder   whether it may be a folder, which takes files of other names
@@ -234,7 +246,7 @@ class FileOut:
 
     metavar: str = "FILE"
     endings: Sequence[str] = ()
-    why: str = ""
+    why: Wording | None = None
     form: str = ""
     stdout: bool = False
     folder: bool = False
@@ -242,6 +254,10 @@ class FileOut:
     def parse(self, text: str) -> Any:
         """Its name."""
         return _file_name(text)
+
+    def ends_so(self, name: str) -> bool:
+        """Whether a name has one of the endings, or is that of stdout."""
+        return not self.endings or name == "-" or name.lower().endswith(tuple(self.endings))
 
     def check(self, value: object) -> Any:
         """Return the name itself; ``jobs.guard`` judges whether it can be written."""

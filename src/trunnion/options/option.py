@@ -15,7 +15,6 @@ class Many(Enum):
     REPEAT  again and again, each time with one value
     LIST    with several values, also again
     MAYBE   an argument that may be missing; an option whose value may be
-    BARE    an option whose value may be missing, and is ``-`` or the name of a file of data
     ANY     an argument of any number of words
     SOME    an argument of at least one word
     TWO     an argument of two words
@@ -25,7 +24,6 @@ class Many(Enum):
     REPEAT = "repeat"
     LIST = "list"
     MAYBE = "?"
-    BARE = "bare"
     ANY = "*"
     SOME = "+"
     TWO = "2"
@@ -98,6 +96,14 @@ class Option:
     def value_name(self) -> str:
         """What stands for a value in a line of usage."""
         return self.metavar or self.kind.metavar
+
+    @property
+    def explained(self) -> str:
+        """The line of help, with what it is where it is not given."""
+        if self.default in (None, ""):
+            return self.help
+        value = f"{self.default:g}" if isinstance(self.default, int | float) else self.default
+        return f"{self.help}; by default {value}"
 
     @property
     def empty(self) -> Any:

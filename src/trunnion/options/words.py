@@ -14,11 +14,11 @@ GOALS: Final = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
 #: Kinds of files that there are schemas of.
 SCHEMAS: Final = ("machine", "control", "project", "tools", "impeller", "nodes", "batch")
 
+#: Shells whose completion can be printed.
+SHELLS: Final = ("bash", "zsh", "fish", "powershell")
+
 #: What a batch does with each file.
 ACTIONS: Final = ("post", "convert", "verify", "simulate")
-
-#: Endings of files that hold meshes, and of STEP files.
-MESHES: Final = (".stl", ".ply", ".3mf", ".glb")
 
 #: Tasks among which one simulation of a batch may be divided.
 MOST_TILES: Final = 1000

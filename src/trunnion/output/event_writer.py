@@ -35,6 +35,7 @@ from trunnion.model.toolpath import (
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.blocks.spline_blocks import write_rows_and_splines
 from trunnion.output.holes.hole_blocks import write_holes
+from trunnion.output.holes.hole_groups import HoleRows
 from trunnion.output.program import Program
 from trunnion.output.template_values import plain_text, spindle_values
 from trunnion.output.template_writer import TemplateWriter
@@ -234,7 +235,7 @@ class EventWriter:
     def _stop_lines(self, event: Stop) -> list[str]:
         """Return the lines of a stop: the family's, or those of the shop's template, which must stop as well."""
         if STOP_PLACE not in self._control.templates:
-            return self._family.stop(event, self._control.codes)
+            return self._family.stop(replace(event, text=spelled(event.text, self._encoding)), self._control.codes)
         code = self._control.codes["optional_stop" if event.optional else "stop"]
         values = {**self._values, "text": plain_text(self._program, event.text), "number": code}
         lines = self._templates.lines(STOP_PLACE, values, self._motion)
@@ -274,7 +275,11 @@ class EventWriter:
         settings = {**self._control.settings, **program.settings_of(self._motion.operation)}
         words = {**self._family.template_values(settings, None), **values}
         self._templates.write(NEW_SPEED_WITH_TCP, words, self._motion)
-        self._blocks.writer.forget()  # what X, Y and Z mean has changed between
+        writer = self._blocks.writer
+        active = writer.modal_state()
+        writer.forget()  # what X, Y and Z mean has changed between, and not how feeds count
+        if "feed_mode" in active:
+            writer.remember("feed_mode", active["feed_mode"])
 
     def _is_switched_in(self, lines: Sequence[str], event: WordEvent) -> bool:
         """Whether lines begin with the words of an event, among other M words and settings."""
@@ -304,9 +309,8 @@ class EventWriter:
             joining = self._joining_events
             self._phase = write_rows_and_splines(self._blocks, self._motion, first, last, joining, self._phase)
         else:
-            self._phase = write_holes(
-                self._blocks, self._motion, first, last, self._joining_events, self._phase, self._cycle
-            )
+            rows = HoleRows(self._motion, first, last, self._joining_events)
+            self._phase = write_holes(self._blocks, rows, self._phase, self._cycle)
         self._next_row = max(first, last)
 
 

@@ -44,25 +44,17 @@ def write_program(
 ) -> tuple[OperationStart, ...]:
     """Write a whole program, and return where its operations begin.
 
-    Parameters
-    ----------
-    program
-        Checked by ``check_program``.
-    sink
-        Takes bytes in order.
-    progress
-        Called with the number of rows written since the last call.
-    subprograms
-        Write a main program to ``sink`` that calls a subprogram for each operation. None: everything is in one file.
-    passages
-        Takes where texts of the user's templates stand.
+    program      checked by ``check_program``
+    sink         takes bytes in order
+    progress     called with the number of rows written since the last call
+    subprograms  write a main program to ``sink`` that calls a subprogram for each operation. None: everything is in one
+                 file
+    passages     takes where texts of the user's templates stand
 
-    Raises
-    ------
-    InputError
-        If a value that the program needs is missing.
-    WordRangeError
-        If a number is beyond the limits of its word's format; an ``InputError`` with the line of the CL file.
+    Raises ``InputError`` if a value that the program needs is missing.
+
+    Raises ``WordRangeError`` if a number is beyond the limits of its word's format; an ``InputError`` with the line of
+    the CL file.
     """
     writer = _ProgramWriter(program, sink, progress or (lambda _: None), subprograms)
     starts = writer.write()

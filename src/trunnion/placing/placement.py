@@ -178,6 +178,7 @@ class Placement:
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     left_out  names of pairs of bodies that are not judged: at home they overlap, on one side of the machine
     table     of the machine's definition; None: it states none
+    not_measured  values of the definition that the place stands on, though nobody has measured them
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
 
@@ -204,6 +205,7 @@ class Placement:
     most_distance_mm: float | None = None
     left_out: tuple[tuple[str, str], ...] = ()
     table: Annotated[ClampingArea | None, Figure(after="region")] = None
+    not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
 

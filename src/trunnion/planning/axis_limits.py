@@ -1,16 +1,11 @@
 """Limits of the axes: what they are, which values are beyond them, and how messages put it."""
 
-from typing import Final
-
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.planning.poses.states import LIMIT_TOLERANCE
-
-#: What a tool is taken for whose length is not known.
-NO_LENGTH: Final = "0 mm long"
 
 
 def limits_of(machine: Machine, keep_slide_limits: bool) -> tuple[Floats, Floats]:

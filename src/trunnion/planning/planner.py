@@ -30,28 +30,19 @@ def plan(
 ) -> Plan:
     """Plan all operations of one program.
 
-    Parameters
-    ----------
-    toolpaths
-        In the order in which they are cut. The coordinate system of the first operation is the program's, unless the
-        options ask for the absolute one; all operations are carried over into it.
-    machine
-        With a known workpiece zero its slides keep their limits; without, their travel must be long enough somewhere.
-    chord_tolerance
-        The greatest distance between an arc and the lines that replace it, mm.
-    options
-        What the user asks; by default the defaults of ``PlanOptions``.
-    capabilities
-        What the control can be told; by default everything.
+    toolpaths        in the order in which they are cut. The coordinate system of the first operation is the program's,
+                     unless the options ask for the absolute one; all operations are carried over into it
+    machine          with a known workpiece zero its slides keep their limits; without, their travel must be long enough
+                     somewhere
+    chord_tolerance  the greatest distance between an arc and the lines that replace it, mm
+    options          what the user asks; by default the defaults of ``PlanOptions``
+    capabilities     what the control can be told; by default everything
 
-    Raises
-    ------
-    InputError
-        When nothing is to be planned, an option names an operation that is not there, or slide positions depend on
-        something unknown (without TCP).
-    RefusedError
-        When no position of the machine gives a tool axis, or an operation cannot be made in its mode, or a cycle not at
-        all. No program is possible then.
+    Raises ``InputError`` when nothing is to be planned, an option names an operation that is not there, or slide
+    positions depend on something unknown (without TCP).
+
+    Raises ``RefusedError`` when no position of the machine gives a tool axis, or an operation cannot be made in its
+    mode, or a cycle not at all. No program is possible then.
     """
     options, capabilities = options or PlanOptions(), capabilities or ControlCapabilities()
     sources = [(path.file, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]

@@ -6,6 +6,7 @@ The readers are written from the manuals of the controls. They share nothing wit
 from trunnion.machines.forward import forward_rows
 from trunnion.model.axis_positions import resolve_turns, write_joints
 from trunnion.readers.program.known_words import KnownWord, known_words
+from trunnion.readers.program.options import RunOptions
 from trunnion.readers.registry import can_read, check_reading, reader_of, run_program
 from trunnion.readers.scan.letter_blocks import read_blocks
 from trunnion.readers.scan.rows import execute_blocks
@@ -13,4 +14,4 @@ from trunnion.readers.scan.rows import execute_blocks
 #: Kernels that most programs need.
 KERNELS = (write_joints, forward_rows, read_blocks, execute_blocks, resolve_turns)
 
-__all__ = ["KERNELS", "KnownWord", "can_read", "check_reading", "known_words", "reader_of", "run_program"]
+__all__ = ["KERNELS", "KnownWord", "RunOptions", "can_read", "check_reading", "known_words", "reader_of", "run_program"]

@@ -1,6 +1,6 @@
 """Running a program with the reader of a machine's control."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -13,60 +13,36 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
-from trunnion.readers.program.options import DEFAULT_STEP_LIMIT, RunOptions
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.settings import UNKNOWN, encoding_of, family_of, reading_of
 
 
 def run_program(
     path: Path | str,
     machine: Machine,
+    options: RunOptions = DEFAULT_OPTIONS,
     *,
-    subprograms: Sequence[Path] = (),
     family: str | None = None,
-    step_limit: int = DEFAULT_STEP_LIMIT,
-    skip: bool = False,
-    shortest: bool | None = None,
-    encoding: str | None = None,
     write_progress: WriteProgress | None = None,
 ) -> Run:
     """Read a program and run it on a machine.
 
-    Parameters
-    ----------
-    path
-        The program.
-    subprograms
-        The files that it may call, by their names. No others are looked for: calling a missing one is an error among
-        ``Run.diagnostics``.
-    machine
-        Three slides X, Y and Z, and two rotary axes. Every tool has the length ``machine.tool_length``, or 0, which
-        puts the tip where the control assumes it.
-    family
-        The family of controls whose language the program has, a key of ``FAMILIES``; None for the machine's control.
-    step_limit
-        Blocks that loops and calls may execute, besides once through each file.
-    skip
-        Leave out blocks that begin with ``/``.
-    shortest
-        How endless rotary axes reach plain words: True by the shorter way, False within the displayed turn, None as
-        the control does it. Axes whose output has all turns take the number as it is, except with True.
-    encoding
-        Of names and texts, as Python calls it; None: what the control's definition says its programs are written in, or
-        else what is likeliest for each line. A byte order mark decides before both.
-    write_progress
-        The progress of the program's file if it is still being written: the program runs as far as it is there, and
-        waits for the rest. None for a complete file. The result is the same.
+    path            the program
+    machine         three linear axes X, Y and Z, and two rotary axes. Every tool has the length
+                    ``machine.tool_length``, or 0, which puts the tip where the control assumes it
+    options         how it is run
+    family          the family of controls whose language the program has, a key of ``FAMILIES``; None for the machine's
+                    control
+    write_progress  the progress of the program's file if it is still being written: the program runs as far as it is
+                    there, and waits for the rest. None for a complete file. The result is the same
 
-    Raises
-    ------
-    InputError
-        If a file cannot be read, does not end, is nested wrongly or too deeply, or if there is no reader for the
-        control. Words that are not understood are in ``Run.diagnostics``.
+    Raises ``InputError`` if a file cannot be read, does not end, is nested wrongly or too deeply, or if there is no
+    reader for the control. Words that are not understood are in ``Run.diagnostics``.
     """
     reader = reader_of(machine, family)
     check_reading(machine)
-    stated = encoding_of(machine) if encoding is None else encoding
-    options = RunOptions(tuple(subprograms), step_limit, skip, shortest, stated)
+    stated = encoding_of(machine) if options.encoding is None else options.encoding
+    options = replace(options, encoding=stated)
     run = reader.interpreter(Path(path), machine, options).run(write_progress)
     return replace(
         run,
@@ -89,6 +65,8 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     reader: FamilyReader = load_reader(name)
     if reader.offsets_of is not None:
         reader = replace(reader, work_offsets=reader.offsets_of(machine))
+    if reader.words_of is not None:
+        reader = replace(reader, words_without_path=reader.words_of(machine))
     return reader
 
 

@@ -16,11 +16,13 @@ from trunnion.reporting.html_text import (
     format_limit,
     format_number,
     format_range,
+    note_lines,
     with_unit,
 )
 from trunnion.reporting.remarks import RemarkGroup
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
+from trunnion.verification import stand_lines
 from trunnion.verification.results import Check, Place, State
 from trunnion.wording import counted, format_duration
 
@@ -100,7 +102,10 @@ def _checks(checks: Sequence[Check]) -> str:
         f"<td>{escape(check.told)}</td></tr>"
         for check in checks
     ]
-    return _section("Checks", _table(("Result", "Check", "#Worst", "#Limit", "Summary"), rows, "tight"))
+    return _section(
+        "Checks",
+        _table(("Result", "Check", "#Worst", "#Limit", "Summary"), rows, "tight") + note_lines(stand_lines(checks)),
+    )
 
 
 def _remarks(remarks: Sequence[RemarkGroup]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from trunnion.reporting.html_page import plot_page
-from trunnion.reporting.html_text import escape, format_number
+from trunnion.reporting.html_text import escape, format_number, note_lines
 from trunnion.reporting.plot_series import PlotSeries
 
 
@@ -56,7 +56,7 @@ def _body(content: SensitivityContent) -> str:
     facts = "".join(
         f"<div><dt>{escape(name)}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in content.facts
     )
-    notes = "".join(f'<p class="note">{escape(note)}</p>\n' for note in content.notes)
+    notes = note_lines(content.notes)
     return f"""<body>
 <main>
 <header>

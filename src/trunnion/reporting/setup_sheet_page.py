@@ -16,10 +16,12 @@ from trunnion.reporting.html_text import (
     format_limit,
     format_number,
     format_range,
+    note_lines,
     source_hash,
 )
 from trunnion.reporting.setup_sheet import Range, SetupSheet, SheetOperation, SheetTool
 from trunnion.results import as_json, to_data
+from trunnion.verification import stand_lines
 from trunnion.verification.results import Check, State
 from trunnion.wording import format_duration
 
@@ -76,6 +78,7 @@ def _title(sheet: SetupSheet) -> str:
     items = [
         ("Machine", content.machine),
         ("Control", content.control),
+        ("Title", sheet.title),
         ("Part", sheet.part),
         ("Work offset", ", ".join(sheet.offsets) or "none"),
         ("Workpiece zero on the machine, mm", zero),
@@ -196,7 +199,7 @@ def _checks(checks: Sequence[Check]) -> str:
         f"<td>{capitalised(check.title)}</td><td>{escape(check.told)}</td></tr>"
         for check in checks
     ]
-    return _section("What was proven", _table(("", "Check", "Result"), rows), "small")
+    return _section("What was proven", _table(("", "Check", "Result"), rows) + note_lines(stand_lines(checks)), "small")
 
 
 def _files(sheet: SetupSheet) -> str:

@@ -5,56 +5,21 @@ Out:    ``Finding`` records, in the order of the program.
 Units:  mm, workpiece frame.
 """
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import StrEnum
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.simulation.cutting.measurements import RowsCut
+from trunnion.simulation.cutting.measurements import Depths, RowsCut
+from trunnion.simulation.finding import Finding, What
 from trunnion.simulation.stock.deviation import Gouges
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Rows without a finding that do not end a run of rows with one.
 _PAUSE: Final = 2
-
-
-class What(StrEnum):
-    """What is wrong."""
-
-    RAPID = "rapid through stock"
-    GOUGE = "gouge"
-    STANDING = "cuts with the spindle off"
-    SHANK = "shank into stock"
-    HOLDER = "holder into stock"
-    BODY = "collision"
-    NEAR = "near"
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """One thing that is wrong, in consecutive rows of a run.
-
-    between   names of the two bodies
-    rows      first and last row of the run
-    worst     the row in which it is deepest
-    depth     there, mm
-    place     there, mm
-    fraction  part of the worst row that is done then; NaN: as the tool first covers the place
-    """
-
-    what: What
-    between: tuple[str, str]
-    rows: tuple[int, int]
-    worst: int
-    depth: float
-    place: tuple[float, float, float]
-    fraction: float = math.nan
 
 
 def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float, turning: Flags) -> Iterator[Finding]:
@@ -66,16 +31,16 @@ def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float, turnin
     first, end = rows.first, rows.first + len(rows.removed)
     rapid = run.kind[first:end] == Kind.RAPID
     deep = rows.idle.depth > limit
-    yield from _runs(What.RAPID, (name, "stock"), first, rapid & deep, rows.idle.depth, rows.idle.place, pause=0)
+    yield from _runs(What.RAPID, (name, "stock"), first, rapid & deep, rows.idle, pause=0)
     standing = ~rapid & ~turning[first:end] & deep
-    yield from _runs(What.STANDING, (name, "stock"), first, standing, rows.idle.depth, rows.idle.place)
+    yield from _runs(What.STANDING, (name, "stock"), first, standing, rows.idle)
     for section, met in rows.met.items():
         if section >= len(shape.sections):  # it only stands around one of them (``near_stock``)
             continue
         role = shape.sections[section].role
         what = What.HOLDER if role is Role.HOLDER else What.SHANK
         body = f"{what.name.lower()} of {name}"
-        yield from _runs(what, (body, "stock"), first, met.depth > limit, met.depth, met.place)
+        yield from _runs(what, (body, "stock"), first, met.depth > limit, met)
 
 
 def gouge_findings(run: Run, tool: int, first: int, end: int, gouges: Gouges, apart: float) -> Iterator[Finding]:
@@ -130,20 +95,14 @@ def tool_name(run: Run, tool: int) -> str:
 
 
 def _runs(
-    what: What,
-    between: tuple[str, str],
-    first: int,
-    flags: Flags,
-    depth: Floats,
-    place: Floats,
-    pause: int = _PAUSE,
+    what: What, between: tuple[str, str], first: int, flags: Flags, depths: Depths, pause: int = _PAUSE
 ) -> Iterator[Finding]:
     """Consecutive rows as one finding."""
     for part in rows_together(flags, pause):
-        worst = int(part[depth[part].argmax()])
-        x, y, z = place[worst].tolist()
+        worst = int(part[depths.depth[part].argmax()])
+        x, y, z = depths.place[worst].tolist()
         rows = int(part[0]) + first, int(part[-1]) + first
-        yield Finding(what, between, rows, worst + first, float(depth[worst]), (x, y, z))
+        yield Finding(what, between, rows, worst + first, float(depths.depth[worst]), (x, y, z))
 
 
 def rows_together(flags: Flags, pause: int = _PAUSE) -> Iterator[Ints]:

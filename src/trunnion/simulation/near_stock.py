@@ -18,7 +18,8 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.measurements import RowsCut
-from trunnion.simulation.findings import Finding, What, rows_together, tool_name
+from trunnion.simulation.finding import Finding, What
+from trunnion.simulation.findings import rows_together, tool_name
 from trunnion.simulation.tools.pieces import RevolvedPieces, revolved_pieces
 from trunnion.simulation.tools.profile import Point, ProfileArc, ProfileLine, Role, Section, ToolShape
 

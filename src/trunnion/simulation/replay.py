@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Floats
-from trunnion.simulation.cutting.removal import measure
+from trunnion.simulation.cutting.removal import CutRows, Cutter, measure
 from trunnion.simulation.simulator import CuttingModel, SimulatedProgram, tool_pieces
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock, Tile
@@ -85,10 +85,8 @@ class Replay:
             if not go_on():
                 return False
             end = min(self._done - self._done % self._step + self._step, rows)
-            chunks = measure(
-                self._stock, self._program.run, self._pieces, self._model.tolerance, start=self._done, end=end
-            )
-            for chunk in chunks:
+            cutter = Cutter(self._stock, None, self._model.tolerance)
+            for chunk in measure(cutter, self._program.run, self._pieces, CutRows(self._done, end)):
                 for _ in chunk.tiles:  # each is cut when it is taken
                     pass
             self._done = end

@@ -11,9 +11,9 @@ from trunnion.arrays import Floats, Lines
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.results import NOT_DATA, BlockNumber, CubicMillimetres, Figure, Millimetres, OptionalLine, OptionalText
-from trunnion.simulation.collisions import Collision
 from trunnion.simulation.contact_times import reached
-from trunnion.simulation.findings import Finding, What, file_of_row
+from trunnion.simulation.finding import Finding, What
+from trunnion.simulation.findings import file_of_row
 from trunnion.simulation.simulator import OperationCut, SimulatedProgram, row_runs, tip_lengths
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.tools.choice import NO_CALL
@@ -179,16 +179,15 @@ def setup_findings(cut: CutSetup) -> CutFindings:
         idle = list(_air(run, one, lengths[one.program]))
         air += idle
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
-        lines = int(run.line[one.first]), int(run.line[one.end - 1])
         air_length = sum(each.length for each in idle)
-        own = [each for each in touched[one.program] if not each.is_near and one.first <= each.worst_row < one.end]
+        own = [each for each in touched[one.program] if not each.is_near and one.first <= each.worst < one.end]
         count, blocks = len(one.findings) + len(own), _blocks(run, one, at)
-        operations.append(_operation(run, one, seconds_taken, lines, air_length, count, blocks))
+        operations.append(_operation(run, one, seconds_taken, air_length, count, blocks))
     for number, collisions in enumerate(touched):
         run, at = programs[number].run, seconds[number]
-        for finding in map(_of_collision, collisions):
+        for finding in collisions:
             moment = _moment(programs[number], finding, at, slack)
-            if finding.what is What.NEAR:
+            if finding.is_near:
                 misses.append(_near(run, finding, moment))
             else:
                 findings.append(_finding(verified[number], finding, moment))
@@ -201,14 +200,9 @@ def _named(found: Iterable[_Named], setup: str) -> tuple[_Named, ...]:
 
 
 def _operation(
-    run: Run,
-    one: OperationCut,
-    seconds: float,
-    lines: tuple[int, int],
-    air: float,
-    count: int,
-    blocks: BlockRemoval,
+    run: Run, one: OperationCut, seconds: float, air: float, count: int, blocks: BlockRemoval
 ) -> SimulatedOperation:
+    lines = int(run.line[one.first]), int(run.line[one.end - 1])
     tool, removed = one.tool or NO_CALL, float(one.removed.sum())
     file = run.files[int(run.file[one.first])]  # line 21 may be that of a subprogram
     return SimulatedOperation(file, tool, *lines, removed, one.gouged, seconds, air, count, blocks)
@@ -255,13 +249,6 @@ def _finding(verified: Verification, finding: Finding, seconds: float) -> Simula
         int(run.line[last]), int(run.block_number[last]), cl_line, seconds, finding.depth, (x, y, z),
         cl_file if cl_line else "", row=row,
     )  # fmt: skip
-
-
-def _of_collision(each: Collision) -> Finding:
-    rows, (what, size) = (each.row, each.last_row), (What.BODY, each.depth_mm)
-    if each.is_near:
-        what, size = What.NEAR, each.distance_mm
-    return Finding(what, each.between, rows, each.worst_row, size, each.place, each.worst_fraction)
 
 
 def _near(run: Run, each: Finding, seconds: float) -> NearMiss:

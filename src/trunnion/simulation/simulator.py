@@ -16,9 +16,10 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.measurements import Chunk, RowsCut, rows_cut
-from trunnion.simulation.cutting.removal import measure
+from trunnion.simulation.cutting.removal import CutRows, Cutter, measure
 from trunnion.simulation.cutting.shares import JoinedShares, Share, ShareWriter, tiles_of
-from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
+from trunnion.simulation.finding import Finding
+from trunnion.simulation.findings import air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
 from trunnion.simulation.near_stock import near_findings, pieces_with_near
 from trunnion.simulation.stock.deviation import Excess, Gouges, lacking_at_start, left_on, missing_from
 from trunnion.simulation.stock.material import Stock
@@ -164,7 +165,8 @@ def cut_share(
     writer = ShareWriter(tiles)
     total, done = sum(program.end for program in programs), 0
     for number, program in enumerate(programs):
-        for chunk in _measured(model, programs, number, stock, design, threads, _shifted(progress, done, total)):
+        cutter = Cutter(stock, design, model.tolerance)
+        for chunk in _measured(model, programs, number, cutter, threads, _shifted(progress, done, total)):
             writer.add(number, chunk)
         done += program.end
     return writer.finish(stock)
@@ -174,19 +176,16 @@ def _measured(
     model: CuttingModel,
     programs: Sequence[SimulatedProgram],
     number: int,
-    stock: Stock,
-    design: tuple[Spans, Spans, Spans] | None,
+    cutter: Cutter,
     threads: int | None,
     progress: Callable[[int, int], None] | None,
 ) -> Iterator[Chunk]:
     """Cut stock with one of the programs."""
     program = programs[number]
     pieces, _ = tool_pieces(program, model, model.near)
-    return measure(
-        stock, program.run, pieces, model.tolerance,
-        idle=idle_rows(program.run, spindle_turns(program.run)), design=design,
-        offset=_offset(programs, number), end=program.end, threads=threads, progress=progress,
-    )  # fmt: skip
+    idle = idle_rows(program.run, spindle_turns(program.run))
+    rows = CutRows(0, program.end, idle, _offset(programs, number))
+    return measure(cutter, program.run, pieces, rows, threads=threads, progress=progress)
 
 
 def _simulate(
@@ -212,7 +211,7 @@ def _simulate(
         pieces, off = tool_pieces(program, model, model.near)
         error, tell = max(error, off), _shifted(progress, done, total)
         if shares is None:
-            chunks = _measured(model, programs, number, stock, design, threads, tell)
+            chunks = _measured(model, programs, number, Cutter(stock, design, model.tolerance), threads, tell)
         else:
             chunks = shares.chunks(number, program.run, pieces, program.end, stock.lattice, tell)
         operations += _operations(model, program, number, rows_cut(chunks, pieces))
@@ -279,7 +278,8 @@ def _cut_again(
     for number, program in enumerate(programs):
         offset, pieces = _offset(programs, number), tool_pieces(program, model)[0]
         own = None if idle is None else idle[offset : offset + len(program.run)]
-        chunks = measure(again, program.run, pieces, model.tolerance, idle=own, end=program.end, threads=threads)
+        cutter, rows_to_cut = Cutter(again, None, model.tolerance), CutRows(0, program.end, own)
+        chunks = measure(cutter, program.run, pieces, rows_to_cut, threads=threads)
         for rows in rows_cut(chunks, pieces):
             yield offset, rows
 

@@ -5,10 +5,11 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
-from trunnion.simulation.collisions import Body, Collision, check_collisions, fixture_body, machine_bodies, part_body
+from trunnion.simulation.collisions import Body, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.cutting.shares import JoinedShares, Share
+from trunnion.simulation.finding import Finding
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.remarks import of_setup, part_remarks, simulation_remarks
@@ -62,7 +63,7 @@ class CutSetup:
     setup: PreparedSetup
     simulation: Simulation
     programs: Sequence[SimulatedProgram]
-    touched: Sequence[Sequence[Collision]]
+    touched: Sequence[Sequence[Finding]]
     remarks: tuple[Problem, ...]
     pairs: int
 
@@ -88,12 +89,7 @@ class SetupSteps:
             if not pose.keeps_rays:
                 self._slack += cell
                 remarks.append(
-                    Problem(
-                        "stock",
-                        0,
-                        Wording("SIM134", "turned_through_surface", cell=0.5 * cell, cell_2=cell),
-                        severity=Severity.WARNING,
-                    )
+                    warning("stock", 0, Wording("SIM134", "turned_through_surface", cell=0.5 * cell, cell_2=cell))
                 )
         self._part = own.part or self._part
         result = self._simulated(own, self._model(shape, self._part), self._part, remarks)
@@ -142,7 +138,7 @@ class SetupSteps:
 
         def touching(
             programs: Sequence[SimulatedProgram], tell: Callable[[int], None] | None = None
-        ) -> list[list[Collision]]:
+        ) -> list[list[Finding]]:
             """Return what touches on the machine, where the part is as it is clamped; places are those of the
             drawing.
             """
@@ -159,17 +155,14 @@ class SetupSteps:
         remarks += part_remarks(model, found.lacking, self._slack, is_later=self._left is not None)
         if found.leaks:
             remarks.append(
-                Problem(
+                warning(
                     "part",
                     0,
                     Wording("SIM214", "rays_pass_hole", leaks=found.leaks, ray_count=found.stock.lattice.ray_count),
-                    severity=Severity.WARNING,
                 )
             )
         if found.start_volume - found.stock.volume <= 0.0:
-            remarks.append(
-                Problem(runs[0].files[0], 0, Wording("SIM133", "takes_nothing_from"), severity=Severity.WARNING)
-            )
+            remarks.append(warning(runs[0].files[0], 0, Wording("SIM133", "takes_nothing_from")))
         self._watcher.problems(of_setup(remarks[told:], name))
         if options.stops_at_first:
             programs = _until_stop(programs, found)
@@ -199,12 +192,12 @@ def _told_once(tell: Callable[[int], None]) -> Callable[[int, int], None]:
 
 
 def _up_to_first_hit(
-    programs: Sequence[SimulatedProgram], touched: Sequence[Sequence[Collision]]
+    programs: Sequence[SimulatedProgram], touched: Sequence[Sequence[Finding]]
 ) -> list[SimulatedProgram]:
     """Return the programs as far as the row in which bodies first touch."""
     kept = []
     for program, collisions in zip(programs, touched, strict=True):
-        first = min((each.row for each in collisions if not each.is_near), default=None)
+        first = min((each.rows[0] for each in collisions if not each.is_near), default=None)
         kept.append(program if first is None else replace(program, end=first + 1))
         if first is not None:
             break
@@ -235,15 +228,13 @@ def _bodies(
     if machine.workpiece_zero is not None and _lengths_known(program):
         bodies += machine_bodies(machine, of_machine.append)
     elif number == 0 and machine.bodies:
-        remarks.append(
-            Problem(program.run.files[0], 0, Wording("SIM310", "bodies_machine_not"), severity=Severity.WARNING)
-        )
+        remarks.append(warning(program.run.files[0], 0, Wording("SIM310", "bodies_machine_not")))
     return bodies
 
 
 def _collisions(
     program: SimulatedProgram, bodies: Sequence[Body], near: float, pairs_told: Callable[[int], None] | None = None
-) -> list[Collision]:
+) -> list[Finding]:
     """Return what touches, or comes near, while a program runs as far as it is simulated."""
     if not bodies:
         return []

@@ -16,7 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
 from trunnion.model.run import Run
-from trunnion.simulation.collisions import Collision
+from trunnion.simulation.finding import Finding
 from trunnion.simulation.meshes import TriangleMesh
 
 
@@ -74,7 +74,7 @@ def as_clamped(mesh: TriangleMesh, turn: Floats) -> TriangleMesh:
     return mesh.moved(pose)
 
 
-def places_of_drawing(collisions: Iterable[Collision], turn: Floats) -> list[Collision]:
+def places_of_drawing(collisions: Iterable[Finding], turn: Floats) -> list[Finding]:
     """Return what touches, with its places in the coordinates of the drawing."""
     found = []
     for each in collisions:

@@ -34,9 +34,6 @@ END: Final = 2
 TOP: Final = 3
 ACCELERATION: Final = 4
 
-#: Changes of direction that are none, per mm or degree.
-STRAIGHT: Final = 1e-12
-
 
 @kernel(writes="reached")
 def fill_reached(length: Floats, plan: Floats2, reached: Floats) -> None:

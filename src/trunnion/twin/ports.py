@@ -9,19 +9,11 @@ from trunnion.messages import Wording
 def listen(what: str, host: str, port: int, argument: str) -> socket.socket:
     """Take a port; 0: a free one.
 
-    Parameters
-    ----------
-    what
-        What is served there, for the message.
-    host, port
-        An address of this computer, and the port.
-    argument
-        The argument that chooses another port, for the message.
+    what        what is served there, for the message
+    host, port  an address of this computer, and the port
+    argument    the argument that chooses another port, for the message
 
-    Raises
-    ------
-    InputError
-        If it is taken, or the address is none of this computer's.
+    Raises ``InputError`` if it is taken, or the address is none of this computer's.
     """
     if not 0 <= port <= 65535:
         raise InputError(Problem(what, 0, Wording("TWN150", "no_port", port=port, argument_text=argument)))

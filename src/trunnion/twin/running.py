@@ -66,16 +66,10 @@ class WallClock:
 class Twin:
     """A program that runs on a machine, and is operated by clients.
 
-    Parameters
-    ----------
-    program
-        What runs.
-    playback
-        Its clock.
-    period
-        Seconds of the wall between two samples; of the program, where it runs as fast as it can.
-    clock
-        The wall time, seconds since 1970.
+    program   what runs
+    playback  its clock
+    period    seconds of the wall between two samples; of the program, where it runs as fast as it can
+    clock     the wall time, seconds since 1970
     """
 
     def __init__(

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 from trunnion.twin.mtconnect.adapter import MTConnectAdapter
 from trunnion.twin.opcua.outlet import OpcUaOutlet
 from trunnion.twin.opcua.server import Security, TwinServer
-from trunnion.twin.playback import Playback
 from trunnion.twin.running import Twin
-from trunnion.twin.snapshots import TwinProgram
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,11 +18,13 @@ class TwinAddresses:
     opcua        address of the OPC UA server
     mtconnect    host and port of the MTConnect adapter; empty: there is none
     fingerprint  of the server's certificate (SHA-1, as clients show it); empty: there is none
+    not_measured  values of the definition that positions and times stand on, though nobody has measured them
     """
 
     opcua: str
     mtconnect: str
     fingerprint: str
+    not_measured: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,35 +37,24 @@ class Ports:
 
 
 async def serve_program(
-    program: TwinProgram,
-    playback: Playback,
+    twin: Twin,
     ports: Ports,
     *,
-    period: float,
     security: Security | None,
     started: bool,
     ready: Callable[[TwinAddresses], None],
 ) -> None:
     """Serve a program until cancelled.
 
-    Parameters
-    ----------
-    program, playback
-        What runs, and its clock.
-    ports
-        Where it is served.
-    period
-        Seconds between two samples.
-    security
-        Who may use it; None: anybody on this computer.
-    started
-        It runs at once; else a client starts it.
-    ready
-        Is called when clients can connect.
+    twin      the program, its clock and its samples
+    ports     where it is served
+    security  who may use it; None: anybody on this computer
+    started   it runs at once; else a client starts it
+    ready     is called when clients can connect
     """
-    twin = Twin(program, playback, period)
+    program = twin.program
     server = TwinServer(program, twin, ports.opcua, ports.host, security)
-    publisher = await server.prepare(playback.speed)
+    publisher = await server.prepare(twin.playback.speed)
     twin.outlets.append(OpcUaOutlet(program, server, publisher, twin.clock()))
     adapter = MTConnectAdapter(program, ports.mtconnect) if ports.mtconnect is not None else None
     if adapter is not None:
@@ -74,7 +63,8 @@ async def serve_program(
         await server.start()
         if adapter is not None:
             await adapter.begin()
-        ready(TwinAddresses(server.address, adapter.address if adapter else "", server.fingerprint))
+        shdr = adapter.address if adapter else ""
+        ready(TwinAddresses(server.address, shdr, server.fingerprint, program.not_measured))
         await twin.run(started=started)
     finally:
         if adapter is not None:

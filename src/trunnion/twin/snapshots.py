@@ -10,12 +10,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, forward
+from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
 from trunnion.model.run import Run
+from trunnion.model.run_samples import joint_samples
 from trunnion.timing import TimedEvent, TimedRun
 from trunnion.twin.modal import Blocks, BlockState
 
@@ -61,6 +64,10 @@ class Snapshots:
         return len(self.seconds)
 
 
+#: What positions, times and alarms of limits stand on.
+_STANDS_ON: Final = (*POSITIONS, ValueKind.TRAVEL, ValueKind.RAPID, ValueKind.ACCELERATION, ValueKind.WAITS)
+
+
 class TwinProgram:
     """A program in time, with its texts, as a twin runs it; ``lengths`` are those of its tools by their index."""
 
@@ -88,6 +95,11 @@ class TwinProgram:
     def files(self) -> tuple[str, ...]:
         """Names of the main program and of its subprograms, without their folders."""
         return tuple(PurePath(name).name for name in self.run.files) or (self.name,)
+
+    @property
+    def not_measured(self) -> tuple[str, ...]:
+        """Values of the definition that positions and times stand on, though nobody has measured them."""
+        return tuple(map(str, unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run))))
 
     @cached_property
     def tools(self) -> tuple[str, ...]:

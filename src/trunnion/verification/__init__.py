@@ -20,7 +20,7 @@ from trunnion.verification.results import (
     without_columns,
 )
 from trunnion.verification.standing import Standing
-from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines
+from trunnion.verification.text import check_lines, failures, place_line, place_lines, stand_lines, time_lines
 from trunnion.verification.verifier import reachable_feeds, verify, with_recording
 
 #: Kernels that every program needs.
@@ -46,6 +46,7 @@ __all__ = [
     "reachable_feeds",
     "restore_rapids",
     "rows_from_starts",
+    "stand_lines",
     "time_lines",
     "tolerances_in_planes",
     "verify",

@@ -13,7 +13,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Axis, Machine, states_spindle_range
+from trunnion.machines.unmeasured import ValueKind, unmeasured_values
 from trunnion.messages import Wording, phrase
+from trunnion.model.run import Run
+from trunnion.model.run_samples import joint_samples
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,25 +63,19 @@ def _no_spindle_speeds(machine: Machine) -> Wording | None:
     return None if states_spindle_range(machine) else phrase("no_spindle_speeds")
 
 
-def _not_measured(machine: Machine) -> Wording | None:
-    names = machine.nobody_measured
-    return phrase("not_measured", count=len(names), names=names) if names else None
-
-
 ZERO: Final = Basis("zero", _no_zero)
 TOOL_LENGTH: Final = Basis("tool_length", _no_tool_length)
 TRAVEL: Final = Basis("travel", _no_travel)
 RAPID: Final = Basis("rapid", _no_rapid)
 ACCELERATION: Final = Basis("acceleration", _no_acceleration)
 SPINDLE: Final = Basis("spindle", _no_spindle_speeds)
-MEASURED: Final = Basis("measured", _not_measured)
 
-#: What ``[proof] require`` and ``--strict`` may demand.
+#: What ``[proof] require`` and ``--strict`` may demand, with its bases; of ``measured`` each program has its own.
 DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "zero": (ZERO,),
     "tool_length": (TOOL_LENGTH,),
     "dynamics": (RAPID, ACCELERATION),
-    "measured": (MEASURED,),
+    "measured": (),
 }
 
 
@@ -87,8 +84,12 @@ def missing_of(bases: Iterable[Basis], machine: Machine) -> tuple[Wording, ...]:
     return tuple(found for basis in bases if (found := basis.missing(machine)) is not None)
 
 
-def missing_demands(demands: Iterable[str], machine: Machine) -> Iterator[Wording]:
-    """Yield what is missing of what is demanded, each once."""
+def missing_demands(demands: Iterable[str], run: Run) -> Iterator[Wording]:
+    """Yield what is missing of what is demanded for a program, each once."""
     for name in DEMANDS:
         if name in demands:
-            yield from missing_of(DEMANDS[name], machine)
+            yield from missing_of(DEMANDS[name], run.machine)
+    if "measured" in demands:
+        kinds = set(ValueKind) - {ValueKind.BODIES, ValueKind.TABLE}
+        if names := tuple(map(str, unmeasured_values(run.machine, kinds, joint_samples(run)))):
+            yield phrase("not_measured", count=len(names), names=names)

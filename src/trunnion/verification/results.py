@@ -105,6 +105,7 @@ class Check:
     places    the worst places, worst first
     missing   what nobody has stated, so that the question was not answered, or only in part
     coverage  which motions it has looked at; None: it is no question of single motions
+    stands_on values of the definition that the answer stands on, though nobody has measured them
     """
 
     key: str
@@ -117,6 +118,7 @@ class Check:
     places: tuple[Place, ...] = ()
     missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
     coverage: Coverage | None = None
+    stands_on: Annotated[tuple[str, ...], Figure(after="missing")] = ()
 
     @property
     @Figure(after="title")
@@ -161,7 +163,7 @@ class Verification:
 
     seconds   (n,)   float64   time that the row takes (``trunnion.verification.kinematics.run_time``)
     waiting   (n,)   float64   those of these seconds in which the axes wait: dwells, tool changes, the spindle
-    tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min
+    tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min; NaN where its time is not known
     cl_line   (n,)   int32     line of the CL file that the row belongs to, 0 for none
 
     ``clamping`` is how the part is clamped, as far as somebody said it; None: nobody did.
@@ -199,7 +201,7 @@ class Verification:
             failed=states.count(State.FAIL),
             not_checked=states.count(State.NOT_CHECKED),
             warnings=severities.count(Severity.WARNING),
-            not_measured=self.machine.nobody_measured,
+            not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
         )
 
     def __repr__(self) -> str:

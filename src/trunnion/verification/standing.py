@@ -20,7 +20,7 @@ class Standing:
     failed        how many found something
     not_checked   how many were not made, or only in part
     warnings      that were given
-    not_measured  values that count although nobody has measured them
+    not_measured  values that answers of checks stand on although nobody has measured them
     """
 
     passed: bool

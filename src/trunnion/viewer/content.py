@@ -6,7 +6,7 @@ Units:  mm, degrees, seconds, mm/min.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -17,13 +17,15 @@ from trunnion.machines import Machine
 from trunnion.machines.links import link_chain
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.simulation.collisions.bodies import Body, BodyKind, fixture_body, machine_bodies, part_body, tool_bodies
-from trunnion.simulation.meshes import TriangleMesh
+from trunnion.results import to_data
+from trunnion.simulation.collisions.bodies import Body, BodyKind, machine_bodies, tool_bodies
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
+from trunnion.verification import stand_lines
 from trunnion.verification.comparison import Alignment
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
+from trunnion.viewer.shown import Mark, checks_data
 from trunnion.viewer.stock import StockView
 
 Column = NDArray[np.float32] | NDArray[np.int32]
@@ -68,8 +70,7 @@ def view_content(
     texts: Sequence[str],
     cl_texts: Mapping[str, str],
     tools: Mapping[str, ToolShape],
-    part: TriangleMesh | None = None,
-    fixtures: Iterable[TriangleMesh] = (),
+    clamped: Sequence[Body] = (),
     toolpaths: Sequence[Toolpath] = (),
 ) -> ViewContent:
     """Put together what a page shows.
@@ -78,7 +79,7 @@ def view_content(
     texts           of the files of its run, in their order
     cl_texts        of its CL files, by the names that its operations have for them
     tools           bodies of tools by their names in the program; others are drawn as needles
-    part, fixtures  meshes in the workpiece frame
+    clamped         part and fixtures
     toolpaths       that the program was made from: they know the phases of its motions
 
     Raises ``InputError`` if a mesh of the machine cannot be used.
@@ -88,9 +89,7 @@ def view_content(
     seconds = durations(verification)[0] if len(verification.seconds) else np.zeros(0)
     lengths = {k: _length(tools.get(name), machine) for k, name in enumerate(run.tools)}
     motion = motion_columns(run, seconds, lengths)
-    bodies = list(machine_bodies(machine))
-    bodies += [] if part is None else [part_body(part, machine)]
-    bodies += [fixture_body(mesh, machine) for mesh in fixtures]
+    bodies = [*machine_bodies(machine), *clamped]
     for k, name in enumerate(run.tools):
         shape = tools.get(name)
         bodies += _needle(machine, name) if shape is None else tool_bodies(shape, machine, name, lengths[k])
@@ -127,8 +126,8 @@ def view_content(
             {"name": one.name, "first": one.first, "end": one.end, "cl": cl_files.get(one.cl_file, -1)}
             for one in verification.operations
         ],
-        "events": [*_events(run), *_rewinds(run)],
-        "findings": [*_findings(verification.checks, run), *_diagnostics(run)],
+        "events": to_data([*_events(run), *_rewinds(run)]),
+        "findings": to_data([*_findings(verification.checks, run), *_diagnostics(run)]),
         "timed": bool(len(seconds)),
         **proof_scene(verification),
     }
@@ -137,8 +136,8 @@ def view_content(
 
 def proof_scene(verification: Verification) -> dict[str, Any]:
     """Return what the page says of the proof."""
-    checks = [{"key": one.key, "state": one.state, "summary": one.told} for one in verification.checks]
-    return {"checks": checks, "standing": verification.standing.told}
+    stands = list(stand_lines(verification.checks))
+    return {"checks": checks_data(verification.checks), "standing": verification.standing.told, "stands": stands}
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
@@ -148,10 +147,7 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
     alignment      of their runs. Columns of the second begin with ``b-``; ``pair-one`` and ``pair-two`` are rows that
                    go together
     """
-    differences = [
-        {"kind": "difference", "row": each.one, "text": each.text} | _place(first, each.one)
-        for each in alignment.differences
-    ]
+    differences = [Mark("difference", each.one, *_place(first, each.one), each.text) for each in alignment.differences]
     columns = {f"b-{name}": column for name, column in second.columns.items()}
     columns |= {"pair-one": alignment.pairs[:, 0].astype(np.int32), "pair-two": alignment.pairs[:, 1].astype(np.int32)}
     against = {
@@ -163,15 +159,16 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
     scene = {
         **first.scene,
         "title": " | ".join(f"{each.scene['title']} ({each.scene['machine']['key']})" for each in (first, second)),
-        "findings": [*first.scene["findings"], *differences],
+        "findings": [*first.scene["findings"], *to_data(differences)],
         "against": against,
     }
     return replace(first, scene=scene, columns={**first.columns, **columns}, texts=(*first.texts, *second.texts))
 
 
-def _place(content: ViewContent, row: int) -> dict[str, int]:
-    """File and line of a row."""
-    return {name: int(content.columns[name][row]) if len(content.columns[name]) else 0 for name in ("file", "line")}
+def _place(content: ViewContent, row: int) -> tuple[int, int]:
+    """Line and file of a row."""
+    line, file = (content.columns[name] for name in ("line", "file"))
+    return (int(line[row]), int(file[row])) if len(line) else (0, 0)
 
 
 def _phases(verification: Verification, toolpaths: Sequence[Toolpath]) -> NDArray[np.int32]:
@@ -192,9 +189,9 @@ def _phases(verification: Verification, toolpaths: Sequence[Toolpath]) -> NDArra
 
 
 def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
-    """Speed of the tip, (n,), mm/min; 0 where it is not known."""
-    feed = verification.tip_feed if len(verification.tip_feed) else np.zeros(len(verification.run))
-    return np.nan_to_num(feed, posinf=0.0).astype(np.float32)
+    """Speed of the tip, (n,), mm/min; -1 where it is not known."""
+    feed = verification.tip_feed if len(verification.tip_feed) else np.full(len(verification.run), np.nan)
+    return np.nan_to_num(feed, nan=-1.0, posinf=-1.0).astype(np.float32)
 
 
 def _length(shape: ToolShape | None, machine: Machine) -> float:
@@ -253,36 +250,29 @@ def body_scene(body: Body, machine: Machine) -> dict[str, Any]:
     return {"name": body.name, "link": body.link, "kind": str(body.kind), "tool": tool, "colour": colour}
 
 
-def _events(run: Run) -> list[dict[str, Any]]:
+def _events(run: Run) -> Iterator[Mark]:
     """Tool changes and stops, with the row before which they happen."""
-    kinds = ("tool", "tool_change", "stop")
-    return [
-        {"kind": event.kind, "row": event.before_row, "line": event.line, "file": event.file, "text": str(event.value)}
-        for event in run.events if event.kind in kinds
-    ]  # fmt: skip
+    for event in run.events:
+        if event.kind in ("tool", "tool_change", "stop"):
+            yield Mark(event.kind, event.before_row, event.line, event.file, str(event.value))
 
 
-def _rewinds(run: Run) -> list[dict[str, Any]]:
+def _rewinds(run: Run) -> list[Mark]:
     """Rapids in which a rotary axis turns by more than half a turn: the way back of one that has wound itself up."""
     joints = np.vstack([run.start[None], run.joints])
     turned = np.abs(np.diff(joints[:, list(run.machine.rotary)], axis=0)).max(axis=1, initial=0.0)
     rows = np.flatnonzero((turned > _REWIND) & (run.kind == Kind.RAPID))
-    return [
-        {"kind": "rewind", "row": row, "line": int(run.line[row]), "file": int(run.file[row]), "text": ""}
-        for row in rows.tolist()
-    ]
+    return [Mark.at(run, "rewind", row) for row in rows.tolist()]
 
 
-def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:
-    """Return the places of the checks that have not passed, as rows."""
+def _findings(checks: Sequence[Check], run: Run) -> Iterator[Mark]:
+    """Yield the places of the checks that have not passed, as rows."""
     numbers = {name: k for k, name in enumerate(run.files)}
-    found = []
     for check in checks:
         for place in () if check.passed else check.places[:_MOST_PLACES]:
             file = numbers.get(place.nc_file, 0)
             row = place.row if place.row >= 0 else _row_of(run, file, place.nc_line)
-            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": file, "text": place.told})
-    return found
+            yield Mark(check.key, row, place.nc_line, file, place.told)
 
 
 def _row_of(run: Run, file: int, line: int) -> int:
@@ -299,14 +289,9 @@ def _row_of(run: Run, file: int, line: int) -> int:
     return int(rows[np.argmax(lines == (after.min() if len(after) else lines.max()))])
 
 
-def _diagnostics(run: Run) -> list[dict[str, Any]]:
-    """Return what the reader did not understand, at its line."""
+def _diagnostics(run: Run) -> Iterator[Mark]:
+    """Yield what the reader did not understand, at its line."""
     numbers = {name: k for k, name in enumerate(run.files)}
-    found = []
     for each in run.errors:
         file = numbers.get(each.file, 0)
-        row = _row_of(run, file, each.line)
-        found.append(
-            {"kind": "word", "row": row, "line": each.line, "file": file, "text": f"{each.text} [{each.code}]"}
-        )
-    return found
+        yield Mark("word", _row_of(run, file, each.line), each.line, file, f"{each.text} [{each.code}]")

@@ -14,8 +14,8 @@ from trunnion.errors import InputError
 from trunnion.impeller.definition import ImpellerDefinition, read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller, rotated
 from trunnion.impeller.paths.channel import channels_of
-from trunnion.impeller.paths.channel_roughing import channel_roughing
-from trunnion.impeller.paths.hub_finish import hub_finish
+from trunnion.impeller.paths.channel_families import channel_roughing, hub_finish
+from trunnion.impeller.paths.channel_sheets import Ball
 from trunnion.impeller.paths.passes import PassFamily, Stepover
 
 PUBLISHED = Path(__file__).resolve().parents[3] / "examples" / "impeller" / "impeller.toml"
@@ -30,15 +30,13 @@ def published() -> Impeller:
 
 @pytest.fixture(scope="module")
 def finish(published: Impeller) -> PassFamily:
-    return hub_finish(channels_of(published)[0], 3.0, Stepover(distance=0.5), tolerance=TOLERANCE)
+    return hub_finish(channels_of(published)[0], Ball(3.0, TOLERANCE), Stepover(distance=0.5))
 
 
 @pytest.fixture(scope="module")
 def roughing(published: Impeller) -> PassFamily:
     (channel,) = channels_of(published)
-    return channel_roughing(
-        channel, 3.0, Stepover(distance=1.5), 2.5, tolerance=TOLERANCE, blade_allowance=0.3, hub_allowance=0.4
-    )
+    return channel_roughing(channel, Ball(3.0, TOLERANCE, 0.3, 0.4), Stepover(distance=1.5), 2.5)
 
 
 def with_middles(family: PassFamily) -> Floats:
@@ -116,12 +114,10 @@ def test_nothing_is_cut_and_nothing_is_left(
     families = []
     for channel in channels_of(impeller):
         if is_roughing:
-            found = channel_roughing(
-                channel, radius, Stepover(distance=step), down, tolerance=0.02, blade_allowance=allowance,
-                hub_allowance=allowance,
-            )  # fmt: skip
+            ball = Ball(radius, 0.02, allowance, allowance)
+            found = channel_roughing(channel, ball, Stepover(distance=step), down)
         else:
-            found = hub_finish(channel, radius, Stepover(distance=step), tolerance=0.02)
+            found = hub_finish(channel, Ball(radius, 0.02), Stepover(distance=step))
         points = with_middles(found)
         assert from_blades(impeller, points).min() >= radius + allowance - 0.02
         assert impeller.hub.distances(points)[0].min() >= radius + allowance - 0.02
@@ -164,7 +160,7 @@ def possible_balls(impeller: Impeller, radius: float, allowance: float, on_hub: 
 
 def test_a_scallop_decides_how_far_passes_are_apart(published: Impeller) -> None:
     (channel,) = channels_of(published)
-    coarse, fine = (hub_finish(channel, 3.0, Stepover(scallop=one), tolerance=0.05) for one in (0.04, 0.01))
+    coarse, fine = (hub_finish(channel, Ball(3.0, 0.05), Stepover(scallop=one)) for one in (0.04, 0.01))
     assert len(fine.passes) == pytest.approx(2 * len(coarse.passes), rel=0.15)
 
 
@@ -185,10 +181,10 @@ def test_a_channel_too_narrow_is_refused_with_the_place_and_the_largest_ball(pub
     (channel,) = channels_of(published)
     text = r"a ball of 15 mm does not fit between two blades at w = 0\.\d+, .* mm; the largest that fits has 1\d\.\d"
     with pytest.raises(InputError, match=text):
-        hub_finish(channel, 7.5, Stepover(distance=0.5), tolerance=TOLERANCE)
+        hub_finish(channel, Ball(7.5, TOLERANCE), Stepover(distance=0.5))
 
 
 def test_a_ball_smaller_than_the_fillet_is_refused(published: Impeller) -> None:
     (channel,) = channels_of(published)
     with pytest.raises(InputError, match=r"a ball of 3\.8 mm is smaller than the fillet of 2 mm"):
-        hub_finish(channel, 1.9, Stepover(distance=0.5), tolerance=TOLERANCE)
+        hub_finish(channel, Ball(1.9, TOLERANCE), Stepover(distance=0.5))

@@ -9,7 +9,7 @@ import pytest
 from trunnion import InputError
 from trunnion.arrays import Flags, Floats
 from trunnion.impeller.definition import StockSize
-from trunnion.impeller.paths.linking import FreeSpace, LinkedPath, Links, link_passes
+from trunnion.impeller.paths.linking import FreeSpace, LinkedPath, Links, Surroundings, link_passes
 from trunnion.impeller.paths.passes import Pass
 from trunnion.model.toolpath import Kind, Phase
 
@@ -35,7 +35,7 @@ def upright(one: Pass, tilt: float = 0.0) -> Floats:
 def linked(passes: list[Pass], tilt: float = 0.0, check=clear) -> LinkedPath:  # type: ignore[no-untyped-def]
     axes = [upright(one, tilt) for one in passes]
     space = FreeSpace.around(STOCK, LINKS.clearance, 2.0, OUTLINE, np.concatenate(axes))
-    return link_passes(passes, axes, space, LINKS, 2.0, check, "TEST")
+    return link_passes(passes, axes, Surroundings(space, check, "TEST"), LINKS, 2.0)
 
 
 def is_outside(point: Floats) -> bool:

@@ -13,6 +13,7 @@ import trunnion
 from tests.support.locations import ROOT, YL569
 from trunnion.cli.wording import problem_line
 from trunnion.errors import argument_problem
+from trunnion.messages import foreign
 
 CL = YL569 / "2_hub_rough.cls"
 PROGRAM = YL569 / "2_hub_rough.expected.mpf"
@@ -198,9 +199,12 @@ def test_only_the_command_line_names_its_options() -> None:
 
 def test_the_command_line_puts_its_options_in_place_of_arguments() -> None:
     for problem, line in (
-        (argument_problem("work_offset", "is 'x'", "write G54"), "--work-offset: error: is 'x'; write G54"),
-        (argument_problem("tool_length", "is 'x'"), "--tool-length: error: is 'x'"),
-        (trunnion.Problem("a.cls", 3, "b", "setting mode=… sets it"), "a.cls:3: error: b; --set mode=… sets it"),
-        (trunnion.Problem("a.cls", 0, "b", "force=True writes it"), "a.cls: error: b; --force writes it"),
+        (argument_problem("work_offset", foreign("is 'x'", "write G54")), "--work-offset: error: is 'x'; write G54"),
+        (argument_problem("tool_length", foreign("is 'x'")), "--tool-length: error: is 'x'"),
+        (
+            trunnion.Problem("a.cls", 3, foreign("b", "setting mode=… sets it")),
+            "a.cls:3: error: b; --set mode=… sets it",
+        ),
+        (trunnion.Problem("a.cls", 0, foreign("b", "force=True writes it")), "a.cls: error: b; --force writes it"),
     ):
         assert problem_line(problem) == line

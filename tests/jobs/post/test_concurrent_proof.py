@@ -25,6 +25,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 CASES = {
     "yl569": YL569 / "2_hub_rough.cls",
@@ -79,7 +80,7 @@ def test_a_program_that_is_read_while_it_is_written_runs_as_one_that_is_complete
         write(program, sink)
     assert meanwhile == files.path.read_bytes()
     assert run is not None
-    assert list(facts(run)) == list(facts(run_program(files.path, program.machine, encoding="utf-8")))
+    assert list(facts(run)) == list(facts(run_program(files.path, program.machine, RunOptions(encoding="utf-8"))))
 
 
 def test_what_is_proven_is_what_is_on_disk(tmp_path: Path) -> None:

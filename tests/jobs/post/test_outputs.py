@@ -146,7 +146,7 @@ def test_subprograms_of_another_program_stay(folder: Path) -> None:
     stays = r"BLADE_FINISH\.spf: error: would be replaced, although two\.mpf has"
     with pytest.raises(trunnion.InputError, match=stays) as not_its:
         trunnion.post("part.cls", machine="mine.toml", output="two.mpf", settings=settings)
-    assert "choose a folder for this program alone, or remove the file" in str(not_its.value)
+    assert "choose a folder for this program alone, or move the file away" in str(not_its.value)
     assert contents(folder) == before
     trunnion.post("part.cls", machine="mine.toml", output="one.mpf", settings={**settings, "title": "AGAIN"})
     Path("BLADE_FINISH.spf").write_bytes(before["BLADE_FINISH.spf"] + b"; mended by hand\n")
@@ -295,3 +295,17 @@ def test_a_pipe_takes_the_program_and_is_no_file_of_the_result(folder: Path) -> 
     kept = trunnion.post("part.cls", machine="yl569").text
     assert (result.output, result.text, [data.decode() for data in taken]) == (None, None, [kept])
     assert Path("pipe.mpf").is_fifo()
+
+
+def test_a_cl_file_that_is_named_twice_is_warned_of(tmp_path: Path) -> None:
+    """By whatever name; two parts of one file, and a copy of it, are two."""
+    part, link, copy = tmp_path / "part.cls", tmp_path / "link.cls", tmp_path / "copy.cls"
+    part.write_bytes((YL569 / "2_hub_rough.cls").read_bytes())
+    copy.write_bytes(part.read_bytes())
+    link.symlink_to(part)
+    given: list[list[Any]] = [[part, part], [part, link], [trunnion.read_cl(part), part]]
+    for twice in given:
+        found = trunnion.post(twice, machine="yl569")
+        assert [problem.code for problem in found.problems if "named twice" in problem.what] == ["CL190"]
+        assert found.passed
+    assert not [each for each in trunnion.post([part, copy], machine="yl569").problems if each.code == "CL190"]

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from tests.support.locations import YL569
 from tests.support.projects import OUT_OF_REACH, PROJECT, SETUPS, TWO, contents, operation, project
 from trunnion.cli import main
 
@@ -235,7 +236,8 @@ def test_a_project_replaces_only_what_posts_have_written(tmp_path: Path) -> None
         before = file.read_bytes()
         file.write_text("MINE")
         (found,) = problems(path)
-        assert found.startswith(f"{file}: error: would be replaced, although no post has written it as it is")
+        assert found.startswith(f"{path}:")
+        assert f": {file} would be replaced, although no post has written it as it is" in found
         assert file.read_text() == "MINE"
         file.write_bytes(before)
     written[0].write_text("EDITED")
@@ -249,7 +251,7 @@ def test_a_project_replaces_only_what_posts_have_written(tmp_path: Path) -> None
     assert "EDITED" not in trunnion.post_project(clone / path.name).files[0].read_text()
     path.write_text((PROJECT + papers).replace("top.mpf", "notes.txt"))
     (tmp_path / "notes.txt").write_text("MINE")
-    assert "notes.txt: error: would be replaced" in problems(path)[0]
+    assert "notes.txt would be replaced" in problems(path)[0]
 
 
 def test_links_in_a_project_lead_nowhere_else(tmp_path: Path) -> None:
@@ -370,3 +372,28 @@ def test_a_set_up_may_have_programs_that_exist(tmp_path: Path) -> None:
     )
     found = trunnion.post_project(project(tmp_path, 'checks = { simulate = "refuse" }\n' + by_hand, top=operation("A")))
     assert [file.name for file in found.files] == ["top.mpf"]
+
+
+def test_files_that_cannot_be_written_are_reported_where_the_project_names_them(tmp_path: Path) -> None:
+    """``FILE.toml:LINE``, the key and the file, and a cure that destroys nothing."""
+    (tmp_path / "top.cls").write_bytes((YL569 / "2_hub_rough.cls").read_bytes())
+    path = tmp_path / "part.toml"
+
+    def found(*lines: str) -> str:
+        path.write_text("\n".join(['machine = "yl569"', 'cl = ["top.cls"]', *lines, ""]), encoding="utf-8")
+        said = "\n".join(problems(path))
+        assert "remove" not in said
+        return said
+
+    path.write_text('machine = "yl569"\ncl = ["top.cls"]\noutput = "top.mpf"\n', encoding="utf-8")
+    trunnion.post_project(path)
+    program = tmp_path / "top.mpf"
+    program.write_bytes(program.read_bytes() + b"; mine\n")
+    (tmp_path / "other.json").write_text("{}", encoding="utf-8")
+    assert f"{path}:3: error: output: {program} was edited since" in found('output = "top.mpf"')
+    said = found('output = "top.mpf"', 'manifest = "other.json"')
+    assert f"{path}:4: error: manifest: {tmp_path / 'other.json'} would be replaced" in said
+    said = found('output = "top.cls"')
+    assert f"{path}:3: error: output: {tmp_path / 'top.cls'} would be written over" in said
+    twice = [line for name in "ab" for line in ("[[setup]]", f'name = "{name}"', 'output = "one.mpf"')]
+    assert f"{path}:8: error: setup[1].output: {tmp_path / 'one.mpf'} would be written twice" in found(*twice)

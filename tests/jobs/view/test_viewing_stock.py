@@ -32,7 +32,8 @@ def test_the_findings_are_those_of_the_simulation(tmp_path: Path) -> None:
     marks = [mark for mark in content.scene["findings"] if mark.get("place")]
     assert "collision" in {mark["kind"] for mark in marks}
     assert "near" in {mark["kind"] for mark in marks}
-    wanted = sorted([(one.line, one.place) for one in found.findings] + [(one.line, one.place) for one in found.near])
+    wanted = [(one.line, list(one.place)) for one in found.findings]
+    wanted = sorted(wanted + [(one.line, list(one.place)) for one in found.near])
     assert sorted((mark["line"], mark["place"]) for mark in marks) == wanted
     lines = content.columns["line"]
     assert all(lines[mark["row"]] == mark["line"] for mark in marks)

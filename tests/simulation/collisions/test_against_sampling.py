@@ -92,9 +92,9 @@ def test_what_dense_sampling_finds_is_found(machine: Machine, path: list[list[fl
     deep = [(query.touches(pose) and query.depth(pose)[0]) or 0.0 for pose in poses]
     for k in np.flatnonzero(np.array(deep) > 1.0).tolist():
         at = k / count
-        assert any(each.row + each.fraction <= at + 0.05 and at - 0.05 <= each.last_row + 1 for each in found), at
+        assert any(each.rows[0] + each.begin <= at + 0.05 and at - 0.05 <= each.rows[1] + 1 for each in found), at
     for each in found:
-        place = each.row + each.fraction
+        place = each.rows[0] + each.begin
         pose = np.eye(4)
         row = min(int(place), len(joints) - 2)
         axes = joints[row] + (place - row) * (joints[row + 1] - joints[row])

@@ -65,16 +65,16 @@ def test_boxes_on_crossing_slides_meet_where_they_must(machine: Machine, tmp_pat
         iron("Z", block("head", (100.0, -10.0, -10.0), (130.0, 10.0, 10.0))),
     ]
     (found,) = check_collisions(run, bodies, {})
-    assert (found.between, found.row, found.last_row) == (("vise", "head"), 1, 1)
-    assert found.fraction == pytest.approx(0.45, abs=0.5 / 200.0)
-    assert found.depth_mm == pytest.approx(15.0, abs=0.01)
+    assert (found.between, found.rows) == (("vise", "head"), (1, 1))
+    assert found.begin == pytest.approx(0.45, abs=0.5 / 200.0)
+    assert found.depth == pytest.approx(15.0, abs=0.01)
     assert not found.is_near
     # 10 mm further along Y they pass 5 mm beside each other.
     run = run_text(f"{HEAD}G0 SUPA X0 Y20 Z0\nG1 SUPA X-200 F1000\nM30\n", machine, tmp_path)
     assert check_collisions(run, bodies, {}) == []
     (found,) = check_collisions(run, bodies, {}, near=6.0)
-    assert (found.is_near, found.depth_mm) == (True, 0.0)
-    assert found.distance_mm == pytest.approx(5.0, abs=1e-3)
+    assert found.is_near
+    assert found.depth == pytest.approx(5.0, abs=1e-3)
 
 
 def test_a_table_that_tilts_meets_the_head_at_the_angle_of_its_edge(machine: Machine, tmp_path: Path) -> None:
@@ -84,8 +84,8 @@ def test_a_table_that_tilts_meets_the_head_at_the_angle_of_its_edge(machine: Mac
     (found,) = check_collisions(run, [plate, head], {})
     # The upper edge is 100 mm out and 10 mm below the line of B: it rises to 50 where 100 sin b - 10 cos b = 50.
     angle = math.degrees(math.asin(50.0 / math.hypot(100.0, 10.0)) + math.atan2(10.0, 100.0))
-    assert found.row == 1
-    assert 90.0 * found.fraction == pytest.approx(angle, abs=0.3)
+    assert found.rows[0] == 1
+    assert 90.0 * found.begin == pytest.approx(angle, abs=0.3)
     # At the worst pose what is told lies in both of them, seen from the workpiece.
     assert -100.0 <= found.place[0] <= 100.0
     assert -40.0 <= found.place[1] <= 40.0
@@ -102,7 +102,7 @@ def test_a_holder_meets_what_its_cutter_may_cut(machine: Machine, tmp_path: Path
         names.append([c.between for c in check_collisions(run, [part_body(part, machine)], tools)])
         fixed = check_collisions(run, [fixture_body(part.named("clamp"), machine)], tools)
         assert ("clamp", "cutter of MILL") in {c.between for c in fixed}
-        assert min(c.fraction for c in fixed if c.between[1].startswith("cutter")) < 1.0
+        assert min(c.begin for c in fixed if c.between[1].startswith("cutter")) < 1.0
     assert [{pair[1].split()[0] for pair in pairs} for pairs in names] == [{"shank"}, {"shank", "holder"}]
 
 
@@ -112,8 +112,8 @@ def test_a_body_that_begins_inside_of_another_is_found(machine: Machine, tmp_pat
     outer = iron("Z", block("outer", (-50.0, -50.0, -50.0), (50.0, 50.0, 50.0)))
     (found,) = check_collisions(run, [inner, outer], {})
     # 51 mm bring it out again: 50 of the larger one, and 1 of its own.
-    assert (found.row, found.last_row) == (0, 1)
-    assert found.depth_mm == pytest.approx(51.0)
+    assert found.rows == (0, 1)
+    assert found.depth == pytest.approx(51.0)
 
 
 def test_what_overlaps_at_home_on_one_side_is_no_pair_and_is_said(machine: Machine) -> None:
@@ -244,9 +244,9 @@ def test_the_block_that_goes_too_far_is_told_with_its_depth(
     plate = iron("workpiece", block("plate", (-100.0, -100.0, -100.0), high))
     ram = iron("spindle", block("ram", (0.0, -5.0, 0.0), (60.0, 5.0, 60.0)))
     (found,) = check_collisions(run, [plate, ram], {})
-    assert (found.row, found.worst_row, found.last_row) == (1, 1, 2)
-    assert found.depth_mm == pytest.approx(depth, abs=1e-6)
-    assert found.worst_fraction == pytest.approx(1.0)
+    assert (found.rows, found.worst) == ((1, 2), 1)
+    assert found.depth == pytest.approx(depth, abs=1e-6)
+    assert found.fraction == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(("apart", "near"), [(0.1, 0.15), (0.3, 0.5), (0.9, 1.0), (0.02, 0.5), (0.3, 0.35)])
@@ -257,6 +257,6 @@ def test_the_nearest_pose_is_told_where_the_motion_turns(
     plate = iron("workpiece", block("plate", (-100.0, -100.0, -100.0), (100.0, 100.0, -40.0)))
     ram = iron("spindle", block("ram", (0.0, -5.0, 0.0), (60.0, 5.0, 60.0)))
     (found,) = check_collisions(run, [plate, ram], {}, near=near)
-    assert (found.is_near, found.worst_row) == (True, 1)
-    assert found.worst_fraction == pytest.approx(1.0)
-    assert found.distance_mm == pytest.approx(apart, abs=1e-6)
+    assert (found.is_near, found.worst) == (True, 1)
+    assert found.fraction == pytest.approx(1.0)
+    assert found.depth == pytest.approx(apart, abs=1e-6)

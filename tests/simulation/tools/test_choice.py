@@ -7,6 +7,7 @@ import pytest
 
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Problem
+from trunnion.messages import foreign
 from trunnion.model.toolpath import Tool
 from trunnion.simulation.tools.choice import ClTool, choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.library import LibraryTool, ToolLibrary, UnusableTool
@@ -32,7 +33,7 @@ def test_tools_are_called_by_number_with_zeros_or_by_name() -> None:
 
 def test_all_that_nothing_describes_is_told_at_once() -> None:
     table = ToolLibrary("tool.tbl", diameters={5: 12.0})
-    broken = UnusableTool(6, "", (Problem("shop.tools", 0, "tool 6: odd", "state it"),))
+    broken = UnusableTool(6, "", (Problem("shop.tools", 0, foreign("tool 6: odd", "state it")),))
     with pytest.raises(InputError) as raised:
         choose_tools(["4", "5", "6", "7"], [], [table, ToolLibrary("shop.tools", (), (broken,))], [])
     assert [str(problem) for problem in raised.value.problems] == [

@@ -10,13 +10,14 @@ from typing import Final
 import numpy as np
 
 from tests.support.fuzz.seeds import SUBPROGRAMS
-from trunnion.cl import read_cl
+from trunnion.cl import ClReading, read_cl
 from trunnion.errors import InputError, RefusedError, TrunnionError
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.readers import run_program
 from trunnion.readers.program.limits import MAX_DIAGNOSTICS, MOTIONS_PER_LINE
+from trunnion.readers.program.options import RunOptions
 
 #: Blocks that loops and calls may execute.
 LIMIT: Final = 1500
@@ -66,7 +67,7 @@ def judge_program(
     try:
         with no_warnings():
             on = machine(key) if isinstance(key, str) else key
-            run = run_program(path, on, subprograms=beside(path, family), family=family, step_limit=limit)
+            run = run_program(path, on, RunOptions(subprograms=beside(path, family), step_limit=limit), family=family)
     except InputError as error:
         _check_error(error, folder)
         return None
@@ -80,7 +81,7 @@ def judge_cl(data: bytes, folder: Path, *, strict: bool = False) -> Toolpath | N
     path.write_bytes(data)
     try:
         with no_warnings():
-            toolpath = read_cl(path, strict=strict)
+            toolpath = read_cl(path, ClReading(strict=strict))
     except (InputError, RefusedError) as error:
         _check_error(error, folder)
         return None

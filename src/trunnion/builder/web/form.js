@@ -6,7 +6,7 @@ import { fieldTexts, say } from "./texts.js";
  * @typedef {(string | string[])[]} Path
  * @typedef {{path: Path, key: string, kind: string, unit: string, choices: string[], size: number, optional: boolean, note: string,
  *   allowed: string, value: any, inherited: any, own: boolean, from: string}} FieldData
- * @typedef {{line: number, place: string, path: Path, what: string, cure: string, code: string}} ProblemData
+ * @typedef {{line: number, place: string, path: Path, text: string, cure: string, code: string}} ProblemData
  */
 
 /** @param {Path} path */
@@ -70,7 +70,7 @@ export class Form {
    * Show fields; those that are there already keep their place and the focus, and what is entered in them.
    * @param {FieldData[]} fields
    * @param {ProblemData[]} problems
-   * @param {{path: Path, what: string}[]} marks values that are still to be entered
+   * @param {{path: Path, text: string}[]} marks values that are still to be entered
    * @param {HTMLElement | null} before
    */
   show(fields, problems, marks, before) {
@@ -198,7 +198,7 @@ export class Form {
   /**
    * @param {FieldData} field
    * @param {ProblemData[]} problems
-   * @param {{what: string}[]} marks
+   * @param {{text: string}[]} marks
    */
   #fill(field, problems, marks) {
     const row = /** @type {HTMLElement} */ (this.rows.get(idOf(field.path)));
@@ -211,8 +211,8 @@ export class Form {
     reset.title = say("reset", String(field.inherited));
     reset.setAttribute("aria-label", reset.title);
     /** @type {HTMLElement} */ (row.querySelector(".from")).textContent = field.from ? (field.own ? say("own") : field.from) : say("notStated");
-    /** @type {HTMLElement} */ (row.querySelector(".mark")).textContent = marks.map((each) => each.what).join("\n");
-    /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.what}; ${each.cure} [${each.code}]`).join("\n");
+    /** @type {HTMLElement} */ (row.querySelector(".mark")).textContent = marks.map((each) => each.text).join("\n");
+    /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.text}; ${each.cure} [${each.code}]`).join("\n");
   }
 
   /**

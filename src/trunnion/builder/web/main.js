@@ -177,7 +177,7 @@ class Builder {
     refill(element("problems"), [...problems, ...marks].map((/** @type {any} */ each) => {
       const item = Object.assign(document.createElement("li"), { className: each.cure === undefined ? "warn" : "" });
       const where = each.line ? `${each.line}: ` : each.place ? `${each.place}: ` : "";
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.what}${each.cure ? `; ${each.cure}` : ""}${each.code ? ` [${each.code}]` : ""}` });
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.text}${each.cure ? `; ${each.cure}` : ""}${each.code ? ` [${each.code}]` : ""}` });
       button.dataset.key = button.textContent ?? "";
       button.addEventListener("click", () => this.#goToProblem(each));
       item.append(button);

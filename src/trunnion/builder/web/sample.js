@@ -17,7 +17,7 @@ export class Sample {
   }
 
   /** @param {{lines: string[], all: number, changed: number[], removed: number, checks: {key: string, state: string, summary: string}[],
-   *   problems: {what: string, cure: string, line: number, error: boolean, code: string}[], passed: boolean,
+   *   problems: {severity: string, text: string, cure: string | null, code: string | null, subject: {kind: string, name: string} | null}[], passed: boolean,
    *   standing: {checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[]} | null}} found
    * @param {number} marks values that are still to be entered */
   show(found, marks) {
@@ -31,7 +31,7 @@ export class Sample {
     this.list.replaceChildren(...rows);
     this.list.querySelector(".new")?.scrollIntoView({ block: "center" });
     const lines = (/** @type {string[]} */ texts, /** @type {string} */ kind) => texts.filter(Boolean).map((text) => Object.assign(document.createElement("div"), { textContent: text, className: kind }));
-    const told = (/** @type {boolean} */ isError) => found.problems.filter((each) => each.error === isError).map((each) => `${each.what}${each.cure ? "; " + each.cure : ""} [${each.code}]`);
+    const told = (/** @type {boolean} */ isError) => found.problems.filter((each) => (each.severity === "error") === isError).map((each) => `${each.subject?.kind === "argument" ? `${each.subject.name} ` : ""}${each.text}${each.cure ? "; " + each.cure : ""} [${each.code}]`);
     const checked = (/** @type {string} */ state) => found.checks.filter((each) => each.state === state).map((each) => `${each.key}: ${each.summary}`);
     const unchecked = checked("not checked").map((each) => `${say("notChecked")}: ${each}`);
     const open = [...unchecked, ...told(false), marks ? say("toEnter", marks) : ""];

@@ -43,9 +43,7 @@ def retrct(state: ReaderState, statement: Statement) -> None:
     start = motion.current_tip(state)
     if state.clearance is None or start is None:
         raise StatementError(
-            Wording("CL590", "retrct_without_clearance")
-            if state.clearance is None
-            else Wording("CL590", "retrct_before_any")
+            Wording("CL590", "retrct_without_clearance" if state.clearance is None else "retrct_before_any")
         )
     motion.refuse_in_circle(state, "RETRCT")
     state.builder.rapids.append(state.operation_row)

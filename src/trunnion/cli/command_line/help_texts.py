@@ -9,7 +9,7 @@ from typing import Final
 
 from trunnion.cli.terminal_text import painted
 from trunnion.jobs.job import Job
-from trunnion.jobs.registry import GROUPS
+from trunnion.jobs.registry import GROUPS, JOBS
 from trunnion.options.kinds import Choice
 from trunnion.options.option import Many, Option
 
@@ -22,11 +22,11 @@ _MOST: Final = 120
 
 def overview() -> str:
     """All commands, by what they are for."""
-    lines = ["usage: trunnion COMMAND …", "", _ABOUT]
+    lines, longest = ["usage: trunnion COMMAND …", "", _ABOUT], max(map(len, JOBS))
     for title, jobs in GROUPS.items():
         lines += ["", _title(title)]
         for job in jobs:
-            lines += _entry(job.name, job.title, 14)
+            lines += _entry(job.name, job.title, longest + 4)
     lines += [
         "",
         "trunnion COMMAND --help explains a command with examples, trunnion explain CODE a message;",
@@ -37,8 +37,7 @@ def overview() -> str:
 
 def command_help(job: Job) -> str:
     """How a command is called, what it takes, and two examples."""
-    needed = [each for each in job.flags if each.required]
-    words = [*(_usage(each) for each in job.arguments), *(f"{each.flag} {each.value_name}" for each in needed)]
+    words = [*map(_usage, job.arguments), *_needed(job)]
     lines = [
         f"usage: trunnion {job.name} {' '.join([*words, '[OPTIONS]'] if job.flags else words)}",
         "",
@@ -50,7 +49,7 @@ def command_help(job: Job) -> str:
     for heading, options in groupby(sorted(job.flags, key=lambda each: each.heading != ""), lambda each: each.heading):
         lines += ["", _title(_sentence(f"options {heading}" if heading else "options").rstrip("."))]
         for each in options:
-            lines += _entry(_signature(each), _explained(each))
+            lines += _entry(signature(each), _explained(each, job))
     lines += ["", _title("Examples")]
     for command, what in job.examples:
         lines += [f"  {command}", f"      {what}"]
@@ -64,7 +63,15 @@ def _usage(option: Option) -> str:
     }.get(option.many, name)  # fmt: skip
 
 
-def _signature(option: Option) -> str:
+def _needed(job: Job) -> Iterator[str]:
+    """Yield the options that must be given, and those of which one must be."""
+    yield from (signature(each) for each in job.flags if each.required)
+    for group in dict.fromkeys(each.either for each in job.flags if each.either.endswith("!")):
+        yield f"({' | '.join(signature(each) for each in job.flags if each.either == group)})"
+
+
+def signature(option: Option) -> str:
+    """Return how an option is written, with what stands for its value."""
     return " ".join(filter(None, (option.flag, _value(option))))
 
 
@@ -72,19 +79,24 @@ def _value(option: Option) -> str:
     name = option.value_name or ("|".join(option.kind.words) if isinstance(option.kind, Choice) else "")
     if option.many is Many.LIST:
         return f"{name} …"
-    return f"[{name}]" if option.many in (Many.MAYBE, Many.BARE) and not name.startswith("[") else name
+    return f"[{name}]" if option.many is Many.MAYBE and not name.startswith("[") else name
 
 
-def _explained(option: Option) -> str:
-    required = " (required)" if option.required or option.either.endswith("!") else ""
-    return f"{option.help}{required}"
+def _explained(option: Option, job: Job) -> str:
+    """Return what an option is, what it is where it is not given, and whether it must be."""
+    others = [each.flag for each in job.flags if each.either == option.either and each is not option]
+    if option.required:
+        return f"{option.help} (required)"
+    if option.either.endswith("!"):
+        return f"{option.help} (this or {' or '.join(others)} is required)"
+    return option.explained
 
 
 def _entry(name: str, text: str, width: int = _WIDTH) -> Iterator[str]:
     """Yield a name, and what it is, in two columns."""
     wide = min(shutil.get_terminal_size().columns, _MOST)
     lines = textwrap.wrap(text, max(wide - width, 30), break_on_hyphens=False)
-    if len(name) + 3 > width:
+    if len(name) + 4 > width:
         yield f"  {name}"
     else:
         first, *lines = lines or [""]

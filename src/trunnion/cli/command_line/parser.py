@@ -3,103 +3,158 @@
 import argparse
 import re
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final, NoReturn
 
-from trunnion.cli.command_line.help_texts import command_help, overview
+from trunnion.cli.command_line.help_texts import command_help, overview, signature
 from trunnion.cli.command_line.post_mistakes import post_mistake
-from trunnion.cli.terminal_text import error_line, warning_line
+from trunnion.cli.printing import print_result
+from trunnion.errors import Problem, Severity
 from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS
+from trunnion.messages import Wording
 from trunnion.options.kinds import Setting, Switch, WrongValueError
 from trunnion.options.option import Many, Option
-from trunnion.version import __version__
 from trunnion.wording import nearest_word
-
-#: The code of a command line that cannot be understood, and that of an option with an earlier name.
-_USAGE: Final = "ARG120"
-_EARLIER: Final = "ARG190"
 
 #: An option in a line, and a list of numbers that begins like one.
 _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 _NEGATIVE_LIST: Final = re.compile(r"-[0-9.]+(?:,[-+0-9.eE]+)+")
 
 #: How argparse names numbers of words.
-_NARGS: Final = {Many.MAYBE: "?", Many.BARE: "?", Many.ANY: "*", Many.SOME: "+", Many.TWO: 2, Many.LIST: "+"}
-
-_LINE_OF_ALL: Final = "trunnion --help lists them"
-
-
-def parse(words: Sequence[str]) -> Given:
-    """Return the command and what it was given.
-
-    Ends the process after ``--help`` and ``--version``, and with exit code 2 where it cannot be understood.
-    """
-    if not words:
-        _fail("trunnion", f"name a command; {_LINE_OF_ALL}")
-    if words[0] in ("-h", "--help"):
-        _print(overview())
-    if words[0] == "--version":
-        _print(f"trunnion {__version__}\n")
-    if words[0] not in JOBS:
-        near = nearest_word(words[0], JOBS)
-        _fail("trunnion", f"{words[0]!r} is no command; {f'did you mean {near}? ' if near else ''}{_LINE_OF_ALL}")
-    job = JOBS[words[0]]
-    rest = _with_values(_with_present_names(words[1:], job), job)
-    if any(word in ("-h", "--help") for word in rest):
-        _print(command_help(job))
-    if wrong := _unknown_option(rest, job):
-        _fail_command(job, _no_option(wrong, job))
-    found, unknown = _parser(job).parse_known_args(rest)
-    if unknown:
-        _fail_command(job, f"{unknown[0]!r} is one argument too many; {_one_too_many(rest, unknown[0], job)}")
-    values = vars(found)
-    values.pop(_GIVEN, None)
-    for option in job.options:
-        if option.setting and values[option.name]:
-            _add_setting(job, option, values)
-    given = Given(job, values)
-    if job.name == "post" and (wrong := post_mistake(given)):
-        _fail_command(job, wrong)
-    return given
-
-
-def _one_too_many(words: list[str], word: str, job: Job) -> str:
-    """Return the cure for an argument that nothing takes."""
-    before = words[words.index(word) - 1] if word in words else ""
-    bare = next((each.flag for each in job.flags if each.many is Many.BARE and before == f"{each.flag}=-"), "")
-    if bare:
-        return f"the file of {bare} has a name in .json, or write {bare}={word}"
-    return "repeat an option before each of its values, and put a value with blanks in quotes"
-
-
-def _add_setting(job: Job, option: Option, values: dict[str, Any]) -> None:
-    """Put an option that stands for a setting among the settings."""
-    if option.setting in dict(values["settings"]):
-        _fail_command(job, f"{option.flag} and --set {option.setting}=… are the same: give one of them")
-    values["settings"] = [*values["settings"], (option.setting, values[option.name])]
-
+_NARGS: Final = {Many.MAYBE: "?", Many.ANY: "*", Many.SOME: "+", Many.TWO: 2, Many.LIST: "+"}
 
 #: Values of options that have one, by their names, while a command line is parsed.
 _GIVEN: Final = "given once"
 
 
+def parse(words: Sequence[str]) -> Given:
+    """Return the command and what it was given.
+
+    Ends the process after ``--help``, and with exit code 2 where it cannot be understood.
+    """
+    if not words:
+        _fail("trunnion", Wording("ARG120", "no_command"))
+    if words[0] in ("-h", "--help"):
+        _print(overview())
+    if words[0] not in JOBS:
+        _fail("trunnion", _no_command(words[0]))
+    job = JOBS[words[0]]
+    rest = _with_values(_with_present_names(words[1:], job), job)
+    if any(word in ("-h", "--help") for word in rest):
+        _print(command_help(job))
+    if wrong := _unclear_option(rest, job):
+        _fail_command(job, wrong)
+    values = _values(rest, job)
+    typed = {each.setting: each for each in job.options if each.setting and values[each.name]}
+    for option in typed.values():
+        _add_setting(job, option, values)
+    given = Given(job, values, typed)
+    if job.name == "post" and (mistake := post_mistake(given)):
+        _fail_command(job, mistake)
+    return given
+
+
+def _values(words: list[str], job: Job) -> dict[str, Any]:
+    """Return the value of each option by its name; all that must be there is there."""
+    found, parser = argparse.Namespace(), _parser(job)
+    try:
+        unknown = parser.parse_known_args(words, found)[1]
+    except argparse.ArgumentError as error:
+        if error.argument_name is not None:
+            _fail_command(job, _of_argument(error, job))
+        unknown = []  # something is missing
+    values = vars(found)
+    values.pop(_GIVEN, None)
+    if unknown:
+        _fail_command(job, Wording("ARG120", "one_too_many", word=repr(unknown[0])))
+    if missing := [*_missing(values, job)]:
+        _fail_command(job, _are_missing(missing, values, job))
+    for option in job.options:
+        others = [each for each in job.options if each.either and each.either == option.either]
+        stated = [each for each in others if values[each.name] not in (None, False, [])]
+        if len(stated) > 1:
+            _fail_command(job, Wording("ARG120", "either", option=stated[1].flag, other=stated[0].flag))
+    return values
+
+
+def _missing(values: Mapping[str, Any], job: Job) -> Iterator[str]:
+    """Yield what must be given and is not, as it is written."""
+    for option in job.arguments:
+        if option.many not in (Many.MAYBE, Many.ANY) and values[option.name] in (None, []):
+            yield option.value_name
+    for option in job.flags:
+        if option.required and values[option.name] is None:
+            yield signature(option)
+    for group in dict.fromkeys(each.either for each in job.flags if each.either.endswith("!")):
+        choices = [each for each in job.flags if each.either == group]
+        if all(values[each.name] in (None, False) for each in choices):
+            yield " or ".join(map(signature, choices))
+
+
+def _are_missing(missing: Sequence[str], values: Mapping[str, Any], job: Job) -> Wording:
+    """Return what is said of what is missing: with an example, or with what took its place."""
+    file = values.get("json")
+    if file and not file.endswith((".json", "-")):
+        return Wording("ARG120", "missing_behind_data", names=tuple(missing), file=file)
+    return Wording("ARG120", "missing", names=tuple(missing), example=job.example)
+
+
+def _no_command(word: str) -> Wording:
+    """Return what is said of a command that does not exist."""
+    if near := nearest_word(word, JOBS):
+        return Wording("ARG120", "unknown_command_but_near", word=repr(word), near=near)
+    return Wording("ARG120", "unknown_command", word=repr(word))
+
+
+def _add_setting(job: Job, option: Option, values: dict[str, Any]) -> None:
+    """Put an option that stands for a setting among the settings."""
+    if option.setting in dict(values["settings"]):
+        _fail_command(job, Wording("ARG120", "option_and_setting", option=option.flag, name=option.setting))
+    values["settings"] = [*values["settings"], (option.setting, values[option.name])]
+
+
 class _Parser(argparse.ArgumentParser):
-    """Ends with one line."""
+    """Says nothing itself."""
 
     def error(self, message: str) -> NoReturn:
-        _fail(self.prog, message)
+        """Raise what concerns no single argument: some are missing, and ``_values`` finds out which."""
+        raise argparse.ArgumentError(None, message)
+
+
+class _WordedError(argparse.ArgumentError):
+    """An error with a wording of its own."""
+
+    def __init__(self, action: argparse.Action, wording: Wording) -> None:
+        super().__init__(action, str(wording))
+        self.wording = wording
+
+
+class _TypeError(argparse.ArgumentTypeError):
+    """A text that is no value of an option."""
+
+    def __init__(self, wording: Wording) -> None:
+        super().__init__(str(wording))
+        self.wording = wording
+
+
+def _of_argument(error: argparse.ArgumentError, job: Job) -> Wording:
+    """Return what is wrong with an argument."""
+    if isinstance(error, _WordedError):
+        return error.wording
+    name = error.argument_name or ""
+    if isinstance(cause := error.__context__, _TypeError):
+        return Wording("ARG120", "wrong_value", option=name, value=cause.wording)
+    option = next(each for each in job.options if name in (each.flag, each.value_name))
+    if isinstance(option.kind, Switch):
+        return Wording("ARG120", "value_of_switch", option=name)
+    return Wording("ARG120", "no_value", option=name, written=signature(option))
 
 
 def _parser(job: Job) -> _Parser:
-    parser = _Parser(prog=f"trunnion {job.name}", add_help=False)
-    groups: dict[str, Any] = {}
+    parser = _Parser(prog=f"trunnion {job.name}", add_help=False, exit_on_error=False)
     for option in job.options:
-        either = option.either
-        if either and either not in groups:
-            groups[either] = parser.add_mutually_exclusive_group(required=either.endswith("!"))
-        target = groups[either] if either else parser
-        target.add_argument(*_names(option), **_details(option))
+        parser.add_argument(*_names(option), **_details(option))
     return parser
 
 
@@ -111,7 +166,7 @@ def _details(option: Option) -> dict[str, Any]:
     """Return what argparse is told of an option."""
     found: dict[str, Any] = {"default": option.empty}
     if option.flag:
-        found |= {"dest": option.name, "required": option.required}
+        found["dest"] = option.name
     if isinstance(option.kind, Switch):
         return {**found, "action": "store_const", "const": option.kind.value}
     found |= {"type": _type(option), "metavar": option.value_name}
@@ -125,7 +180,7 @@ def _details(option: Option) -> dict[str, Any]:
         found["action"] = "extend"
     if option.many in _NARGS:
         found["nargs"] = _NARGS[option.many]
-    if option.many in (Many.MAYBE, Many.BARE) and option.flag:
+    if option.many is Many.MAYBE and option.flag:
         found["const"] = "-"
     return found
 
@@ -135,7 +190,7 @@ def _type(option: Option) -> Callable[[str], Any]:
         try:
             return option.kind.parse(text)
         except WrongValueError as error:
-            raise argparse.ArgumentTypeError(str(error)) from None
+            raise _TypeError(error.wording) from None
 
     return parsed
 
@@ -147,7 +202,10 @@ class _Once(argparse.Action):
         given: dict[str, Any] = vars(namespace).setdefault(_GIVEN, {})
         # Compared in lists, which take a value for equal to itself: one that is no number is not.
         if [given.setdefault(self.dest, values)] != [values]:
-            raise argparse.ArgumentError(self, f"has two values, {given[self.dest]} and {values}; write one")
+            first, second = str(given[self.dest]), str(values)
+            raise _WordedError(
+                self, Wording("ARG120", "two_values", option=self.option_strings[0], first=first, second=second)
+            )
         setattr(namespace, self.dest, values)
 
 
@@ -158,10 +216,8 @@ class _AddSetting(argparse.Action):
         settings: list[tuple[str, str]] = list(getattr(namespace, self.dest))
         (key, value), before = values, dict(settings)
         if before.get(key, value) != value:
-            once = f"{key}={before[key]},OPERATION:VALUE where a setting differs by operation"
-            raise argparse.ArgumentError(
-                self, f"{key} has two values, {before[key]!r} and {value!r}; write one, or {once}"
-            )
+            said = {"option": self.option_strings[0], "first": repr(before[key]), "second": repr(value)}
+            raise _WordedError(self, Wording("ARG120", "setting_twice", name=key, value=before[key], **said))
         setattr(namespace, self.dest, [*settings, (key, value)])
 
 
@@ -172,8 +228,8 @@ def _with_present_names(words: Iterable[str], job: Job) -> list[str]:
     for word in words:
         name, equals, value = word.partition("=")
         if name in earlier and "--" not in found:
-            what = f"{name} is now called {earlier[name]}; the next version no longer knows {name}"
-            print(warning_line(f"trunnion {job.name}", what, _EARLIER), file=sys.stderr)
+            wording = Wording("ARG190", "earlier_option", option=name, present=earlier[name])
+            _say(f"trunnion {job.name}", wording, Severity.WARNING)
             word = f"{earlier[name]}{equals}{value}"
         found.append(word)
     return found
@@ -182,58 +238,62 @@ def _with_present_names(words: Iterable[str], job: Job) -> list[str]:
 def _with_values(words: Iterable[str], job: Job) -> list[str]:
     """Words with values that argparse would take for something else joined to their options.
 
-    A list of numbers may begin with a minus: ``--zero -31,0,5``. An option that had no value in earlier versions takes
-    the name of a file of data only: in ``explain --json CL110`` the code is not its value.
+    A list of numbers may begin with a minus: ``--zero -31,0,5``.
     """
-    bare = {each.flag for each in job.flags if each.many is Many.BARE}
     streams = {each.flag for each in job.flags if each.many is Many.MAYBE}
     joined: list[str] = []
     for word in words:
         last = joined[-1] if joined else ""
-        is_value = (last in bare and word.lower().endswith(".json")) or (last in bare | streams and word == "-")
-        if is_value or (_OPTION.fullmatch(last) and _NEGATIVE_LIST.fullmatch(word)):
+        if (last in streams and word == "-") or (_OPTION.fullmatch(last) and _NEGATIVE_LIST.fullmatch(word)):
             joined[-1] += f"={word}"
-            continue
-        if last in bare:
-            joined[-1] += "=-"
-        joined.append(word)
+        else:
+            joined.append(word)
     return joined
 
 
-def _unknown_option(words: Iterable[str], job: Job) -> str:
-    """Return the first word that looks like an option but is not one, nor an abbreviation of one; empty if there is
-    none.
+def _unclear_option(words: Iterable[str], job: Job) -> Wording | None:
+    """Return what is wrong with the first word that looks like an option but is not one, or an abbreviation of several;
+    None if there is none.
     """
     known = ["--help", *(each.flag for each in job.flags)]
     for word in words:
         name = word.partition("=")[0]
         if name == "--":
             break
-        if name.startswith("--") and not any(flag.startswith(name) for flag in known):
-            return name
-    return ""
+        meant = [flag for flag in known if flag.startswith(name)]
+        if name.startswith("--") and not meant:
+            return _no_option(name, job)
+        if name.startswith("--") and len(meant) > 1 and name not in meant:
+            return Wording("ARG120", "several_options", option=name, flags=tuple(meant))
+    return None
 
 
-def _no_option(name: str, job: Job) -> str:
-    """Return what is wrong with an option that a command lacks, and the cure."""
-    near = nearest_word(name, [each.flag for each in job.flags])
-    asked = f"did you mean {near}? " if near else ""
+def _no_option(name: str, job: Job) -> Wording:
+    """Return what is said of an option that a command lacks."""
     others = [each.name for each in JOBS.values() if any(option.flag == name for option in each.flags)]
-    elsewhere = f"trunnion {' and '.join(others[:3])} {'has' if len(others) == 1 else 'have'} it; " if others else ""
-    return f"{name} is no option of this command; {elsewhere or asked}trunnion {job.name} --help lists its options"
+    if others:
+        variant = "option_of_other" if len(others) == 1 else "option_of_others"
+        return Wording("ARG120", variant, option=name, command=job.name, others=tuple(others[:3]))
+    if near := nearest_word(name, [each.flag for each in job.flags]):
+        return Wording("ARG120", "unknown_option_but_near", option=name, command=job.name, near=near)
+    return Wording("ARG120", "unknown_option", option=name, command=job.name)
 
 
-def _fail_command(job: Job, message: str) -> NoReturn:
-    _fail(f"trunnion {job.name}", message)
+def _fail_command(job: Job, wording: Wording) -> NoReturn:
+    _fail(f"trunnion {job.name}", wording)
 
 
-def _fail(where: str, message: str) -> NoReturn:
-    print(error_line(where, message, _USAGE), file=sys.stderr)
+def _fail(where: str, wording: Wording) -> NoReturn:
+    _say(where, wording, Severity.ERROR)
     raise SystemExit(2)
 
 
-def _print(text: str) -> NoReturn:
-    from trunnion.cli.results import print_result  # no command but help needs it here
+def _say(where: str, wording: Wording, severity: Severity) -> None:
+    from trunnion.cli.wording import painted_line  # a command line without mistakes does without it
 
+    print(painted_line(Problem(where, 0, wording, severity=severity)), file=sys.stderr)
+
+
+def _print(text: str) -> NoReturn:
     print_result(text, end="")
     raise SystemExit(0)

@@ -8,7 +8,7 @@ Units: mm.
 """
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -76,32 +76,41 @@ class Floor:
     places: int = 120
 
 
+class _Left(NamedTuple):
+    """What a path leaves at points (n, 3): what is made least, the deviations (n, minima), and where they are."""
+
+    merit: float
+    points: Floats
+    found: Floats
+    at: Floats
+
+
 def fit_path(
     path: FlankPath, points: Floats, limits: Limits, floor: Floor | None = None, advance: Advance = ignore
 ) -> Fit:
     """Return the path fitted to points (n, 3) of a flank, from one that is near."""
-    merit, found, at = _left(path, points, limits, floor)
-    history = [merit]
-    region = min(max(2.0 * merit, 1e-3), 0.25 * path.cutter.radius)
+    left = _left(path, points, limits, floor)
+    history = [left.merit]
+    region = min(max(2.0 * left.merit, 1e-3), 0.25 * path.cutter.radius)
     smallest = 1e-3 * limits.enough
     for _ in range(limits.rounds):
-        if merit <= limits.enough or region < smallest:
+        if left.merit <= limits.enough or region < smallest:
             break
         advance(1)
-        step, foreseen = _step(path, points, found, at, limits, region, floor)
+        step, foreseen = _step(path, left, limits, region, floor)
         tried = FlankPath(path.lower + step[0], path.upper + step[1], path.cutter)
-        new, new_found, new_at = _left(tried, points, limits, floor)
-        gain, hoped = merit - new, merit - foreseen
+        new = _left(tried, points, limits, floor)
+        gain, hoped = left.merit - new.merit, left.merit - foreseen
         if hoped < 1e-4 * limits.enough or _rests(history):
             break
         if gain > 0.0:
-            path, merit, found, at = tried, new, new_found, new_at
-            history.append(merit)
+            path, left = tried, new
+            history.append(left.merit)
         if gain > 0.7 * hoped:
             region *= 2.0
         elif gain < 0.25 * hoped:
             region *= 0.35
-    return Fit(path, Deviations.of(found[:, 0]), tuple(history))
+    return Fit(path, Deviations.of(left.found[:, 0]), tuple(history))
 
 
 def _rests(history: list[float]) -> bool:
@@ -109,30 +118,23 @@ def _rests(history: list[float]) -> bool:
     return len(history) > _RESTING and history[-1] > (1.0 - _NOTHING) * history[-1 - _RESTING]
 
 
-def _left(path: FlankPath, points: Floats, limits: Limits, floor: Floor | None) -> tuple[float, Floats, Floats]:
-    """Return what is made least, the deviations and where they are."""
+def _left(path: FlankPath, points: Floats, limits: Limits, floor: Floor | None) -> _Left:
+    """Return what a path leaves."""
     found, at = deviations_of(path, points, _MINIMA)
     merit = limits.merit(found[:, 0])
     if floor is not None:
         distance = floor.distances(path.poses(np.linspace(0.0, 1.0, floor.places))[0])[0]
         merit += _PENALTY * max(0.0, floor.least - float(distance.min()))
-    return merit, found, at
+    return _Left(merit, points, found, at)
 
 
-def _step(
-    path: FlankPath,
-    points: Floats,
-    found: Floats,
-    at: Floats,
-    limits: Limits,
-    region: float,
-    floor: Floor | None,
-) -> tuple[Floats, float]:
+def _step(path: FlankPath, now: _Left, limits: Limits, region: float, floor: Floor | None) -> tuple[Floats, float]:
     """Return the step of the lower and upper control points (2, k, 3), and what is left after it by the linear program.
 
     Unknowns: the control points' moves, what is made least, what is beyond a limit, roughness.
     """
     sparse = import_extra("scipy.sparse", "geometry")
+    _, points, found, at = now
     count = len(path.lower)
     moves = 6 * count
     rows, bounds = [], []

@@ -32,6 +32,10 @@ _ADDED: Final = 2
 _WORST: Final = 500
 _ROUNDS: Final = 12
 
+#: Control points of a path, and how far it goes on at either end, as a share of its length.
+_CONTROL_POINTS: Final = 14
+_LEAD: Final = 0.06
+
 #: A start that cuts so many times deeper than the limit of overcut is fitted without that limit first: kept to it from
 #: the beginning, the fit ends at paths that leave far more.
 _DEEPER: Final = 4.0
@@ -59,8 +63,6 @@ def mill_flank(
     limits: Limits,
     *,
     below: float,
-    lead: float = 0.06,
-    control_points: int = 14,
     floor: Floor | None = None,
     progress: Progress = silent,
 ) -> FlankCut:
@@ -68,12 +70,11 @@ def mill_flank(
 
     grid      gives the flank with so many points along and across
     below     how far the axis begins below the flank's lower end, mm; below 0: above it
-    lead      how far the path goes on at either end, as a share of its length
     progress  accompanies the work
     """
     flank, dense = grid(*_FITTED), grid(*_DENSE).flat()
     points = flank.flat()
-    start = start_path(flank, cutter, control_points, below, lead)
+    start = start_path(flank, cutter, _CONTROL_POINTS, below, _LEAD)
     with progress("fit of a flank", limits.rounds + _ADDED * _ROUNDS, "rounds") as advance:
         rounds, begun = 0, start
         if limits.overcut is not None and deviations_of(start, points)[0].min() < -_DEEPER * limits.overcut:

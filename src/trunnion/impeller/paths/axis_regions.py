@@ -10,7 +10,7 @@ from place to place, each from the middle of its neighbour's, so that all of the
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -22,14 +22,20 @@ from trunnion.impeller.progress import Advance, ignore
 #: it may be less than what is told.
 Margin: TypeAlias = Callable[[Ints, Floats, float], Floats]
 
-#: Rays from the middle of a region, and the angles in degrees at which they are tried.
-_RAYS: Final = 16
-_ANGLES: Final = (0.6, 2.0, 5.0, 9.0, 14.0, 20.0, 27.0, 35.0, 44.0, 54.0, 64.0)
-_HALVINGS: Final = 3
 
-#: The same for a first look, which finds the middle.
-_FIRST_RAYS: Final = 8
-_FIRST_ANGLES: Final = (0.5, 1.5, 4.0, 10.0, 18.0, 28.0, 40.0, 54.0)
+class _Rays(NamedTuple):
+    """Rays from the middle of a region: how many, the angles in degrees at which they are tried, and how often the
+    angle between the last allowed and the first forbidden one is halved.
+    """
+
+    number: int
+    angles: tuple[float, ...]
+    halvings: int
+
+
+#: Those that find a region, and those of a first look, which finds the middle.
+_RAYS: Final = _Rays(16, (0.6, 2.0, 5.0, 9.0, 14.0, 20.0, 27.0, 35.0, 44.0, 54.0, 64.0), 3)
+_FIRST_RAYS: Final = _Rays(8, (0.5, 1.5, 4.0, 10.0, 18.0, 28.0, 40.0, 54.0), 0)
 
 #: The middle is looked for so often, and once more, where margins are best, if the region is narrower than this sine.
 _CENTRED: Final = 2
@@ -107,7 +113,7 @@ def grow_regions(places: Floats, margin: Margin, advance: Advance = ignore) -> R
         pairs = pairs[~tried[pairs[:, 1]]]
         rows, index = np.unique(pairs[:, 1], return_index=True)
         if not len(rows):
-            rows, index, pairs = _nearest_left(tree, places, tried, np.isfinite(middle[:, 0]))
+            rows, index, pairs = _nearest_left(places, tried, np.isfinite(middle[:, 0]))
             if not len(rows):
                 break
         start = _nearest_allowed(rows, middle[pairs[index, 0]], margin)
@@ -124,7 +130,7 @@ def grow_regions(places: Floats, margin: Margin, advance: Advance = ignore) -> R
     return _in_order(order, parts, middle)
 
 
-def _nearest_left(tree: Any, places: Floats, tried: Flags, found: Flags) -> tuple[Ints, Ints, Ints]:
+def _nearest_left(places: Floats, tried: Flags, found: Flags) -> tuple[Ints, Ints, Ints]:
     """Return the place that has not been tried and is nearest to one with a region, as rows and pairs of the search."""
     left, known = np.flatnonzero(~tried), np.flatnonzero(found)
     if not len(left):
@@ -214,8 +220,10 @@ def _nearest_allowed(rows: Ints, start: Floats, margin: Margin) -> Floats:
     for angle in np.radians(_FAN):
         if not len(missing):
             break
-        fan = _circle(start[missing], angle, _RAYS)
-        answer = margin(np.repeat(rows[missing], _RAYS), fan.reshape(-1, 3), 0.0).reshape(-1, _RAYS) >= 0.0
+        fan = _circle(start[missing], angle, _RAYS.number)
+        answer = (
+            margin(np.repeat(rows[missing], _RAYS.number), fan.reshape(-1, 3), 0.0).reshape(-1, _RAYS.number) >= 0.0
+        )
         hit = answer.any(axis=1)
         # Between allowed ones, not at the edge of what is allowed.
         mean = np.where(answer[:, :, None], fan, 0.0).sum(axis=1)
@@ -233,7 +241,7 @@ def _regions(rows: Ints, start: Floats, margin: Margin, forbidden: Floats | None
     middle = start
     for _ in range(_CENTRED):
         one, other = frames_about(middle)
-        centre = _centroid(_reach(rows, middle, one, other, margin, _FIRST_RAYS, _FIRST_ANGLES, 0))
+        centre = _centroid(_reach(rows, middle, one, other, margin, _FIRST_RAYS))
         moved = middle + centre[:, :1] * one + centre[:, 1:] * other
         moved /= np.linalg.norm(moved, axis=1)[:, None]
         middle = np.where(margin(rows, moved, 0.0)[:, None] >= 0.0, moved, middle)
@@ -264,7 +272,7 @@ def _regions_about(rows: Ints, middle: Floats, margin: Margin, forbidden: Floats
     limit = np.full(len(rows), np.inf)
     if forbidden is not None:
         one, other, limit = _towards(middle, forbidden, one, other)
-    reach = _reach(rows, middle, one, other, margin, _RAYS, _ANGLES, _HALVINGS)
+    reach = _reach(rows, middle, one, other, margin, _RAYS)
     reach[:, 0] = np.minimum(reach[:, 0], 0.95 * limit)
     owner, normal, far = _convex(reach)
     walls = far[:, None] * middle[owner] - normal[:, :1] * one[owner] - normal[:, 1:] * other[owner]
@@ -285,35 +293,26 @@ def _towards(middle: Floats, forbidden: Floats, one: Floats, other: Floats) -> t
     return x[:, None] * one + y[:, None] * other, x[:, None] * other - y[:, None] * one, limit
 
 
-def _reach(
-    rows: Ints,
-    middle: Floats,
-    one: Floats,
-    other: Floats,
-    margin: Margin,
-    rays: int,
-    angles: tuple[float, ...],
-    halvings: int,
-) -> Floats:
+def _reach(rows: Ints, middle: Floats, one: Floats, other: Floats, margin: Margin, rays: _Rays) -> Floats:
     """How far rays in the plane about ``middle`` go before the first forbidden direction, (n, rays)."""
-    turn = 2.0 * np.pi * np.arange(rays) / rays
+    turn = 2.0 * np.pi * np.arange(rays.number) / rays.number
     side = np.cos(turn)[None, :, None] * one[:, None] + np.sin(turn)[None, :, None] * other[:, None]
-    low, high = np.zeros((len(rows), rays)), np.full((len(rows), rays), np.inf)
-    open_ = np.ones((len(rows), rays), np.bool_)
+    low, high = np.zeros((len(rows), rays.number)), np.full((len(rows), rays.number), np.inf)
+    open_ = np.ones((len(rows), rays.number), np.bool_)
 
     def ask(which: Flags, far: Floats) -> Flags:
         place, ray = np.nonzero(which)
         direction = middle[place] + far[which][:, None] * side[place, ray]
         return margin(rows[place], direction / np.linalg.norm(direction, axis=1)[:, None], 0.0) >= 0.0
 
-    for far in np.tan(np.radians(angles)).tolist():
+    for far in np.tan(np.radians(rays.angles)).tolist():
         answer = ask(open_, np.full(open_.shape, far))
         low[open_] = np.where(answer, far, low[open_])
         high[open_] = np.where(answer, np.inf, far)
         open_[open_] = answer
         if not open_.any():
             break
-    for _ in range(halvings):
+    for _ in range(rays.halvings):
         which = np.isfinite(high)
         between = np.where(which, (low + np.where(which, high, 0.0)) / 2.0, 0.0)
         answer = ask(which, between)

@@ -90,18 +90,7 @@ def prove_room(around: Surroundings, family: PassFamily, allowance: float, toler
             0,
             Wording(
                 "IMP320",
-                "ball_radius_mm_cuts",
-                wanted=wanted,
-                missing=missing[worst[0]],
-                x=x,
-                y=y,
-                z=z,
-                largest=largest,
-            )
-            if reach < wanted
-            else Wording(
-                "IMP320",
-                "ball_radius_mm_cuts_mm",
+                "ball_radius_mm_cuts" if reach < wanted else "ball_radius_mm_cuts_mm",
                 wanted=wanted,
                 missing=missing[worst[0]],
                 x=x,

@@ -38,12 +38,12 @@ _TOUCH: Final = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ball:
-    """The tool's ball in a channel: its radius, what it leaves on blades and hub, and the tolerance of its path, mm."""
+    """The tool's ball in a channel: its radius, the tolerance of its path, and what it leaves on blades and hub, mm."""
 
     radius: float
-    blade_allowance: float
-    hub_allowance: float
     tolerance: float
+    blade_allowance: float = 0.0
+    hub_allowance: float = 0.0
 
     @property
     def to_blade(self) -> float:

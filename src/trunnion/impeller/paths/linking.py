@@ -115,6 +115,20 @@ class FreeSpace:
         return min(up, (-b + math.sqrt(b * b - a * c)) / a)
 
 
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What a tool keeps to between passes.
+
+    space     where motion is rapid
+    is_clear  of the ball and the rest of the tool
+    step      name of the step, for messages
+    """
+
+    space: FreeSpace
+    is_clear: IsClear
+    step: str
+
+
 class _Path:
     """A path as it grows."""
 
@@ -142,16 +156,17 @@ class _Path:
 
 
 def link_passes(
-    passes: Sequence[Pass], axes: Sequence[Floats], space: FreeSpace, links: Links, radius: float, is_clear: IsClear,
-    name: str, progress: Progress = silent,
-) -> LinkedPath:  # fmt: skip
+    passes: Sequence[Pass],
+    axes: Sequence[Floats],
+    around: Surroundings,
+    links: Links,
+    radius: float,
+    progress: Progress = silent,
+) -> LinkedPath:
     """Link passes in their order to one path.
 
     passes, axes  of one step, in the order and direction of cutting
-    space         where motion is rapid
     radius        from the ball's centre to the tip, mm
-    is_clear      of the ball and the rest of the tool
-    name          of the step, for messages
     progress      accompanies the work
 
     Raises ``InputError`` if the tool cannot leave a pass or come to it without touching something; with the place.
@@ -162,19 +177,19 @@ def link_passes(
         for k, (one, axis) in enumerate(zip(passes, axes, strict=True)):
             keep = thinned(one.centre, axis, radius, links.tolerance, _AXIS_TOLERANCE)
             centre, directions = one.centre[keep], axis[keep]
-            start = _lead(one, axis, links.lead, is_clear, out=False)
-            if before is not None and _is_direct(before, (centre[0], directions[0]), links, is_clear):
+            start = _lead(one, axis, links.lead, around.is_clear, out=False)
+            if before is not None and _is_direct(before, (centre[0], directions[0]), links, around.is_clear):
                 path.add(centre[:1], directions[:1], Kind.LINEAR, Phase.STEPOVER)
             else:
                 if before is not None:
-                    _leave(path, passes[k - 1], axes[k - 1], space, links, is_clear, name)
-                _approach(path, start, directions[0], space, is_clear, name)
+                    _leave(path, passes[k - 1], axes[k - 1], around, links)
+                _approach(path, start, directions[0], around)
                 path.add(start, np.repeat(directions[:1], len(start), axis=0), Kind.LINEAR, Phase.ENGAGE)
             path.add(centre, directions, Kind.LINEAR, Phase.CUT)
             before = centre[-1], directions[-1]
             advance(1)
     if passes:
-        _leave(path, passes[-1], axes[-1], space, links, is_clear, name)
+        _leave(path, passes[-1], axes[-1], around, links)
     return path.done()
 
 
@@ -209,20 +224,20 @@ def _lead(one: Pass, axis: Floats, radius: float, is_clear: IsClear, *, out: boo
     return np.asarray(centre[None])
 
 
-def _leave(path: _Path, one: Pass, axis: Floats, space: FreeSpace, links: Links, is_clear: IsClear, name: str) -> None:
+def _leave(path: _Path, one: Pass, axis: Floats, around: Surroundings, links: Links) -> None:
     """Lead out of a pass, retract along the tool axis, and go up."""
-    lead, direction = _lead(one, axis, links.lead, is_clear, out=True), axis[-1]
+    lead, direction = _lead(one, axis, links.lead, around.is_clear, out=True), axis[-1]
     path.add(lead, np.repeat(direction[None], len(lead), axis=0), Kind.LINEAR, Phase.RETRACT)
-    way = _clear_way(lead[-1], direction, space, is_clear, name, "leave")
+    way = _clear_way(lead[-1], direction, around, "leave")
     outside = lead[-1] + way * direction
     path.add(outside[None], direction[None], Kind.LINEAR, Phase.RETRACT)
-    path.add(_raised(outside, space)[None], direction[None], Kind.RAPID, Phase.DEPARTURE)
+    path.add(_raised(outside, around.space)[None], direction[None], Kind.RAPID, Phase.DEPARTURE)
 
 
-def _approach(path: _Path, lead: Floats, direction: Floats, space: FreeSpace, is_clear: IsClear, name: str) -> None:
+def _approach(path: _Path, lead: Floats, direction: Floats, around: Surroundings) -> None:
     """Come down outside of the stock, and along the tool axis to a lead."""
-    outside = lead[0] + _clear_way(lead[0], direction, space, is_clear, name, "come to") * direction
-    path.add(_raised(outside, space)[None], direction[None], Kind.RAPID, Phase.TRAVERSE)
+    outside = lead[0] + _clear_way(lead[0], direction, around, "come to") * direction
+    path.add(_raised(outside, around.space)[None], direction[None], Kind.RAPID, Phase.TRAVERSE)
     path.add(outside[None], direction[None], Kind.RAPID, Phase.RAPID)
     path.add(lead[:1], direction[None], Kind.LINEAR, Phase.APPROACH)
 
@@ -232,20 +247,20 @@ def _raised(point: Floats, space: FreeSpace) -> Floats:
     return np.array([point[0], point[1], max(float(point[2]), space.height)])
 
 
-def _clear_way(centre: Floats, axis: Floats, space: FreeSpace, is_clear: IsClear, name: str, what: str) -> float:
+def _clear_way(centre: Floats, axis: Floats, around: Surroundings, what: str) -> float:
     """How far it is out of the stock along the tool axis, every pose on the way, and then straight up, being clear.
 
     Raises ``InputError`` if one is not, or there is no way out.
     """
-    way = space.way_out(centre, axis)
+    way = around.space.way_out(centre, axis)
     if math.isfinite(way):
         outside = centre + way * axis
-        up = _between(outside, axis, _raised(outside, space), axis)
+        up = _between(outside, axis, _raised(outside, around.space), axis)
         out = _between(centre, axis, outside, axis)
-        if all(is_clear(*poses).all() for poses in (out, up)):
+        if all(around.is_clear(*poses).all() for poses in (out, up)):
             return way
     x, y, z = centre
-    raise InputError(Problem(name, 0, Wording("IMP325", "tool_cannot_pass", subject=what, x=x, y=y, z=z)))
+    raise InputError(Problem(around.step, 0, Wording("IMP325", "tool_cannot_pass", subject=what, x=x, y=y, z=z)))
 
 
 def _between(first: Floats, first_axis: Floats, last: Floats, last_axis: Floats) -> tuple[Floats, Floats]:

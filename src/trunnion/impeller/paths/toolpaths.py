@@ -35,29 +35,28 @@ _CUTTING: Final = (Phase.CUT, Phase.STEPOVER)
 
 @dataclass(frozen=True, slots=True)
 class CuttingData:
-    """Speeds and feeds of a step.
+    """Speeds, feeds and the tolerance of a step.
 
     rpm        of the spindle, clockwise
     feed       mm/min
     lead_feed  on leads, approaches and retracts, mm/min
     coolant    a CL word, such as ON; empty: none
+    tolerance  that its path keeps, mm, for INTOL and OUTTOL
     """
 
     rpm: float
     feed: float
     lead_feed: float
-    coolant: str = ""
+    coolant: str
+    tolerance: float
 
 
-def operation_of(
-    name: str, path: LinkedPath, tool: Tool, number: int, radius: float, data: CuttingData, tolerance: float
-) -> Operation:
+def operation_of(name: str, path: LinkedPath, tool: Tool, number: int, radius: float, data: CuttingData) -> Operation:
     """Return the operation of a path.
 
     name          of the operation
     tool, number  as CL files describe it, and by which it is called
     radius        from the ball's centre to the tip; 0 where centres are tips
-    tolerance     that the path keeps, for INTOL and OUTTOL
     """
     n = len(path.kind)
     cutting = np.isin(path.phase, _CUTTING)
@@ -70,4 +69,4 @@ def operation_of(
         events.append(Coolant(0, 1, data.coolant))
         events.append(Coolant(n, 1, "OFF"))
     events.append(SpindleOff(n, 1))
-    return Operation(name, tool, Frame(), moves, Arcs.empty(), tuple(events), 1, tolerance, tolerance)
+    return Operation(name, tool, Frame(), moves, Arcs.empty(), tuple(events), 1, data.tolerance, data.tolerance)

@@ -12,6 +12,7 @@ from trunnion.capability.reach import (
     tilt_reach,
     tilts_between,
 )
+from trunnion.cl.read import ClReading
 from trunnion.jobs.arguments import ReachArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
@@ -19,10 +20,8 @@ from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
+from trunnion.messages import phrase
 from trunnion.simulation.meshes import load_mesh
-
-#: Degrees between tilts, and between azimuths, unless it is said.
-DEFAULT_STEP: Final = 5.0
 
 _STEPS: Final = (1.0, 45.0)
 
@@ -39,6 +38,8 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
         A name, a path or a ``Machine``.
     cl
         CL files whose points are judged, in one program's coordinates, those of the first operation.
+    units, dialect, strict
+        How the CL files are read, as ``trunnion.read_cl`` has it.
     hooks
         Python files that change the CL files, as for ``trunnion.post``. They are run.
     part
@@ -81,7 +82,11 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     degrees, part = _number("step", found["step"], *_STEPS), found["part"]
     leaning = _number("lean", found["lean"], 0.0, _MOST_LEAN)
     loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
-    toolpaths = hooked_toolpaths(as_toolpaths(found["cl"], None, False, observer), loaded, found["hooks"])
+    toolpaths = hooked_toolpaths(
+        as_toolpaths(found["cl"], observer, ClReading(found["units"], found["dialect"], found["strict"])),
+        loaded,
+        found["hooks"],
+    )
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     surface = None
@@ -102,7 +107,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
 def _number(name: str, value: object, least: float, most: float) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and least <= value <= most:
         return float(value)
-    raise wrong_argument(name, value, f"give a number of degrees from {least:g} to {most:g}")
+    raise wrong_argument(name, value, phrase("give_degrees_from_to", least=least, most=most))
 
 
 def _of_tilts(machine: Machine, step: float, observer: Observer) -> tuple[TiltReach, ...]:

@@ -3,10 +3,11 @@
 from typing import Final
 
 from trunnion.jobs.job import Job, job
-from trunnion.options.groups import BARE_JSON, JSON, MACHINE, OTHER_MACHINE, SETTINGS, STOCK, TOOLS
+from trunnion.messages import phrase
+from trunnion.options.groups import JSON, MACHINE, OTHER_MACHINE, SETTINGS, STOCK, TOOLS
 from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Switch, Text, seconds, whole
 from trunnion.options.option import Many, Option
-from trunnion.options.words import ACTIONS, MOST_TILES, SCHEMAS
+from trunnion.options.words import ACTIONS, MOST_TILES, SCHEMAS, SHELLS
 
 _FOLDER: Final = "for a folder"
 
@@ -22,11 +23,12 @@ _BATCH: Final = job(
     ),
     Option(
         "summary", "--summary",
-        FileOut("FILE", (".sqlite", ".parquet"), "a summary is a database or a table"),
+        FileOut("FILE", (".sqlite", ".parquet"), phrase("summary_is_table")),
         "a table of all files with their figures: .sqlite or .parquet",
     ),
     Option(
-        "workers", "--workers", whole("a number of workers", "one from 1 to 1024", "N", 1, 1024),
+        "workers", "--workers",
+        whole(phrase("kind_number_of_workers"), phrase("one_from_to", least=1, most=1024), "N", 1, 1024),
         "processes; by default as many as there are processors",
     ),
     Option("timeout", "--timeout", seconds(1e6), "how long a file may take; by default any time"),
@@ -88,7 +90,7 @@ _EXPLAIN: Final = job(
     Option(
         "codes", "", Text("CODE"), "as messages end with it, such as CL110, or a check", many=Many.ANY
     ),
-    BARE_JSON,
+    JSON,
     run="explain:explain",
     examples=[
         ("trunnion explain CL110", "what the code at the end of a message means"),
@@ -98,7 +100,7 @@ _EXPLAIN: Final = job(
 
 _SCHEMA: Final = job(
     "schema", "print the JSON Schema of definitions or projects, for editors",
-    Option("kind", "", Choice(SCHEMAS, "|".join(SCHEMAS)), "what the files are"),
+    Option("kind", "", Choice(SCHEMAS, "KIND"), f"what the files are: {', '.join(SCHEMAS)}"),
     run="new:schema",
     examples=[
         ("trunnion schema project", "keys of project files, as an editor takes them"),
@@ -108,7 +110,7 @@ _SCHEMA: Final = job(
 
 _COMPLETION: Final = job(
     "completion", "print what makes a shell complete commands and options",
-    Option("shell", "", Choice(("bash", "zsh", "fish", "powershell"), "bash|zsh|fish|powershell"), "the shell"),
+    Option("shell", "", Choice(SHELLS, "SHELL"), f"the shell: {', '.join(SHELLS)}"),
     run="completion:run",
     examples=[
         ('eval "$(trunnion completion bash)"', "in ~/.bashrc"),

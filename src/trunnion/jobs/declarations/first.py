@@ -3,7 +3,7 @@
 from typing import Final
 
 from trunnion.jobs.job import Job, job
-from trunnion.options.groups import BARE_JSON, JSON, SERVING
+from trunnion.options.groups import JSON, SERVING
 from trunnion.options.kinds import FileIn, Switch, Text
 from trunnion.options.option import Many, Option
 
@@ -20,16 +20,16 @@ _NEW: Final = job(
 )  # fmt: skip
 
 _CHECK: Final = job(
-    "check", "validate the definition of a machine or a control",
+    "check", "validate a definition, a project or another file",
     Option(
         "file", "", FileIn("NAME_OR_FILE", leads="definition"),
-        "definition to validate: a TOML file, or a shipped one",
+        "file to validate, or a shipped definition",
     ),
-    BARE_JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
+    JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
     run="definitions:check",
     examples=[
         ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
-        ("trunnion check dmu65", "a shipped one"),
+        ("trunnion check part.toml", "a project, a tool library, an impeller or a file of jobs"),
     ],
 )  # fmt: skip
 
@@ -55,7 +55,7 @@ _CONTROLS: Final = job(
         "name", "", FileIn("NAME_OR_FILE", leads="definition"), "control to explain, or a machine's",
         many=Many.MAYBE,
     ),
-    BARE_JSON,
+    JSON,
     run="controls:controls",
     examples=[
         ("trunnion controls", "a line each"),

@@ -3,14 +3,15 @@
 from typing import Final
 
 from trunnion.jobs.job import Job, job
-from trunnion.options.groups import BARE_JSON, CUTTING, MACHINE, SETTINGS
+from trunnion.messages import phrase
+from trunnion.options.groups import CUTTING, JSON, MACHINE, SETTINGS
 from trunnion.options.kinds import Choice, FileIn, FileOut, Text, length
 from trunnion.options.option import Many, Option
 
 _IMPELLER: Final = job(
     "impeller", "make an impeller from measured points",
     Option(
-        "step", "", Choice(("model", "cut"), "model|cut"),
+        "step", "", Choice(("model", "cut"), "TASK"),
         "model: a closed mesh or solid of it; cut: CL files and a proven program", own=True,
     ),
     Option("file", "", FileIn("IMPELLER", leads="impeller"), "definition of the impeller (.toml)"),
@@ -19,8 +20,8 @@ _IMPELLER: Final = job(
         "the mesh (.stl, .ply, .3mf or .glb), a picture of it (.png), or a STEP file (.stp); folder of a cut",
     ),
     Option(
-        "tolerance", "--tolerance", length("a tolerance", "0.001"),
-        "model: how far facets may be off, 0.01; of STEP: faces, 0.005",
+        "tolerance", "--tolerance", length(phrase("kind_tolerance"), "0.001"),
+        "model: how far facets may be off, by default 0.01; faces of STEP, by default 0.005",
     ),
     MACHINE.but(help="cut: machine that runs the program"),
     Option(
@@ -31,7 +32,7 @@ _IMPELLER: Final = job(
         cell={"help": "cut: simulate the program in cells of this width, and compare the part with the model"}
     ),
     SETTINGS.but(help="cut: settings as for post; may be repeated"),
-    BARE_JSON,
+    JSON,
     run="impeller:run",
     examples=[
         ("trunnion impeller model wheel.toml --output wheel.stl", "a closed mesh"),
@@ -48,22 +49,23 @@ _CURVE: Final = job(
     Option("end", "--end", Text("END"), "how they end", default="natural"),
     Option(
         "parameterization", "--parameterization", Choice(("chord-length", "centripetal"), "NAME"),
-        "how far apart the parameters of two points are: chord-length or centripetal; chord-length",
+        "how far apart the parameters of two points are: chord-length or centripetal",
         default="chord-length",
     ),
     Option(
-        "tolerance", "--tolerance", length("a tolerance", "0.001"),
+        "tolerance", "--tolerance", length(phrase("kind_tolerance"), "0.001"),
         "pass the points within it, with few control points",
     ),
     Option(
-        "fair", "--fair", length("a tolerance", "0.001"), "first move points by as much, for an even curve"
+        "fair", "--fair", length(phrase("kind_tolerance"), "0.001"), "first move points by as much, for an even curve"
     ),
     Option(
-        "scale", "--scale", length("a scale", "0.75", "FACTOR"), "multiply the points by it", default=1.0, own=True
+        "scale", "--scale", length(phrase("kind_scale"), "0.75", "FACTOR"), "multiply the points by it",
+        default=1.0, own=True,
     ),
-    BARE_JSON,
+    JSON,
     Option(
-        "picture", "--picture", FileOut("FILE", (".svg",), "curves are drawn as SVG"),
+        "picture", "--picture", FileOut("FILE", (".svg",), phrase("curves_are_svg")),
         "curves with their curvature combs (.svg)", own=True,
     ),
     run="curve:run",

@@ -4,6 +4,7 @@ from typing import Final
 
 from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.jobs.job import Job, job
+from trunnion.messages import phrase
 from trunnion.options.groups import (
     BODIES,
     CLAMPING,
@@ -54,7 +55,7 @@ _POST: Final = job(
     SHEET,
     Option("listing", "--listing", FileOut(), "every motion as text: X Y Z, rotary axes, S, F", key="listing"),
     Option(
-        "manifest", "--manifest", FileOut("FILE", (".json",), "a manifest is data"),
+        "manifest", "--manifest", FileOut("FILE", (".json",), phrase("manifest_is_data")),
         "checksums of all files (.json), beside the program", key="manifest",
     ),
     Option("watch", "--watch", Switch(), "post again whenever a file that is read changes", own=True),
@@ -121,12 +122,12 @@ _PLACE: Final = job(
     Option("setup", "--setup", Text("NAME"), "the set-up of a project with several", own=True),
     Option(
         "goal", "--goal", Choice(GOALS, "GOAL"),
-        "what the best place is best for: margin to the limits, travel of rotary axes or slides, time, fewest blocks"
-        " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions); by default margin",
+        "what the best place is best for: margin to the limits, travel of rotary or linear axes, time, fewest blocks"
+        " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions)",
         default="margin",
     ),
     Option(
-        "turns", "--turns", angle("a step of turns", 0.1, 360.0, "5"),
+        "turns", "--turns", angle(phrase("kind_step_of_turns"), 0.1, 360.0, "5"),
         "try the part at every so many degrees about Z, counter-clockwise seen from above (from +Z), and more finely"
         " around the best; by default 5, with several tilts or the goal collisions 15", either="turns",
     ),
@@ -148,7 +149,7 @@ _PLACE: Final = job(
     ZERO.but(help="the present workpiece zero on the machine, mm, to compare with"),
     TOOL_LENGTH,
     SETTINGS.but(help="for CL files, as post has it; may be repeated"),
-    READING_AS_SETTINGS.but(strict={"own": True}),
+    READING_AS_SETTINGS,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that the programs call; no others are opened"),
     BODIES.but(
@@ -159,7 +160,7 @@ _PLACE: Final = job(
     ),
     JSON,
     Option(
-        "plot", "--plot", FileOut("FILE.svg", (".svg",), "places are drawn as SVG"),
+        "plot", "--plot", FileOut("FILE.svg", (".svg",), phrase("places_are_svg")),
         "the margin over the table and over the turns", own=True,
     ),
     Option(

@@ -3,6 +3,7 @@
 from typing import Final
 
 from trunnion.jobs.job import Job, job
+from trunnion.messages import phrase
 from trunnion.options.groups import (
     BODIES,
     CLAMPING,
@@ -13,7 +14,6 @@ from trunnion.options.groups import (
     MACHINE,
     OTHER_MACHINE,
     READING,
-    READING_FIRST,
     REPORT,
     SETUP,
     SUBPROGRAMS,
@@ -21,12 +21,12 @@ from trunnion.options.groups import (
     WORK_OFFSET,
     ZERO,
 )
-from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Number, Switch, Text, length, whole
+from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Switch, Text, any_number, length, whole
 from trunnion.options.option import Level, Many, Option
 
 _CL: Final = Option("cl", "--cl", FileIn("CL", stdin=True), many=Many.REPEAT, key="cl")
 
-_TOLERANCE: Final = length("a tolerance", "0.001")
+_TOLERANCE: Final = length(phrase("kind_tolerance"), "0.001")
 
 _VERIFY: Final = job(
     "verify", "prove an NC program: read it, run it, compare it with its CL files",
@@ -39,11 +39,11 @@ _VERIFY: Final = job(
     ),
     Option(
         "tolerance", "--tolerance", _TOLERANCE,
-        "how far a coordinate may be off, and in degrees a rotary axis; 0.001 (in inches 0.0013 mm)", default=0.001,
+        "how far a coordinate may be off (in inches by default 0.0013 mm), and in degrees a rotary axis", default=0.001,
         key="tolerance_mm",
     ),
     Option(
-        "span", "--span", length("a tolerance", "0.001", "DEG"),
+        "span", "--span", length(phrase("kind_tolerance"), "0.001", "DEG"),
         "how far the tool axis may be off between points; by default the definition's tolerance", key="span_deg",
     ),
     Option(
@@ -56,7 +56,7 @@ _VERIFY: Final = job(
         help="work offset of the program; with --cl that of the control's definition", aliases=("--offset",)
     ),
     Option(
-        "edge", "--edge", whole("a cutting edge", "its D number, such as 1", "D"),
+        "edge", "--edge", whole(phrase("kind_cutting_edge"), phrase("number_of_edge"), "D"),
         "cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
     ),
     READING.but(
@@ -75,7 +75,7 @@ _VERIFY: Final = job(
     TOOL_LENGTH.but(help="length of the tool, for programs without TCP"),
     FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed", key="feed"),
     Option(
-        "feed_limit", "--feed-limit", length("a feed", "2000", "MM_MIN"),
+        "feed_limit", "--feed-limit", length(phrase("kind_feed"), "2000", "MM_MIN"),
         "the feed_limit of that post, in place of the CL file's",
     ),
     Option(
@@ -84,7 +84,7 @@ _VERIFY: Final = job(
     ),
     Option(
         "recorded_tolerance", "--recorded-tolerance", _TOLERANCE,
-        "how far the recorded tip may be off the path, and in degrees its tool axis; 0.05", default=0.05,
+        "how far the recorded tip may be off the path, and in degrees its tool axis", default=0.05,
     ),
     CLAMPING.but(
         turn={
@@ -112,7 +112,7 @@ _DIFF: Final = job(
         help="files of the subprograms that the second one calls; no others are opened",
     ),
     Option(
-        "tolerance", "--tolerance", _TOLERANCE, "how far tips may be apart, and in degrees tool axes; 0.001",
+        "tolerance", "--tolerance", _TOLERANCE, "how far tips may be apart, and in degrees tool axes",
         default=0.001,
     ),
     Option(
@@ -137,7 +137,7 @@ _SIMULATE: Final = job(
     BODIES,
     CUTTING,
     _CL.but(help="CL file whose tools these are; may be repeated"),
-    READING_FIRST,
+    READING.but(strict={"key": ""}),
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that they call; no others are opened"),
     SETUP,
@@ -168,21 +168,21 @@ _SIMULATE: Final = job(
     ],
 )  # fmt: skip
 
-_NUMBER: Final = Number("DEG", "a number", "one, such as 5")
+_NUMBER: Final = any_number("DEG")
 
 _REACH: Final = job(
     "reach", "show which tool axes and points a machine reaches",
     Option("cl", "", FileIn("CL", stdin=True), "CL files whose points are judged", many=Many.ANY),
     MACHINE.but(help="machine whose reach is shown", required=True),
     Option("part", "--part", FileIn("MESH"), "part whose facets the tip is to reach along their normals"),
-    Option("lean", "--lean", _NUMBER, "how far the tool may lean from a normal; by default 0", default=0.0),
+    Option("lean", "--lean", _NUMBER, "how far the tool may lean from a normal", default=0.0),
     SETUP,
-    READING_FIRST,
+    READING,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
-    Option("step", "--step", _NUMBER, "degrees between tilts, and between azimuths; by default 5", default=5.0),
+    Option("step", "--step", _NUMBER, "degrees between tilts, and between azimuths", default=5.0),
     JSON,
     Option(
-        "plot", "--plot", FileOut("FILE", (".svg",), "reach is drawn as SVG"),
+        "plot", "--plot", FileOut("FILE", (".svg",), phrase("reach_is_svg")),
         "tool axes on the sphere, and volumes over the tilt (.svg)", own=True,
     ),
     run="reach:run",
@@ -200,16 +200,16 @@ _FIT: Final = job(
     ),
     Option(
         "machines", "--machines", FileIn("NAME_OR_FILE,…", leads="machines"),
-        "machines that are asked; by default all shipped ones", default="all",
+        "machines that are asked; all: the shipped ones", default="all",
     ),
     MACHINE.but(help="machine that the NC program is for"),
     SUBPROGRAMS.but(help="files of the subprograms that the NC program calls; no others are opened"),
     ZERO.but(help="workpiece zero of the NC program on its own machine, mm"),
     TOOL_LENGTH.but(help="length of the tool on all machines, gauge point to tip"),
-    READING_FIRST,
+    READING,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option(
-        "turns", "--turns", _NUMBER, "try the part at every so many degrees about Z; by default 5", default=5.0,
+        "turns", "--turns", _NUMBER, "try the part at every so many degrees about Z", default=5.0,
     ),
     JSON,
     run="fit:run",
@@ -226,12 +226,12 @@ _SENSITIVITY: Final = job(
     SUBPROGRAMS,
     SETUP,
     Option(
-        "length", "--length", Number("MM", "a number", "one, such as 5"),
-        "how far points and lengths are off; by default 0.01", default=0.01,
+        "length", "--length", any_number("MM"),
+        "how far points and lengths are off", default=0.01,
     ),
     Option(
-        "angle", "--angle", Number("ARCSEC", "a number", "one, such as 5"),
-        "how far directions and displayed angles are off, seconds of arc; by default 5", default=5.0,
+        "angle", "--angle", any_number("ARCSEC"),
+        "how far directions and displayed angles are off, seconds of arc", default=5.0,
     ),
     Option(
         "zero_at", "--zero-at", Text("C=0,B=0|home|none"),
@@ -239,7 +239,7 @@ _SENSITIVITY: Final = job(
     ),
     JSON,
     Option(
-        "report", "--report", FileOut("FILE", (".html",), "this report is a page"),
+        "report", "--report", FileOut("FILE", (".html",), phrase("report_is_page")),
         "the table, and errors over the program, as a page (.html)", own=True,
     ),
     run="sensitivity:run",

@@ -3,11 +3,12 @@
 from typing import Final
 
 from trunnion.jobs.job import Job, job
+from trunnion.messages import phrase
 from trunnion.options.groups import (
-    BARE_JSON,
     BODIES,
     CUTTING,
     HOOKS,
+    JSON,
     LIVE,
     MACHINE,
     OUTPUT,
@@ -27,9 +28,9 @@ _INFO: Final = job(
     "info", "show what CL files hold; no machine is needed",
     Option("cl", "", FileIn("CL", stdin=True), "CL file; several are one job in their order", many=Many.SOME),
     READING,
-    BARE_JSON,
+    JSON,
     Option(
-        "plot", "--plot", FileOut("FILE", (".html",), "the path is drawn on a page"),
+        "plot", "--plot", FileOut("FILE", (".html",), phrase("path_is_page")),
         "the path by operation in space, as a page (.html)", own=True,
     ),
     run="info:info",
@@ -54,7 +55,7 @@ _VIEW: Final = job(
     ),
     Option("setup", "--setup", Text("NAME"), "set-up of a project, if it has several: its name or number"),
     SETTINGS.but(help="for CL files, as post has it; may be repeated"),
-    READING_AS_SETTINGS.but(strict={"own": True}),
+    READING_AS_SETTINGS,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option("cl", "--cl", FileIn("CL", stdin=True), "CL file that it was made from", many=Many.REPEAT),
     SUBPROGRAMS,
@@ -62,7 +63,7 @@ _VIEW: Final = job(
     CUTTING,
     SETUP,
     OUTPUT.but(
-        kind=FileOut("FILE.html", (".html",), "the view is a page"),
+        kind=FileOut("FILE.html", (".html",), phrase("view_is_page")),
         help="write a page that works offline, and serve nothing",
     ),
     Option(
@@ -87,30 +88,30 @@ _TWIN: Final = job(
     Option(
         "speed", "--speed",
         Number(
-            "N|max", "a speed", f"a number from {SLOWEST:g} to {FASTEST:g} times real time, or max",
+            "N|max", phrase("kind_speed"), phrase("speed_from_to", least=SLOWEST, most=FASTEST),
             least=SLOWEST, most=FASTEST, words={"max": None},
         ),
-        "times real time, 0.1 to 1000, or max: as fast as clients can follow; 1", default=1.0,
+        "times real time, 0.1 to 1000, or max: as fast as clients can follow", default=1.0,
     ),
     Option("loop", "--loop", Switch(), "begin anew at the end of the program"),
     Option("hold", "--hold", Switch(), "wait for a client to start the program"),
-    RATE.but(help="milliseconds between samples, besides the ends of blocks; 20"),
+    RATE.but(help="milliseconds between samples, besides the ends of blocks"),
     Option(
         "host", "--host", Text("ADDRESS"),
-        "serve OPC UA on this address, encrypted and for users only, unless it is this computer's own; 127.0.0.1",
+        "serve OPC UA on this address, encrypted and for users only, unless it is this computer's own",
         default="127.0.0.1",
     ),
     Option(
-        "port", "--port", whole("a port", "a number, 0 for a free one", "N", most=65535),
-        "port of OPC UA, 0: a free one; 4840", default=4840,
+        "port", "--port", whole(phrase("kind_port"), phrase("number_or_free"), "N", most=65535),
+        "port of OPC UA, 0: a free one", default=4840,
     ),
     Option(
-        "adapter_port", "--adapter-port", whole("a port", "a number, 0 for a free one", "N", most=65535),
-        "port of the MTConnect adapter; 7878", default=7878,
+        "adapter_port", "--adapter-port", whole(phrase("kind_port"), phrase("number_or_free"), "N", most=65535),
+        "port of the MTConnect adapter", default=7878,
     ),
     Option("no_mtconnect", "--no-mtconnect", Switch(), "serve OPC UA alone", own=True),
     Option(
-        "device_xml", "--device-xml", FileOut("FILE.xml", (".xml",), "a device model is XML"),
+        "device_xml", "--device-xml", FileOut("FILE.xml", (".xml",), phrase("device_model_is_xml")),
         "write the devices of an MTConnect agent, and end", own=True,
     ),
     Option("users", "--users", FileIn(), "file of users; by default that in your folder for data"),
@@ -120,7 +121,7 @@ _TWIN: Final = job(
     ),
     Option(
         "role", "--role", Choice(("operator", "viewer")),
-        "of the user who is added: operates the twin, or only looks; operator", default="operator", own=True,
+        "of the user who is added: operates the twin, or only looks", default="operator", own=True,
     ),
     run="twin:run",
     examples=[
@@ -133,7 +134,7 @@ _RECORD: Final = job(
     "record", "record what a machine, or a twin, shows by OPC UA",
     Option("address", "", Text("ADDRESS"), "of the machine's OPC UA server: opc.tcp://HOST:PORT/…"),
     Option(
-        "output", "--output", FileOut("FILE", (".csv", ".parquet"), "a recording is CSV or Parquet"),
+        "output", "--output", FileOut("FILE", (".csv", ".parquet"), phrase("recording_is_table")),
         "recording (.csv or .parquet); never written over", required=True,
     ),
     Option("seconds", "--seconds", seconds(1e9, "N"), "how long; without it until Ctrl-C"),

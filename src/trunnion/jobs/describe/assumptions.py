@@ -4,6 +4,7 @@ In:     a machine, and the table of its definition if that is known.
 Out:    sentences for a person beside the machine.
 """
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Final
@@ -13,6 +14,7 @@ from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.value_marks import ASSUMED, MARKS
 from trunnion.machines import Axis, Machine
 from trunnion.machines.loading import machine_library
+from trunnion.messages import Wording, phrase
 
 #: Keys of axes that no two machines of a type share for certain, and what they are.
 _MEASURED: Final = {
@@ -35,31 +37,33 @@ def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
     table    its definition, merged with what it extends; None: the machine comes from no file
     """
     own = None if table is None else table.unread_copy()
-    of_files = () if own is None else (*_marked(own), *_inherited(own))
-    return (*of_files, *_left_open(machine))
+    if own is None:
+        return tuple(_left_open(machine))
+    assumed = _marked(own, ASSUMED, "Assumed by the shipped definition")
+    # What is still to be done comes last, where it is seen.
+    return (*assumed, *_inherited(own), *_left_open(machine), *_marked(own, MARKS, "Still to enter"))
 
 
-def assumed_places(machine: Machine, table: Table | None) -> str:
-    """Why it is not known where axes lie in their travel; empty if the definition states it.
+def assumed_places(machine: Machine, table: Table | None) -> Wording | None:
+    """Why it is not known where axes lie in their travel; None if the definition states it.
 
     Parameters as for ``assumptions``.
     """
     if not machine.spindle_point_is_stated:
-        return "the definition does not state the gauge point, and with it where the rotary axes lie in the travel"
-    marked = [] if table is None else marked_in(table.content, ("#",))
-    names = [each.name for each in marked if each.name.endswith(_PLACES) and "assum" in each.mark]
-    return f"the definition assumes {', '.join(names)}" if names else ""
+        return phrase("gauge_point_not_stated")
+    marked = [] if table is None else marked_in(table.content, ASSUMED)
+    names = [each.name for each in marked if each.name.endswith(_PLACES)]
+    return phrase("places_assumed", names=tuple(names)) if names else None
 
 
-def _marked(table: Table) -> Iterator[str]:
+def _marked(table: Table, mark: re.Pattern[str], what: str) -> Iterator[str]:
     """Values whose comments say that they are none of the machine's."""
     library = str(machine_library())
-    for begins, what in ((MARKS, "Still to enter"), (ASSUMED, "Assumed by the shipped definition")):
-        found: dict[str, list[str]] = {}
-        for value in marked_in(table.content, begins):
-            found.setdefault(value.file, []).append(str(value))
-        for file in sorted(found, key=lambda each: each.startswith(library)):
-            yield f"{what}: {', '.join(found[file])}."
+    found: dict[str, list[str]] = {}
+    for value in marked_in(table.content, mark):
+        found.setdefault(value.file, []).append(str(value))
+    for file in sorted(found, key=lambda each: not each.startswith(library)):
+        yield f"{what}: {', '.join(found[file])}."
 
 
 def _inherited(table: Table) -> Iterator[str]:
@@ -95,8 +99,8 @@ def _left_open(machine: Machine) -> Iterator[str]:
     """Yield what the definition does not state, and what that means."""
     if machine.workpiece_zero is None:
         yield (
-            "Workpiece zero: not stated, and taken for the origin. Slides are checked for whether the program fits "
-            "their travel anywhere; programs without TCP want setting zero=X,Y,Z."
+            "Workpiece zero: not stated, and taken for the origin. Linear axes are checked for whether the program "
+            "fits their travel anywhere; programs without TCP want setting zero=X,Y,Z."
         )
     yield "Tool lengths: not known, for no definition has them. Programs without TCP want setting tool_length=MM."
     if not machine.spindle_point_is_stated:

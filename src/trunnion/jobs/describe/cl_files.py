@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Final
 import numpy as np
 
 from trunnion.cl import DIALECTS, other_system, unknown_statements
+from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
@@ -235,7 +236,7 @@ def describe_cl(
     >>> [(operation.name, operation.kind, operation.points) for operation in found.operations]
     [('MULTI_BLADE_ROUGH', 'simultaneous', 23)]
     """
-    toolpaths = read_toolpaths(cl, units, strict, observer, dialect)
+    toolpaths = read_toolpaths(cl, observer, ClReading(units, dialect, strict))
     if not toolpaths:
         raise InputError(argument_problem("cl", Wording("ARG130", "no_cl_file")))
     files = tuple(map(_file, toolpaths))

@@ -36,7 +36,6 @@ _MOST_LISTED: Final = 100
 
 #: Statements of texts, which templates may print in another way.
 _TEXT_STATEMENTS: Final = ("PPRINT", "DISPLY", "INSERT")
-_OR: Final = ", "
 
 _CURE: Final = (
     "remove it, or write under [control.statements] of the machine's definition what becomes of it: a line of the"

@@ -8,6 +8,7 @@ from typing import BinaryIO, Final, TypeAlias
 
 from trunnion import machines, readers
 from trunnion.cl import DIALECTS, not_one_file, other_system
+from trunnion.cl.read import AS_IT_SAYS, ClReading
 from trunnion.cl.watched import read_watched
 from trunnion.controls.definition_files import is_control_file
 from trunnion.controls.loading import control_library
@@ -22,9 +23,10 @@ from trunnion.jobs.inputs.arguments import (
     wrong_argument,
 )
 from trunnion.jobs.inputs.cl_statements import check_statements
+from trunnion.jobs.inputs.settings import number_setting
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 
@@ -97,33 +99,33 @@ def read_cl(
     >>> toolpath.operations[0].moves.tip.shape
     (23, 3)
     """
-    toolpaths = _read(path, units, dialect, strict, spline_tolerance, observer, "path")
+    toolpaths = _read(path, ClReading(units, dialect, strict, spline_tolerance), observer, "path")
     if len(toolpaths) > 1:
         raise not_one_file(toolpaths[0].file, len(toolpaths))
     return toolpaths[0]
 
 
-def _read(
-    cl: object,
-    units: str | None,
-    dialect: str | None,
-    strict: bool,
-    spline_tolerance: float | None,
-    observer: Observer,
-    argument: str,
-) -> list[Toolpath]:
+def _read(cl: object, how: ClReading, observer: Observer, argument: str) -> list[Toolpath]:
     """Return the toolpaths of a CL file, a stream or an archive; errors name the argument."""
     path = cl if is_stream(cl) else check_path(argument, cl)
     check_observer(observer)
+    units, within = how.units, how.spline_tolerance
     if units is not None:
         check_choice("units", units.lower() if isinstance(units, str) else units, ("mm", "inch"))
-    if dialect is not None:
-        check_choice("dialect", dialect, tuple(DIALECTS))
-    if spline_tolerance is not None and not _is_spline_tolerance(spline_tolerance):
-        raise wrong_argument("spline_tolerance", spline_tolerance, "give a number from 0.0001 to 1")
-    return read_watched(
-        path, observer.progress, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance
-    )
+    if how.dialect is not None:
+        check_choice("dialect", how.dialect, tuple(DIALECTS))
+    if within is not None and not _is_spline_tolerance(within):
+        raise wrong_argument("spline_tolerance", within, phrase("give_fine_tolerance"))
+    return read_watched(path, observer.progress, how)
+
+
+def cl_reading(settings: Mapping[str, str], strict: bool = False) -> ClReading:
+    """Return how settings say that CL files are read.
+
+    Raises ``InputError`` if the tolerance of splines is no number, or out of range.
+    """
+    within = number_setting(settings, "spline_tolerance")
+    return ClReading(settings.get("cl_units"), settings.get("dialect"), strict, within)
 
 
 def _is_spline_tolerance(value: object) -> bool:
@@ -201,7 +203,7 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     ((30, 3), ())
     """
     program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
-    return readers.run_program(program, as_machine(machine), subprograms=others)
+    return readers.run_program(program, as_machine(machine), readers.RunOptions(subprograms=others))
 
 
 def as_run(
@@ -251,46 +253,32 @@ def as_machine(machine: MachineLike, argument: str = "machine") -> Machine:
 
 
 def as_toolpaths(
-    cl: ToolpathLike | Iterable[ToolpathLike],
-    units: str | None,
-    strict: bool,
-    observer: Observer,
-    dialect: str | None = None,
-    spline_tolerance: float | None = None,
+    cl: ToolpathLike | Iterable[ToolpathLike], observer: Observer, how: ClReading = AS_IT_SAYS
 ) -> list[Toolpath]:
     """Return the toolpaths of one program, as ``read_toolpaths`` has them.
 
     Raises ``InputError`` if a file cannot be used, or the points of two files are in different coordinate systems.
     """
-    toolpaths = read_toolpaths(cl, units, strict, observer, dialect, spline_tolerance)
+    toolpaths = read_toolpaths(cl, observer, how)
     if problem := other_system(toolpaths):
         raise InputError(problem)
     return toolpaths
 
 
 def read_toolpaths(
-    cl: ToolpathLike | Iterable[ToolpathLike],
-    units: str | None,
-    strict: bool,
-    observer: Observer,
-    dialect: str | None = None,
-    spline_tolerance: float | None = None,
+    cl: ToolpathLike | Iterable[ToolpathLike], observer: Observer, how: ClReading = AS_IT_SAYS
 ) -> list[Toolpath]:
-    """Toolpaths in their order, read if they are named; how, is said as for ``read_cl``.
+    """Toolpaths in their order, read if they are named.
 
     Raises ``InputError`` if a file cannot be used.
     """
     if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl):
         cl = [cl]
     if isinstance(cl, bytes | Mapping) or not isinstance(cl, Iterable):
-        raise wrong_argument("cl", cl, "give CL files: a path, a Toolpath, or a list of them")
+        raise wrong_argument("cl", cl, phrase("give_cl"))
     check_observer(observer)
     return [
         toolpath
         for each in cl
-        for toolpath in (
-            [each]
-            if isinstance(each, Toolpath)
-            else _read(each, units, dialect, strict, spline_tolerance, observer, "cl")
-        )
+        for toolpath in ([each] if isinstance(each, Toolpath) else _read(each, how, observer, "cl"))
     ]

@@ -6,7 +6,8 @@ Out:    text that is checked; numbers, points, and the machine as it is set up.
 
 import datetime
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Final, TypeAlias
 
@@ -262,14 +263,32 @@ def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_le
         try:
             machine = apply_setup(machine, as_texts({name: value}))
         except InputError as error:
-            raise InputError([_of_argument(problem, name) for problem in error.problems]) from None
+            raise InputError([as_argument(problem, name) for problem in error.problems]) from None
     return machine
 
 
-def _of_argument(problem: Problem, name: str) -> Problem:
-    """Return a problem with a setting as one with the argument of its name, whose value stands alone."""
-    wording = problem.wording.bare().with_parameters(written=RUN_SETTINGS[name].form)
-    return argument_problem(name, wording, severity=problem.severity)
+def as_argument(problem: Problem, name: str) -> Problem:
+    """Return a problem with a setting as one with an argument that stands for it, whose value stands alone."""
+    setting = RUN_SETTINGS.get(problem.setting)
+    own = {} if setting is None else {"written": setting.form, "choices": setting.choices}
+    return argument_problem(name, problem.wording.bare().with_parameters(**own), severity=problem.severity)
+
+
+@contextmanager
+def reported_as_arguments(arguments: Mapping[str, str]) -> Iterator[None]:
+    """Have problems with settings that arguments stand for told as problems with these.
+
+    arguments   setting -> argument
+    """
+    try:
+        yield
+    except InputError as error:
+        if not any(each.setting in arguments for each in error.problems):
+            raise
+        told = [
+            as_argument(each, arguments[each.setting]) if each.setting in arguments else each for each in error.problems
+        ]
+        raise InputError(told) from None
 
 
 def check_tolerance(argument: str, value: object, *, optional: bool = False) -> None:

@@ -44,6 +44,9 @@ class SetupInput:
     tool_libraries: Sequence[FilePath] = ()
     unit: str | None = None
     cl: ToolpathLike | Iterable[ToolpathLike] = ()
+    units: str | None = None
+    dialect: str | None = None
+    strict: bool = False
     hooks: Sequence[FilePath] = ()
     subprograms: Sequence[FilePath] = ()
     zero: str | Iterable[float] | None = None

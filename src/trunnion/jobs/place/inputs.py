@@ -11,16 +11,17 @@ import numpy as np
 
 from trunnion import readers
 from trunnion.arrays import Ints
+from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.arguments import PlaceArguments
 from trunnion.jobs.inputs.arguments import check_paths, is_stream, wrong_argument
 from trunnion.jobs.inputs.hooked import hooked_toolpaths, no_cl_files
-from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
-from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
+from trunnion.jobs.inputs.reading import ToolpathLike, cl_reading, read_toolpaths
+from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.planning import plan
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamped_toolpaths import stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
 from trunnion.model.rotations import about_x
@@ -79,7 +80,7 @@ def read_input(
     if isinstance(files, str | os.PathLike | Toolpath) or is_stream(files):
         files = [files]
     if isinstance(files, bytes | Mapping) or not isinstance(files, Iterable):
-        raise wrong_argument("files", files, "give CL files or NC programs: a path, or a list of them")
+        raise wrong_argument("files", files, phrase("give_cl_or_nc"))
     given = cast("list[ToolpathLike]", list(files))
     subprograms, hooks = check_paths("subprograms", stated["subprograms"]), check_paths("hooks", stated["hooks"])
     if not given:
@@ -88,7 +89,7 @@ def read_input(
     toolpaths: list[Toolpath] = []
     programs: list[Path] = []
     for each in given:
-        found = _toolpaths_of(each, texts, machine, observer)
+        found = _toolpaths_of(each, cl_reading(texts, stated["strict"]), machine, observer)
         toolpaths += found or ()
         if found is None and isinstance(each, str | os.PathLike):
             programs.append(Path(each))
@@ -127,15 +128,20 @@ def _clamping_of_programs(programs: Sequence[Path]) -> tuple[Clamping | None, tu
 
 
 def toolpaths_to_post(
-    files: Iterable[ToolpathLike], *, machine: Machine, settings: Settings | None = None, observer: Observer = SILENT
+    files: Iterable[ToolpathLike],
+    *,
+    machine: Machine,
+    settings: Settings | None = None,
+    strict: bool = False,
+    observer: Observer = SILENT,
 ) -> list[Toolpath]:
     """Read CL files that are to be posted where they are placed: who places them need not read them again.
 
     Raises ``InputError`` if a file cannot be used, or one is an NC program: it stays as it is.
     """
-    texts, found = as_texts(settings), list[Toolpath]()
+    how, found = cl_reading(as_texts(settings), strict), list[Toolpath]()
     for each in files:
-        toolpaths = _toolpaths_of(each, texts, machine, observer)
+        toolpaths = _toolpaths_of(each, how, machine, observer)
         if toolpaths is None:
             raise InputError(nc_program_stays(str(each)))
         found += toolpaths
@@ -147,13 +153,10 @@ def nc_program_stays(file: str) -> Problem:
     return Problem(file, 0, Wording("PLC140", "program_stays"))
 
 
-def _toolpaths_of(
-    file: ToolpathLike, settings: Mapping[str, str], machine: Machine, observer: Observer
-) -> list[Toolpath] | None:
+def _toolpaths_of(file: ToolpathLike, how: ClReading, machine: Machine, observer: Observer) -> list[Toolpath] | None:
     """Return the toolpaths of a CL file; None if it is a program that the machine's control understands."""
-    tolerance = number_setting(settings, "spline_tolerance")
     try:
-        return read_toolpaths(file, settings.get("cl_units"), False, observer, settings.get("dialect"), tolerance)
+        return read_toolpaths(file, observer, how)
     except InputError as error:
         if not isinstance(file, str | os.PathLike) or not readers.can_read(machine):
             raise
@@ -166,7 +169,7 @@ def _toolpaths_of(
 
 
 def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run:
-    run = readers.run_program(program, machine, subprograms=subprograms)
+    run = readers.run_program(program, machine, readers.RunOptions(subprograms=subprograms))
     if run.errors:
         found = [Problem(each.file, each.line, each.wording) for each in run.errors[:_MOST_NAMED]]
         raise RefusedError(

@@ -49,7 +49,9 @@ def write_forced(
     for _ in range(_MOST_WRITINGS):
         starts = _write(posting, program, notices)
         others = [*files.other_paths, *job.beside]
-        run = readers.run_program(files.path, job.machine, subprograms=others, encoding=job.encoding)
+        run = readers.run_program(
+            files.path, job.machine, readers.RunOptions(subprograms=others, encoding=job.encoding)
+        )
         proof = prove(run, starts)
         before, notices = notices, _notices(proof)
         if _line_count(program, notices) == _line_count(program, before):

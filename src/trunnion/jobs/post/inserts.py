@@ -217,7 +217,7 @@ class _Trial:
         write_program(replace(self._program, motions=[_with_texts(self._motion, texts)], notices=()), sink)
         self._file.write_bytes(sink.getvalue())
         machine, encoding = self._program.machine, self._program.text_form.encoding
-        return readers.run_program(self._file, machine, step_limit=_STEP_LIMIT, encoding=encoding)
+        return readers.run_program(self._file, machine, readers.RunOptions(step_limit=_STEP_LIMIT, encoding=encoding))
 
 
 def _with_texts(motion: Motion, texts: Sequence[str]) -> Motion:

@@ -1,17 +1,19 @@
 """Planning: toolpaths to motions on a machine, before any text is written."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from trunnion import planning, readers
 from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
-from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
+from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated, warning
+from trunnion.files.places import file_identity, file_on_disk
 from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
-from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.inserts import insert_problems
@@ -101,14 +103,7 @@ def load_toolpaths(
 
     Raises ``InputError`` if a file cannot be used, or there is none.
     """
-    toolpaths = as_toolpaths(
-        cl,
-        job.settings.get("cl_units"),
-        strict,
-        observer,
-        job.settings.get("dialect"),
-        number_setting(job.settings, "spline_tolerance"),
-    )
+    toolpaths = as_toolpaths(cl, observer, cl_reading(job.settings, strict))
     if job.control.units == INCH:
         _check_units_of(toolpaths)
     if not toolpaths:
@@ -117,10 +112,28 @@ def load_toolpaths(
         from trunnion.cl.surface_normals import with_normals
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
-    toolpaths = replace_unknown_statements(changed(toolpaths), job.control, job.machine)
+    toolpaths = replace_unknown_statements(changed(_with_repeated(toolpaths)), job.control, job.machine)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
+
+
+def _with_repeated(toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
+    """Return the toolpaths, with a remark on each file that is there already: it is cut again."""
+    found, known = list[Toolpath](), set[Hashable]()
+    for toolpath in toolpaths:
+        file = file_on_disk(toolpath.file)
+        of_archive = toolpath.file.removeprefix(file)
+        whole = tuple((operation.name, len(operation.moves)) for operation in toolpath.operations)
+        same = (file_identity(file), of_archive, whole)  # parts of a file are posted one after the other
+        if same in known:
+            remark = warning(toolpath.file, 0, Wording("CL190", "named_twice"))
+            found.append(replace(toolpath, remarks=(*toolpath.remarks, remark)))
+            continue
+        if Path(file).is_file():
+            known.add(same)
+        found.append(toolpath)
+    return found
 
 
 def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
@@ -148,12 +161,7 @@ def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]
     """Warnings of settings for one operation by a name that several have."""
     names = [name for _, name in cut]
     return [
-        Problem(
-            file,
-            0,
-            Wording("ARG270", "operations_of_one_name", count=names.count(name), operation=name),
-            severity=Severity.WARNING,
-        )
+        warning(file, 0, Wording("ARG270", "operations_of_one_name", count=names.count(name), operation=name))
         for name, file in {name: file for file, name in reversed(cut) if name in own}.items()
         if names.count(name) > 1
     ]

@@ -11,12 +11,11 @@ from functools import partial
 from typing import Final, Unpack
 
 from trunnion.files import OutputGroup, file_on_disk
-from trunnion.hooks.calling import Hooks
-from trunnion.hooks.files import load_hooks
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
-from trunnion.jobs.arguments import PostArguments, taken
+from trunnion.jobs.arguments import PostArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles
+from trunnion.jobs.inputs.hooked import loaded_hooks
 from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.observer import SILENT, Observer
@@ -152,7 +151,8 @@ def post(
     >>> result
     PostResult(passed=True, 30 motions)
     """
-    return post_beside(cl, machine, given, observer=observer)
+    with reported_by_arguments("post", given):
+        return post_beside(cl, machine, given, observer=observer)
 
 
 def post_beside(
@@ -185,9 +185,9 @@ def post_beside(
     with open_target(found["output"], papers=places, inputs=inputs, group=work.group, edited=edited) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
-        changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
-        toolpaths = load_toolpaths(cl, job, found["strict"], observer, changes.change)
-        toolpaths, job = as_clamped(toolpaths, job, changes, angles, is_placed=work.is_placed)
+        hooks = loaded_hooks(hook_files, job.machine.name, job.control.name, job.settings)
+        toolpaths = load_toolpaths(cl, job, found["strict"], observer, hooks.change if hooks else list)
+        toolpaths, job = as_clamped(toolpaths, job, hooks, angles, is_placed=work.is_placed)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, work.later)
 

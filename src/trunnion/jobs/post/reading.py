@@ -6,17 +6,20 @@ Out:    the toolpaths as they are planned, and the job with what its program say
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from trunnion.controls.vocabulary import HOOKS_NOTICE
-from trunnion.hooks.calling import Hooks
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.model.toolpath import Message, Toolpath
 from trunnion.placing.program_heads import placed_notices
 
+if TYPE_CHECKING:
+    from trunnion.hooks.calling import Hooks
+
 
 def as_clamped(
-    toolpaths: list[Toolpath], job: PostJob, hooks: Hooks, angles: tuple[float, float], *, is_placed: bool
+    toolpaths: list[Toolpath], job: PostJob, hooks: "Hooks | None", angles: tuple[float, float], *, is_placed: bool
 ) -> tuple[list[Toolpath], PostJob]:
     """Toolpaths of the part as it is clamped, and the job with the notices that the head of the program has of it.
 
@@ -26,11 +29,13 @@ def as_clamped(
     clamping = clamped_after(stated, angles, toolpaths[0].file)
     toolpaths, carried = _without_notices(toolpaths, job)
     toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
-    decisions = tuple(hooks.decisions) if job.options.explain else ()
     notices: tuple[str, ...] = ()
     if is_placed or stated is not None or not clamping.is_as_drawn:
         notices = placed_notices(clamping, job.machine.workpiece_zero, job.machine.tool_length)
-    job = replace(job, notices=(*notices, *carried, *hooks.notices), decisions=decisions, clamping=clamping)
+    job = replace(job, notices=(*notices, *carried), clamping=clamping)
+    if hooks is not None:
+        decisions = tuple(hooks.decisions) if job.options.explain else ()
+        job = replace(job, notices=(*job.notices, *hooks.notices), decisions=decisions)
     if job.simulation is not None:
         from trunnion.jobs.simulate.posted import simulated_as_clamped
 

@@ -86,7 +86,9 @@ def _run(
     if waits:
         progress.wait_until_finished()
     others = [*files.other_paths, *beside]
-    return readers.run_program(files.path, machine, subprograms=others, encoding=encoding, write_progress=progress)
+    return readers.run_program(
+        files.path, machine, readers.RunOptions(subprograms=others, encoding=encoding), write_progress=progress
+    )
 
 
 def write(

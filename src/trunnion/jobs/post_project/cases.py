@@ -19,7 +19,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.post_project.case_papers import StalePaper, stale_papers
 from trunnion.jobs.post_project.operation_programs import programs_of_operations
-from trunnion.jobs.post_project.posting import ProjectResult, check_within, files_of, post_into
+from trunnion.jobs.post_project.posting import check_within, files_of, post_into
 from trunnion.jobs.post_project.setups import ProjectOptions
 from trunnion.jobs.post_project.text_difference import TextDifference, text_difference
 from trunnion.jobs.post_project.watching import State, state_of
@@ -201,7 +201,7 @@ def _compared(path: Path, folder: Path) -> Case:
     changed = [_changed(program, setup, places) for setup, programs in result.posted for program in programs]
     differing = {each.file for program in changed if program for each in program.files}
     same = tuple(place for place in places.values() if place not in differing)
-    gone = tuple(_gone(project, result, places))
+    gone = tuple(_gone(project, places))
     pairs = zip(project.setups, aside.setups, strict=True)
     papers = tuple(stale for old, new in pairs for stale in stale_papers(old.papers, new.papers))
     programs = tuple(tuple(places[file] for file in files_of(program)) for program in result.results)
@@ -252,7 +252,7 @@ def _motion(there: Path, program: PostResult, beside: Sequence[Path]) -> tuple[b
     return found.same, list(found.lines())
 
 
-def _gone(project: Project, result: ProjectResult, places: dict[Path, Path]) -> Iterator[Path]:
+def _gone(project: Project, places: dict[Path, Path]) -> Iterator[Path]:
     written = set(places.values())
     for setup in project.setups:
         if setup.division is Division.OPERATIONS:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.definitions.extends import is_within
-from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.errors import InputError, Problem, RefusedError, Severity, warning
 from trunnion.files import OutputGroup, check_outputs, output_group, resolve_output
 from trunnion.jobs.inputs.arguments import check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath
@@ -24,6 +24,7 @@ from trunnion.jobs.post_project.replaced_files import check_replaced
 from trunnion.jobs.post_project.setups import NO_OPTIONS, PostedPrograms, ProjectOptions, ProjectPosting, post_setups
 from trunnion.jobs.project.file import load_project, told_by_keys
 from trunnion.jobs.project.named_files import project_inputs
+from trunnion.jobs.project.outputs import reported_at_outputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.messages import Wording
 
@@ -123,19 +124,17 @@ def post_into(
 def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, observer: Observer) -> ProjectPosting:
     """Return what is posted, once it is known that nothing is written over that must stay."""
     posting = ProjectPosting(group, project, options, observer, project_inputs(project))
-    check_outputs([*(each.output for each in project.setups), *posting.papers], posting.inputs)
-    if not options.replaces:
-        check_replaced(project)
+    with reported_at_outputs(project.setups):
+        check_outputs([*(each.output for each in project.setups), *posting.papers], posting.inputs)
+        if not options.replaces:
+            check_replaced(project)
     observer.problems(_running_hooks(project))
     return posting
 
 
 def _running_hooks(project: Project) -> list[Problem]:
     """Warnings of the code that a project has run: it may come from anyone."""
-    return [
-        Problem(file, 0, Wording("HOK150", "runs_hooks", project=project.path.name), severity=Severity.WARNING)
-        for file in project.hooks
-    ]
+    return [warning(file, 0, Wording("HOK150", "runs_hooks", project=project.path.name)) for file in project.hooks]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -201,5 +200,5 @@ def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]], use
             continue
         for file in programs_of_operations(setup.output):
             if resolve_output(file).path not in known:
-                found.append(Problem(str(file), 0, Wording("PRJ150", "operation_gone"), severity=Severity.WARNING))
+                found.append(warning(str(file), 0, Wording("PRJ150", "operation_gone")))
     return found

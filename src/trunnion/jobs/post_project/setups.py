@@ -21,6 +21,7 @@ from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post_project.operation_programs import check_tools, operation_programs
 from trunnion.jobs.post_project.replaced_files import replaced_file
+from trunnion.jobs.project.outputs import reported_at_outputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.project.settings import told_in_project
 from trunnion.jobs.result_output import NO_PAPERS, PaperFiles
@@ -86,7 +87,7 @@ def post_setups(posting: ProjectPosting) -> list[PostedPrograms]:
     for setup in project.setups:
         try:
             posting.observer.setup(setup.name)
-            with told_in_project(setup, posting.options.settings):
+            with told_in_project(setup, posting.options.settings), reported_at_outputs([setup], alone=True):
                 posted.append((setup, tuple(_programs(posting, setup))))
         except TrunnionError as error:
             if len(project.setups) > 1 and setup.name:  # they are told together, and may be of one CL file

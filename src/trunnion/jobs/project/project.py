@@ -46,6 +46,7 @@ class PostedSetup:
     arguments    of ``trunnion.post``, by their names: those of its other options that a set-up states
     papers       files of its report, setup sheet, listing and manifest
     places       where the project states settings: file, line and key, by their names; ``settings`` of all others
+    files        where it names what is written, by that
     """
 
     name: str
@@ -58,6 +59,7 @@ class PostedSetup:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     papers: PaperFiles = NO_PAPERS
     places: Places = field(default_factory=dict)
+    files: Places = field(default_factory=dict)
 
     @property
     def subprograms(self) -> tuple[str, ...]:

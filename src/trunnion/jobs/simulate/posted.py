@@ -30,7 +30,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.options.groups import BODIES, CUTTING
 from trunnion.options.kinds import FileIn
 from trunnion.options.option import Level
-from trunnion.simulation.findings import What
+from trunnion.simulation.finding import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape

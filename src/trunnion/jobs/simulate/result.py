@@ -1,16 +1,22 @@
 """What a simulation found, as a record for scripts, data and reports."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Annotated, Any, ClassVar, Final
 
+import numpy as np
+
 from trunnion.errors import Problem, Severity
+from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
+from trunnion.messages import phrase
+from trunnion.model.run_samples import joint_samples
 from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
 from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperation, SimulationFinding, setup_findings
 from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.stock.deviation import Excess
+from trunnion.simulation.tools.profile import ToolShape
 
 #: Air cuts that are told, the longest ones.
 _MOST_AIR: Final = 20
@@ -41,9 +47,11 @@ class SimulationResult:
     gouge      what of the part is missing; None without a part. Both are those of the last set-up
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
+    not_measured  values of the definition that the distances of bodies stand on, though nobody has measured them
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     setup      its name, where this is one of several
     setups     the results of each, where there are several
+    tools      their bodies by the words of the program; of several set-ups those of the last
     pairs      of bodies that were checked against each other, of all programs
     turn, tilt of the part as it is clamped, degrees; all places are those of the part as it is drawn. Of several
                set-ups those of the last one
@@ -72,6 +80,8 @@ class SimulationResult:
     seconds: float
     simulation: Annotated[Simulation, NOT_DATA]
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
+    not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
+    tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
 
     @property
     @Figure("remarks", after="operations")
@@ -115,7 +125,24 @@ def make_result(cut: CutSetup) -> SimulationResult:
         seconds=found.seconds,
         simulation=found,
         setup=cut.setup.name,
+        not_measured=_not_measured(cut),
+        tools=cut.setup.tools,
     )
+
+
+def _not_measured(cut: CutSetup) -> tuple[str, ...]:
+    """Return the values that nobody has measured, and that distances of bodies stand on; none if none were checked."""
+    joints = [joint_samples(run) for run in cut.setup.runs]
+    if not (cut.pairs and joints):
+        return ()
+    kinds = (*POSITIONS, ValueKind.BODIES)
+    return tuple(map(str, unmeasured_values(cut.setup.machine, kinds, np.concatenate(joints))))
+
+
+def not_measured_lines(found: SimulationResult) -> Iterator[str]:
+    """Yield what distances of bodies stand on though nobody has measured it; nothing where there is none."""
+    if found.not_measured:
+        yield f"distances of bodies: {phrase('stands_on', values=found.not_measured)}"
 
 
 def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
@@ -140,6 +167,7 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         setup="",
         setups=tuple(results),
         pairs=sum(each.pairs for each in results),
+        not_measured=tuple(dict.fromkeys(value for each in results for value in each.not_measured)),
     )
 
 

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion import readers
+from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
@@ -22,7 +23,7 @@ from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamped_toolpaths import toolpaths_clamped
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
@@ -54,7 +55,7 @@ def prepare_setup(
     fixtures = fixture_meshes(given.fixtures, remarks, deviation)
     programs: list[FilePath | Run] = listed("nc", given.programs, Run)
     if not programs:
-        raise wrong_argument("nc", given.programs, "give an NC program")
+        raise wrong_argument("nc", given.programs, phrase("give_nc"))
     others, rapid_feed = check_paths("subprograms", given.subprograms), rapid_feed_of(machine)
     runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
     _check_programs(runs, machine)
@@ -62,7 +63,9 @@ def prepare_setup(
     for program in programs:
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
-    toolpaths = hooked_toolpaths(as_toolpaths(given.cl, None, False, observer), machine, given.hooks)
+    toolpaths = hooked_toolpaths(
+        as_toolpaths(given.cl, observer, ClReading(given.units, given.dialect, given.strict)), machine, given.hooks
+    )
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)
     tools = _tools(runs, known_tools(given.tools, given.tool_libraries, given.unit, toolpaths))

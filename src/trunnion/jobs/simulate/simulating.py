@@ -54,6 +54,8 @@ def simulate(
         Length unit of LinuxCNC's tool tables, which state none.
     cl
         CL files, for tools that neither has.
+    units, dialect, strict
+        How the CL files are read, as ``trunnion.read_cl`` has it.
     hooks
         Python files that change these CL files, as for ``trunnion.post``. They are run; those of a project are not.
     subprograms
@@ -140,7 +142,7 @@ def _overruled(
 
 
 def _is_left_out(value: object) -> bool:
-    return value is None or (isinstance(value, list | tuple) and not value)
+    return value is None or value is False or (isinstance(value, list | tuple) and not value)
 
 
 def _without(places: Places, names: Iterable[str]) -> Places:

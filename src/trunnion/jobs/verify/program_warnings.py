@@ -2,26 +2,27 @@
 
 In:     a program that was run, and the words that the definition of its control states as its own.
 Out:    a warning for each word of the machine's builder that the definition does not declare, where it stands first,
-        for each block at which the program waits or stops, and for each mode and each work offset that it leaves to
-        the next program.
+        for each block at which the program waits or stops, or passes the end of a turn by a way that no source
+        confirms, and for each mode and each work offset that it leaves to the next program.
 """
 
 from collections.abc import Mapping, Sequence
 from typing import Final
 
 from trunnion.controls import Control
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, warning
 from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic, Run
 
 _OF_BUILDER: Final = "NC225"
 _WAITS: Final = "NC226"
+_END_OF_TURN: Final = "NC342"
 _LEFT_ON: Final = "NC351"
 
 #: Warnings of a kind that are told one by one; a program with more words is hardly one for this machine.
 _MOST_TOLD: Final = 20
 
-_KINDS: Final = (_OF_BUILDER, _WAITS, _LEFT_ON)
+_KINDS: Final = (_OF_BUILDER, _WAITS, _END_OF_TURN, _LEFT_ON)
 
 
 def stated_words(control: Control, settings: Mapping[str, str]) -> frozenset[str]:
@@ -46,15 +47,10 @@ def _is_told(noted: Diagnostic, code: str, stated: frozenset[str]) -> bool:
 def _of_kind(run: Run, code: str, noted: Sequence[Diagnostic]) -> list[Problem]:
     """Return the first warnings of a kind one by one, and the others together."""
     told = [
-        Problem(
-            each.file or run.files[0],
-            each.line,
-            Wording(code, "noted", noted=each.wording),
-            severity=Severity.WARNING,
-        )
+        warning(each.file or run.files[0], each.line, Wording(code, "noted", noted=each.wording))
         for each in noted[:_MOST_TOLD]
     ]
     if more := len(noted) - len(told):
         line = noted[_MOST_TOLD].line
-        told.append(Problem(run.files[0], line, Wording(code, "more_noted", count=more), severity=Severity.WARNING))
+        told.append(warning(run.files[0], line, Wording(code, "more_noted", count=more)))
     return told

@@ -7,6 +7,7 @@ Out:    the run and the toolpaths; warnings about them have been reported.
 from dataclasses import dataclass
 from pathlib import Path
 
+from trunnion.cl.read import ClReading
 from trunnion.controls import Control
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
@@ -49,7 +50,7 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
 
     Raises ``InputError`` if a file cannot be used, or a CL file states that its part is clamped otherwise.
     """
-    toolpaths = as_toolpaths(given["cl"], given["units"], given["strict"], observer, given["dialect"])
+    toolpaths = as_toolpaths(given["cl"], observer, ClReading(given["units"], given["dialect"], given["strict"]))
     run = as_run(nc, on.machine, given["subprograms"])
     observer.problems(program_warnings(run))
     if len(run.normals):

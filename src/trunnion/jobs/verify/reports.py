@@ -12,7 +12,7 @@ from trunnion.jobs.inputs.input_files import verified_files
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import check_report_name
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
 
@@ -56,7 +56,7 @@ def write_report(
     from trunnion.jobs.simulate.result import SimulationResult
 
     if not isinstance(result, SimulationResult):
-        raise wrong_argument("result", result, "give the result of trunnion.verify, trunnion.post or trunnion.simulate")
+        raise wrong_argument("result", result, phrase("give_result"))
     write_simulation_report(result, file)
 
 
@@ -73,7 +73,7 @@ def add_report(
     """
     if len(verification.seconds) != len(verification.run):
         raise InputError(Problem(name, 0, Wording("ARG130", "verified_without_columns")))
-    from trunnion.reporting import render_report  # most runs write no report
+    from trunnion.reporting.write import render_report  # most runs write no report
 
     content = None
     if simulation is not None:
@@ -86,7 +86,7 @@ def add_report(
 
 
 def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, place: Path) -> None:
-    """Write the report of a program that was refused before it was run; arguments as ``reporting.write_refusal``."""
-    from trunnion import reporting
+    """Write the report of a program that was refused before it was run; arguments as ``reporting`` has them."""
+    from trunnion.reporting import write  # most runs are not refused
 
-    reporting.write_refusal(problems, machine, program, place)
+    write.write_refusal(problems, machine, program, place)

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Unpack
 
 from trunnion import readers, verification
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
 from trunnion.jobs.arguments import VerifyArguments, taken
@@ -14,7 +14,6 @@ from trunnion.jobs.inputs.control_settings import written_control
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer, Remembering
-from trunnion.jobs.twin.recording import as_recording
 from trunnion.jobs.verify.arguments import checked
 from trunnion.jobs.verify.expectation import expected, tolerances
 from trunnion.jobs.verify.reading import VerifiedMachine, read_program
@@ -114,7 +113,10 @@ def verify(
     check_observer(observer)
     observer = Remembering(observer)
     found = checked(taken(VerifyArguments, "verify", given))
-    recording = None if found["recorded"] is None else as_recording(found["recorded"])
+    if (recording := found["recorded"]) is not None:
+        from trunnion.jobs.twin.recording import as_recording  # few programs are compared with one
+
+        recording = as_recording(recording)
     on = _set_up(as_machine(machine), found["zero"], found["tool_length"])
     read = read_program(nc, on, found, observer)
     proof = verification.verify(
@@ -141,4 +143,4 @@ def _without_motion(run: Run) -> list[Problem]:
     """Return a warning of a program that moves nothing."""
     if len(run) or run.errors:
         return []
-    return [Problem(run.files[0], 0, Wording("NC185", "nothing_moves"), severity=Severity.WARNING)]
+    return [warning(run.files[0], 0, Wording("NC185", "nothing_moves"))]

@@ -14,13 +14,13 @@ from trunnion.cl import is_cl_file
 from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
 from trunnion.encoding import decode
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.jobs.arguments import PostArguments
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, is_stream
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
-from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths
-from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths, cl_reading
+from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import post_beside
@@ -40,6 +40,9 @@ from trunnion.verification import Verification, restore_rapids
 _VIEWED: Final = {each.name for each in JOBS["view"].options}
 _OF_SETUP: Final = tuple(each.name for each in OF_SETUP if each.name in _VIEWED)
 _OF_PROJECT: Final = tuple(each.name for each in OF_PROJECT if each.name in _VIEWED)
+
+#: Settings that say how CL files are read.
+_OF_READING: Final = frozenset(("cl_units", "dialect", "spline_tolerance"))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,17 +80,20 @@ def view_program(
         if not all(are_cl):
             other = files[are_cl.index(False)]
             raise InputError(Problem(str(other), 0, Wording("PAG112", "no_cl_file_as_others")))
-        stated: PostArguments = {"settings": settings, "subprograms": subprograms, "hooks": hooks}
+        stated: PostArguments = {
+            "settings": settings, "subprograms": subprograms, "hooks": hooks, "strict": given["strict"],
+        }  # fmt: skip
         return _posted(files, machine, stated, observer)
-    if settings:
+    cl, texts_of_settings = given["cl"], as_texts(settings)
+    if not _OF_READING.issuperset(texts_of_settings) or (texts_of_settings and not cl):
         raise InputError(Problem(str(files[0]), 0, Wording("PAG111", "settings_for_program")))
     others = [*files[1:], *subprograms]
     run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))
     unused = [file for file in files[1:] if str(file) not in run.files]
     if unused:
         raise InputError(Problem(str(unused[0]), 0, Wording("PAG113", "never_called", program=files[0].name)))
-    cl = given["cl"]
-    toolpaths = hooked_toolpaths(as_toolpaths(cl, None, False, observer), machine, hooks)
+    read = as_toolpaths(cl, observer, cl_reading(texts_of_settings, given["strict"]))
+    toolpaths = hooked_toolpaths(read, machine, hooks)
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
@@ -98,9 +104,7 @@ def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Pro
     stated = stated_clamping(toolpaths) if is_cl_file(file) else stated_place(file).clamping
     if stated is None or stated.is_as_drawn:
         return []
-    return [
-        Problem(str(file), 0, Wording("PAG116", "bodies_clamped_otherwise", clamping=stated), severity=Severity.WARNING)
-    ]
+    return [warning(str(file), 0, Wording("PAG116", "bodies_clamped_otherwise", clamping=stated))]
 
 
 def _posted(files: Sequence[Path], machine: Machine, stated: PostArguments, observer: Observer) -> ViewedProgram:

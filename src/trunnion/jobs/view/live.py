@@ -101,5 +101,5 @@ def machine_content(machine: MachineLike, title: str, **given: Any) -> ViewConte
         nothing = Path(folder) / "no program"  # a control that has been given nothing
         nothing.write_bytes(b"")
         content = prepare_view(nothing, machine=named, **given)
-    scene = {**content.scene, "title": title, "files": [""], "findings": [], "checks": [], "standing": ""}
+    scene = {**content.scene, "title": title, "files": [""], "findings": [], "checks": [], "standing": "", "stands": []}
     return replace(content, scene=scene)

@@ -23,9 +23,11 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.results import to_data
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.verification import Verification
 from trunnion.viewer.content import ViewContent, proof_scene
+from trunnion.viewer.shown import Mark
 from trunnion.viewer.stock import StockView
 
 #: Arguments that mean nothing without stock.
@@ -70,7 +72,7 @@ def with_stock(
     checks = (*verification.checks, *simulation_checks(found))
     scene = {
         **content.scene,
-        "findings": [*content.scene["findings"], *_findings(found, run)],
+        "findings": [*content.scene["findings"], *to_data(list(_findings(found, run)))],
         **proof_scene(replace(verification, checks=checks)),
         "stock": {**stock.scene(), "remarks": warnings},
     }
@@ -88,27 +90,22 @@ def _counts(found: SimulationResult) -> Iterator[tuple[str, int]]:
     yield "near", len(found.near)
 
 
-def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
+def _findings(found: SimulationResult, run: Run) -> Iterator[Mark]:
     """Yield what the simulation found, with its rows and places; errors that have no row stand at the first one."""
     files = {Path(file).name: number for number, file in enumerate(run.files)}
     for each in found.remarks:
         if each.severity is Severity.ERROR:
             here = np.flatnonzero((run.line >= each.line) & (run.file == files.get(Path(each.file).name, -1)))
-            yield _mark(run, "simulation", int(here[0]) if len(here) else 0, _short(each), None)
+            yield Mark.at(run, "simulation", int(here[0]) if len(here) else 0, _short(each))
     shown = Counter[str]()
     for one in sorted(found.findings, key=lambda finding: -finding.depth):
         shown[one.kind] += 1
         if shown[one.kind] <= _MOST:
-            yield _mark(run, one.kind, one.row, str(one), one.place)
+            yield Mark.at(run, one.kind, one.row, str(one), one.place)
     for miss in sorted(found.near, key=lambda miss: miss.distance)[:_MOST]:
-        yield _mark(run, "near", miss.row, str(miss), miss.place)
+        yield Mark.at(run, "near", miss.row, str(miss), miss.place)
 
 
 def _short(problem: Problem) -> str:
     """Return a problem without the folder of its file."""
     return str(replace(problem, file=Path(problem.file).name))
-
-
-def _mark(run: Run, kind: str, row: int, text: str, place: tuple[float, float, float] | None) -> dict[str, Any]:
-    file, line = (int(run.file[row]), int(run.line[row])) if len(run) else (0, 0)
-    return {"kind": kind, "row": row, "line": line, "file": file, "text": text, "place": place}

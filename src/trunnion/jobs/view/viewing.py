@@ -7,7 +7,7 @@ from typing import Any, Final, Unpack
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import atomic_file
-from trunnion.jobs.arguments import ViewArguments, taken
+from trunnion.jobs.arguments import ViewArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.bodies import KnownTools, known_tools
 from trunnion.jobs.inputs.reading import FilePath, as_machine
@@ -19,6 +19,7 @@ from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_pr
 from trunnion.jobs.view.stock import view_simulation, with_stock
 from trunnion.messages import Wording
 from trunnion.model.run import Run
+from trunnion.simulation.collisions.bodies import fixture_body, part_body
 from trunnion.simulation.meshes import load_mesh
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
@@ -45,7 +46,8 @@ def prepare_view(
         files = check_paths("nc", stated.pop("nc"))
     elif setup is not None:
         raise InputError(argument_problem("setup", Wording("PAG111", "setup_without_project")))
-    content, run = _prepared(files, settings, observer, **stated)
+    with reported_by_arguments("view", given):
+        content, run = _prepared(files, settings, observer, **stated)
     if against is None:
         if against_machine is not None:
             raise InputError(argument_problem("against_machine", Wording("PAG111", "machine_without_program")))
@@ -74,11 +76,12 @@ def _prepared(
     if any(given[name] for name in ("stock", "part", "fixtures")):
         observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
     fixtures = check_paths("fixtures", given["fixtures"])
-    around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(fixtures, 1)]
-    design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
-    run = viewed.verification.run
+    run, machine = viewed.verification.run, viewed.verification.machine
+    around = [fixture_body(load_mesh(mesh, name=f"fixture {k}"), machine) for k, mesh in enumerate(fixtures, 1)]
+    part = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
+    clamped = around if part is None else [part_body(part, machine), *around]
     bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
-    content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
+    content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, clamped, viewed.toolpaths)
     if simulated is not None:
         content = with_stock(content, simulated, viewed.verification, viewed.toolpaths, observer)
     return content, run
@@ -107,7 +110,7 @@ def write_view(
         it if it is another. What differs is marked, as ``trunnion.diff`` compares programs.
     setup
         Name or number of a project's set-up, if it has several.
-    settings, units, dialect
+    settings, units, dialect, strict
         For CL files, as for ``post``.
     cl
         Its CL files: the page then names the CL line of each block, and what the proof finds.

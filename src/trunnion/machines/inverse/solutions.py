@@ -63,17 +63,10 @@ def inverse(machine: Machine, tip: Floats, axis: Floats, tool_length: float | No
 def slide_positions(machine: Machine, tip: Floats, rotary: Floats, tool_length: float | None = None) -> Floats:
     """All five axis values for rows of tool tips with known rotary values.
 
-    Parameters
-    ----------
-    tip : (n, 3) float64, mm
-        In workpiece coordinates, as for ``inverse``.
-    rotary : (n, 2) float64, deg
-        Displayed values in the order of ``machine.rotary``.
+    tip : (n, 3) float64, mm      in workpiece coordinates, as for ``inverse``
+    rotary : (n, 2) float64, deg  displayed values in the order of ``machine.rotary``
 
-    Returns
-    -------
-    (n, 5) float64
-        mm or deg, in the order of ``machine.axes``; slides are NaN where they are linearly dependent.
+    (n, 5) float64  mm or deg, in the order of ``machine.axes``; slides are NaN where they are linearly dependent
     """
     joints = np.empty((len(tip), 5))
     slide_rows(

@@ -19,9 +19,11 @@ from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, P
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import CHUNK, BlockWriter
 from trunnion.output.blocks.feeds import FEED_WORDS, FeedWords
+from trunnion.output.blocks.first_leg import FirstLegs
 from trunnion.output.blocks.line_texts import LineTexts
 from trunnion.output.blocks.orientation import OrientationWords
 from trunnion.output.blocks.surface_normals import add_vector_lines, contact_rows
+from trunnion.output.coordinates.approach_leg import ApproachLegs
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
 
@@ -91,6 +93,7 @@ class MotionBlockWriter:
         self._length_register = 0
         self._words_to_repeat: dict[str, int] = {}
         self._texts = LineTexts(program)
+        self.legs = FirstLegs(ApproachLegs(program), self.writer)
 
     # Motions
 
@@ -172,14 +175,24 @@ class MotionBlockWriter:
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""
-        self.writer.write_table({word: np.array([count], np.int64) for word, count in words.items()})
+        self.writer.write_words(words)
 
     def write_event(self, event: WordEvent) -> None:
         """Write the words of an event as a block of its own."""
+        words = self.event_words(event)
+        if isinstance(event, CutterComp) and self._is_on_arc(words):
+            words["motion"] = self.writer.to_count("motion", self.control.codes["linear"])
         try:
-            self.write_block(self.event_words(event))
+            self.write_block(words)
         except WordRangeError as error:
             raise error.at(self._file, event.line) from None
+
+    def _is_on_arc(self, words: Mapping[str, int]) -> bool:
+        """Whether G2 or G3 is in force where radius compensation is switched, at which controls stop with an alarm."""
+        if "cutter_comp" not in words:
+            return False
+        arcs = [self.control.codes[f"arc_{way}"] for way in ("clockwise", "counterclockwise")]
+        return self.writer.modal_state().get("motion") in [self.writer.to_count("motion", code) for code in arcs]
 
     def needs_motion(self, event: WordEvent) -> bool:
         """Whether the words of an event make no block alone, as ``RL`` does not."""
@@ -255,9 +268,10 @@ class MotionBlockWriter:
             table.force("X", np.ones(stop - start, np.bool_))
         other_end = self._add_arcs(table, motion, rows)
         if start == 0:
+            first_words = self.first_block_words(motion)
             if rapid[0] and self.xy_before_z:
-                self.write_block({word: count for word, count in table.words_of_row(0).items() if word != "Z"})
-            table.set_words(0, self.first_block_words(motion))
+                first_words = self.legs.write(motion, moves.tip[0], table.words_of_row(0), first_words)
+            table.set_words(0, first_words)
         for event in joining_events:
             table.set_words(event.row - start, self.event_words(event))
         self._repeat_words(table)

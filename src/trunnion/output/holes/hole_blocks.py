@@ -11,7 +11,7 @@ from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOn
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
-from trunnion.output.holes.hole_groups import write_hole_groups
+from trunnion.output.holes.hole_groups import HoleRows, write_hole_groups
 from trunnion.output.holes.holes_under_tcp import write_holes_under_tcp
 from trunnion.planning.holes.cycles import Cycle, SpindleState, cycle_feed, cycle_from_event
 
@@ -19,24 +19,14 @@ from trunnion.planning.holes.cycles import Cycle, SpindleState, cycle_feed, cycl
 _REPEAT_POSITION = {"X": True, "Y": True}
 
 
-def write_holes(
-    blocks: MotionBlockWriter,
-    motion: Motion,
-    first: int,
-    last: int,
-    joining_events: Sequence[WordEvent],
-    phase: int,
-    event: CycleOn,
-) -> int:
-    """Write rows ``first`` to ``last`` (excluded) as holes of a cycle; as ``MotionBlockWriter.write_rows``."""
+def write_holes(blocks: MotionBlockWriter, rows: HoleRows, phase: int, event: CycleOn) -> int:
+    """Write the holes of a cycle; as ``MotionBlockWriter.write_rows``."""
     cycle = cycle_from_event(event)
-    if motion.mode is MachiningMode.TCP:
-        return write_holes_under_tcp(blocks, motion, first, last, joining_events, phase, cycle)
-    heights = np.ascontiguousarray(motion.operation.moves.tip[first:last, 2])
-    holes = _Holes(blocks, motion, cycle)
-    return write_hole_groups(
-        blocks, motion, first, heights, joining_events, phase, lambda _, *group: holes.write(*group)
-    )
+    if rows.motion.mode is MachiningMode.TCP:
+        return write_holes_under_tcp(blocks, rows, phase, cycle)
+    heights = np.ascontiguousarray(rows.motion.operation.moves.tip[rows.first : rows.last, 2])
+    holes = _Holes(blocks, rows.motion, cycle)
+    return write_hole_groups(blocks, rows, heights, phase, lambda _, *group: holes.write(*group))
 
 
 class _Holes:
@@ -105,10 +95,11 @@ class _Holes:
     ) -> None:
         """Go to the retract height over the first hole of a motion: in one block, or to X and Y first."""
         blocks = self._blocks
-        block = {**self._rapid, **position}
+        block, first_words = {**self._rapid, **position}, blocks.first_block_words(self._motion)
         if blocks.xy_before_z:
-            blocks.write_block(block)
-        block |= {"Z": self._writer.to_count("X", retract), **blocks.first_block_words(self._motion)}
+            point = np.array([*self._motion.operation.moves.tip[0, :2], retract])
+            first_words = blocks.legs.write(self._motion, point, block, first_words)
+        block |= {"Z": self._writer.to_count("X", retract), **first_words}
         for event in joining_events:
             block |= blocks.event_words(event)
         blocks.write_block(block)

@@ -1,6 +1,7 @@
 """Holes of one cycle in groups: those of one height follow each other, and each file gets as many as fit."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -17,26 +18,29 @@ from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 WriteGroup = Callable[[int, int, int, Sequence[WordEvent], int], int]
 
 
-def write_hole_groups(
-    blocks: MotionBlockWriter,
-    motion: Motion,
-    first: int,
-    heights: Floats,
-    joining_events: Sequence[WordEvent],
-    phase: int,
-    write_group: WriteGroup,
-) -> int:
-    """Write the holes from row ``first`` on; a new group begins where the printed height changes and at every event.
+@dataclass(frozen=True, slots=True, eq=False)
+class HoleRows:
+    """Rows ``first`` to ``last`` (excluded) of a motion, which are holes, and the events that join their blocks."""
 
-    heights         (n,) float64: of the n holes, mm
-    joining_events  events that join the blocks of the holes
-    phase           index of the phase comment that was written last
+    motion: Motion
+    first: int
+    last: int
+    joining_events: Sequence[WordEvent]
+
+
+def write_hole_groups(
+    blocks: MotionBlockWriter, rows: HoleRows, heights: Floats, phase: int, write_group: WriteGroup
+) -> int:
+    """Write holes; a new group begins where the printed height changes and at every event.
+
+    heights  (n,) float64: of the n holes, mm
+    phase    index of the phase comment that was written last
 
     int  index of the phase comment that was written last
     """
+    motion, first, last, joining_events = rows.motion, rows.first, rows.last, rows.joining_events
     noise = 0.0 if motion.plane is None else TURNING_NOISE
     changes = [first + k for k in _changes(heights, blocks.writer.word("X").format, noise)]
-    last = first + len(heights)
     edges = {first, last, *changes, *(event.row for event in joining_events if first <= event.row <= last)}
     for begin, end in pairwise(sorted(edges)):
         row = begin

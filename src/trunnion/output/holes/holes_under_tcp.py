@@ -20,7 +20,7 @@ from trunnion.model.frames import without_turning_noise
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
-from trunnion.output.holes.hole_groups import write_hole_groups
+from trunnion.output.holes.hole_groups import HoleRows, write_hole_groups
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState, cycle_feed, cycle_from_event
 
 #: Tool axes are equal if no component differs by more.
@@ -30,27 +30,18 @@ _SAME_AXIS = 1e-7
 _SAME_HEIGHT = 1e-6
 
 
-def write_holes_under_tcp(
-    blocks: MotionBlockWriter,
-    motion: Motion,
-    first: int,
-    last: int,
-    joining_events: Sequence[WordEvent],
-    phase: int,
-    cycle: Cycle,
-) -> int:
-    """Write rows ``first`` to ``last`` (excluded) as holes along the tool; as ``MotionBlockWriter.write_rows``."""
-    operation = motion.operation
-    tip, axis = operation.moves.tip[first:last], operation.moves.axis[first:last]
+def write_holes_under_tcp(blocks: MotionBlockWriter, rows: HoleRows, phase: int, cycle: Cycle) -> int:
+    """Write holes along the tool; as ``MotionBlockWriter.write_rows``."""
+    operation, first = rows.motion.operation, rows.first
+    tip, axis = operation.moves.tip[first : rows.last], operation.moves.axis[first : rows.last]
     heights = without_turning_noise(np.einsum("ij,ij->i", tip, axis))
     moves = replace(operation.moves, tip=_retracted_tips(operation))
-    holes = _Holes(blocks, replace(motion, operation=replace(operation, moves=moves)), cycle)
+    retracted = replace(rows.motion, operation=replace(operation, moves=moves))
+    holes = _Holes(blocks, retracted, cycle)
     return write_hole_groups(
         blocks,
-        holes.motion,
-        first,
+        replace(rows, motion=retracted),
         heights,
-        joining_events,
         phase,
         lambda begin, *group: holes.write(float(heights[begin - first]), *group),
     )
@@ -60,7 +51,7 @@ class _Holes:
     """Writes the holes of one cycle; ``motion`` has the tips retracted over them."""
 
     def __init__(self, blocks: MotionBlockWriter, motion: Motion, cycle: Cycle) -> None:
-        self.motion = motion
+        self._motion = motion
         self._blocks, self._cycle = blocks, cycle
 
     def write(self, top: float, first: int, last: int, joining_events: Sequence[WordEvent], phase: int) -> int:
@@ -68,7 +59,7 @@ class _Holes:
 
         Returns the index of the phase comment that was written last.
         """
-        blocks, motion, moves = self._blocks, self.motion, self.motion.operation.moves
+        blocks, motion, moves = self._blocks, self._motion, self._motion.operation.moves
         if first == 0:
             phase = blocks.write_chunk(motion, 0, 1, joining_events, phase)
         else:
@@ -96,7 +87,7 @@ class _Holes:
 
     def _raise(self, first: int, phase: int) -> int:
         """Raise the tool along its axis at rapid, if it is lower than the next hole with the same axis needs it."""
-        moves = self.motion.operation.moves
+        moves = self._motion.operation.moves
         assert self._cycle.retract_height is not None
         axis, before = moves.axis[first], moves.tip[first - 1]
         missing = float((moves.tip[first] - before) @ axis) - self._cycle.retract_height + self._cycle.rapid_height
@@ -104,8 +95,8 @@ class _Holes:
             return phase
         tip, kind = moves.tip.copy(), moves.kind.copy()
         tip[first - 1], kind[first - 1] = before + missing * axis, Kind.RAPID
-        raised = replace(self.motion.operation, moves=replace(moves, tip=tip, kind=kind))
-        return self._blocks.write_chunk(replace(self.motion, operation=raised), first - 1, first, (), phase)
+        raised = replace(self._motion.operation, moves=replace(moves, tip=tip, kind=kind))
+        return self._blocks.write_chunk(replace(self._motion, operation=raised), first - 1, first, (), phase)
 
 
 def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:

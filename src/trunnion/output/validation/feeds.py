@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.controls.words import NumberFormat
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, warning
 from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Moves
@@ -30,9 +30,9 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
         Problem(
             program.file_of(motion.operation),
             int(moves.line[rows[0]]),
-            Wording("CTL310", "cutting_motion_without")
-            if motion.cl_rows is not None
-            else Wording("CTL310", "cutting_motion_without_feed"),
+            Wording(
+                "CTL310", "cutting_motion_without" if motion.cl_rows is not None else "cutting_motion_without_feed"
+            ),
         )
     ]
 
@@ -49,14 +49,7 @@ def rapid_feed_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     lower = float(rapid_feed) - number_format.digit
     file, line = program.file_of(motion.operation), int(moves.line[rows[0]])
-    return [
-        Problem(
-            file,
-            line,
-            Wording("CTL315", "lines_mm_min", rapid_feed=float(rapid_feed), lower=lower),
-            severity=Severity.WARNING,
-        )
-    ]
+    return [warning(file, line, Wording("CTL315", "lines_mm_min", rapid_feed=float(rapid_feed), lower=lower))]
 
 
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -105,9 +98,7 @@ def rounding_problem(
         return Problem(
             file,
             line,
-            Wording("CTL320", "feed_below_least", feed=feed)
-            if per_rev
-            else Wording("CTL320", "feed_below_least_control", feed=feed),
+            Wording("CTL320", "feed_below_least" if per_rev else "feed_below_least_control", feed=feed),
         )
     error = abs(printed - feed) / feed
     if error <= TOLD_ERROR:
@@ -116,8 +107,8 @@ def rounding_problem(
     return Problem(
         file,
         line,
-        Wording("CTL320", "feed_prints_off", feed=feed, printed=printed, error=100.0 * error)
-        if per_rev
-        else Wording("CTL320", "feed_prints", feed=feed, printed=printed, error=100.0 * error),
+        Wording(
+            "CTL320", "feed_prints_off" if per_rev else "feed_prints", feed=feed, printed=printed, error=100.0 * error
+        ),
         severity=Severity.ERROR if refused else Severity.WARNING,
     )

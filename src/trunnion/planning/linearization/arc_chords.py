@@ -19,8 +19,6 @@ from trunnion.planning.linearization.row_insertion import insert_rows
 #: Lines that arcs may become: more would take the memory of a computer, and no control would read them.
 MOST_LINES: Final = 10_000_000
 
-FEWER_LINES: Final = "split the file, choose a control or a mode that takes these arcs, or a coarser chord_tolerance"
-
 #: A direction is that of a coordinate axis within this sine; seven printed decimals give 1e-7.
 _PARALLEL_SINE: Final = 1e-6
 

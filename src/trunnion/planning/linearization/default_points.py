@@ -21,6 +21,7 @@ from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.planning.linearization.arc_chords import great_circle_points
 from trunnion.planning.linearization.intermediate_points import DividedPath, divide_path
+from trunnion.planning.linearization.leg_division import PathRows
 from trunnion.planning.linearization.rotary_motion import rotary_motion
 from trunnion.planning.poses.contact import NO_CONTACT, contact_of
 from trunnion.planning.rotary_positions import continuous_positions, tool_axes
@@ -179,7 +180,7 @@ def _divided(
         axis = np.insert(axis, before, np.array([each.axis for each in added]), axis=0)
         rotary = np.insert(rotary, before, np.array([each.rotary for each in added]), axis=0)
     path = divide_path(
-        machine, tip, axis, rotary, np.insert(divisible, before, [each.divisible for each in added]),
+        machine, PathRows(tip, axis, rotary), np.insert(divisible, before, [each.divisible for each in added]),
         tcp=True, tip_tolerance=math.inf, axis_tolerance=tolerance,
     )  # fmt: skip
     return replace(path, source=source[path.source])

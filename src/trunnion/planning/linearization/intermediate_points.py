@@ -38,9 +38,7 @@ class DividedPath:
 
 def divide_path(
     machine: Machine,
-    tip: Floats,
-    axis: Floats,
-    rotary: Floats,
+    rows: PathRows,
     divisible: Flags,
     *,
     tcp: bool,
@@ -50,9 +48,6 @@ def divide_path(
     """Add the fewest points that keep the tool on its path from CL point to CL point.
 
     machine                        without ``tcp`` its workpiece zero must be that of the program
-    tip                            (n, 3) float64: mm, workpiece frame
-    axis                           (n, 3) float64: unit vectors, workpiece frame
-    rotary                         (n, 2) float64: rotary positions as they wind, degrees
     divisible                      (n,) bool: rows before which points may be added. Not the first one, and none in
                                    which the branch changes, as no points help there
     tcp                            the control keeps the tip on its line
@@ -60,18 +55,18 @@ def divide_path(
     """
     tolerances = math.inf if tcp else USABLE_SHARE * tip_tolerance, USABLE_SHARE * math.radians(axis_tolerance)
     model = kinematic_chain(machine), kinematic_parameters(machine), tolerances
-    rows, copies = PathRows(tip, axis, rotary), np.ones(len(tip), np.int64)
+    copies = np.ones(len(rows.tip), np.int64)
     added = PathRows(*(np.empty((_FIRST_CAPACITY, column.shape[1])) for column in rows))
     row, count = divide_rows(*model, rows, divisible, 0, 0, copies, added)
-    while row < len(tip):
+    while row < len(rows.tip):
         added = PathRows(*(np.concatenate((column, np.empty_like(column))) for column in added))
         row, count = divide_rows(*model, rows, divisible, row, count, copies, added)
     if not count:
-        return DividedPath(np.arange(len(tip)), tip, axis, rotary)
+        return DividedPath(np.arange(len(rows.tip)), *rows)
     is_own = np.zeros(int(copies.sum()), np.bool_)
     is_own[np.cumsum(copies) - 1] = True
     merged = (_merged(is_own, old, new[:count]) for old, new in zip(rows, added, strict=True))
-    return DividedPath(np.repeat(np.arange(len(tip)), copies), *merged)
+    return DividedPath(np.repeat(np.arange(len(rows.tip)), copies), *merged)
 
 
 def _merged(is_own: Flags, rows: Floats, added: Floats) -> Floats:

@@ -27,6 +27,7 @@ from trunnion.model.toolpath import Kind, Operation
 from trunnion.planning.axis_limits import limit_remedy, limit_violation_text, limits_of, outside_limits
 from trunnion.planning.linearization.default_points import default_points
 from trunnion.planning.linearization.intermediate_points import USABLE_SHARE, DividedPath, divide_path
+from trunnion.planning.linearization.leg_division import PathRows
 from trunnion.planning.linearization.rotary_motion import rotary_motion
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.linearization.slide_arcs import keep_slide_arcs
@@ -82,7 +83,7 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
         divisible &= moves.kind == Kind.LINEAR
     divisible[0] = False
     path = divide_path(
-        machine, moves.tip, moves.axis, turning.positions, divisible,
+        machine, PathRows(moves.tip, moves.axis, turning.positions), divisible,
         tcp=not without_tcp, tip_tolerance=options.tip_tolerance, axis_tolerance=tolerance,
     )  # fmt: skip
     if without_tcp:

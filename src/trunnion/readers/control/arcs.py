@@ -26,6 +26,13 @@ SAME_POINT: Final = 1e-9
 MAX_RADIUS: Final = 1e7
 
 
+#: The end of a circle that is nearer to its start than this, mm, and not there, was mostly meant to be there.
+_GAP: Final = 0.002
+
+#: A circle is wider than so many gaps, and a helix rises more than so many.
+_GAPS: Final = 10.0
+
+
 class ArcError(WordedError):
     """The reason why a block programs no circle."""
 
@@ -79,6 +86,20 @@ class ArcMap:
         return self.linear @ arc.centre + self.shift, normal, arc.radius * float(lengths[0])
 
 
+def gap_of_turn(start: Floats, arc: Arc) -> float:
+    """Return how far off a full turn a circle or helix ends, mm; 0 if it does not end right beside its start.
+
+    A last digit decides there between a whole turn and nearly none. A short arc that does not rise is one.
+    """
+    first, chord = start - arc.centre, arc.end - start
+    rise = float(chord @ arc.normal)
+    gap = float(np.linalg.norm(chord - rise * arc.normal))
+    if arc.turns or not SAME_POINT < gap < _GAP or arc.radius < _GAPS * gap:
+        return 0.0
+    turns_on = float(np.cross(first, chord) @ arc.normal) > 0.0
+    return 0.0 if turns_on and abs(rise) < _GAPS * gap else gap
+
+
 def normal_of(plane: int, clockwise: bool) -> Floats:
     """Return the unit vector about which an arc turns by the right-hand rule."""
     normal = np.zeros(3)
@@ -111,7 +132,7 @@ def by_radius(start: Floats, end: Floats, radius: float, plane: int, clockwise: 
     if short > max(RADIUS_ERROR, RADIUS_RATIO * abs(radius)):
         raise ArcError(Wording("NC320", "radius_too_small", radius=radius, length=length))
     height = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0)) * math.copysign(1.0, radius)
-    return _from_chord(start, end, chord, height, plane, clockwise, turns)
+    return _from_chord(start, end, chord, height, normal_of(plane, clockwise), turns)
 
 
 def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
@@ -124,7 +145,7 @@ def by_angle(start: Floats, end: Floats, angle: float, plane: int, clockwise: bo
     if length > 2.0 * MAX_RADIUS * math.sin(half):
         raise ArcError(Wording("NC320", "opening_angle_needs_radius_no", angle=angle))
     height = 0.5 * length * math.cos(half) / math.sin(half)
-    return _from_chord(start, end, chord, height, plane, clockwise, turns)
+    return _from_chord(start, end, chord, height, normal_of(plane, clockwise), turns)
 
 
 def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int, clockwise: bool, turns: int) -> Arc:
@@ -160,12 +181,10 @@ def _chord(start: Floats, end: Floats, plane: int) -> Floats:
     return np.asarray(chord)
 
 
-def _from_chord(
-    start: Floats, end: Floats, chord: Floats, height: float, plane: int, clockwise: bool, turns: int
-) -> Arc:
-    """Return the arc whose centre is at a height over the middle of the chord, to its left if counter-clockwise."""
-    left = np.cross(normal_of(plane, clockwise), chord)
+def _from_chord(start: Floats, end: Floats, chord: Floats, height: float, normal: Floats, turns: int) -> Arc:
+    """Return the arc whose centre is at a height over the middle of the chord, to its left about the normal."""
+    left = np.cross(normal, chord)
     centre = start + 0.5 * chord + height * left / np.linalg.norm(left)
     middle = np.asarray(centre)
     radius = float(np.linalg.norm(start - middle))
-    return Arc(end, middle, normal_of(plane, clockwise), radius, turns)
+    return Arc(end, middle, normal, radius, turns)

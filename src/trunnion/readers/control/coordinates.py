@@ -307,6 +307,10 @@ class CoordinateControl(RowRecorder):
             return self.row
         return self._in_use.at_feed if mode in ("feed", "M116") else self._in_use.at_part
 
+    def cuts_behind(self, row: int) -> bool:
+        """Whether the program cuts, and moves at the part from a row on."""
+        return self._in_use.cuts and row < self._in_use.at_part
+
     def report_left_on(self, word: str) -> None:
         """Report a word that is still in force at the end of the program, which the next program may begin with."""
         self.note(Wording("NC351", "left_on", word=word, reset_by=self.reset_by), Severity.WARNING)

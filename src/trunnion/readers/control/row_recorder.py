@@ -276,11 +276,10 @@ class RowRecorder(EventRecorder):
         status = resolve_rotary(
             self.machine,
             self._kinematics,
-            xyz,
             words,
             self.current_joints[list(self.machine.rotary)],
-            xyz_is_tip=self.tip_programmed,
-            deciding_axis=self.deciding_axis,
+            xyz if self.tip_programmed else None,
+            self.deciding_axis,
         )
         self.modal.xyz_is_tip.set(c.resolved, self.tip_programmed)
         self._report(status, c.resolved - c.base)

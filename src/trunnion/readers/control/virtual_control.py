@@ -206,6 +206,9 @@ class VirtualControl(CoordinateControl, ABC):
             try:
                 arc = circle(self.programmed_position.copy(), end)
                 end = arc.end
+                gap = arcs.gap_of_turn(self.programmed_position, arc)
+                if gap:
+                    self.note(Wording("NC323", "end_beside_start", gap=gap), Severity.WARNING)
             except arcs.ArcError as error:
                 self.note(error.wording.within("taken_as_line"), Severity.ERROR)
         rotary = self.rotary_target(axes)

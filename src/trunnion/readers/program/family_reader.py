@@ -29,6 +29,7 @@ class FamilyReader:
     raw_words            the words that may stand in raw text
     is_own_word          whether a declared word, in capitals, begins with one that the control has itself
     offsets_of           makes ``work_offsets`` for controls of the family that have other words; None: all have these
+    words_of             makes ``words_without_path`` for controls of the family that have other words
     smoothing            regular expression of calls and definitions, besides words, that set how the control follows
                          the path; None: there are none
     lost_smoothing       kind of the event that such a cycle makes -> its name, and the settings that stand for it
@@ -43,6 +44,7 @@ class FamilyReader:
     uses_length_numbers: bool = False
     raw_words: RawWords = NO_RAW_WORDS
     offsets_of: Callable[[Machine], WorkOffsetWords] | None = None
+    words_of: Callable[[Machine], frozenset[str]] | None = None
     smoothing: re.Pattern[str] | None = None
     lost_smoothing: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     check_reading: Callable[[Machine], object] = no_reading

@@ -20,8 +20,8 @@ from trunnion.readers.program.settings import control_of
 #: What a word may do.
 EFFECTS: Final = (
     "no effect", "comes back", "comes back home", "stop", "optional stop", "tool change", "spindle clockwise",
-    "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant off", "tcp on", "tcp off",
-    "waits",
+    "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant through", "coolant off",
+    "tcp on", "tcp off", "waits",
 )  # fmt: skip
 
 #: The effect of a word after which the machine is elsewhere.
@@ -32,7 +32,7 @@ WAITS: Final = "waits"
 
 #: Effects that act before the motion of their block; all others act after it.
 _BEFORE_MOTION: Final = (
-    "spindle clockwise", "spindle counter-clockwise", "coolant flood", "coolant mist", "tcp on",
+    "spindle clockwise", "spindle counter-clockwise", "coolant flood", "coolant mist", "coolant through", "tcp on",
 )  # fmt: skip
 
 #: Effects that are not events of their own: the word itself says what happens.

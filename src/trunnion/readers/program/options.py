@@ -1,22 +1,31 @@
 """How a program is run."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-#: Blocks that a program may execute besides going once through its files.
-DEFAULT_STEP_LIMIT: Final = 50_000
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunOptions:
-    """The options of ``trunnion.readers.run_program``, which documents them."""
+    """How a program is run.
 
-    subprograms: tuple[Path, ...] = ()
-    step_limit: int = DEFAULT_STEP_LIMIT
+    subprograms  the files that it may call, by their names. No others are looked for: calling a missing one is an error
+                 among ``Run.diagnostics``
+    step_limit   blocks that loops and calls may execute, besides once through each file
+    skip         leave out blocks that begin with ``/``
+    shortest     how endless rotary axes reach plain words: True by the shorter way, False within the displayed turn,
+                 None as the control does it. Axes whose output has all turns take the number as it is, except with True
+    encoding     of names and texts, as Python calls it; empty: what is likeliest for each line. None: what the
+                 control's definition says its programs are written in, or else empty. A byte order mark decides before
+                 all of them
+    """
+
+    subprograms: Sequence[Path] = ()
+    step_limit: int = 50_000
     skip: bool = False
     shortest: bool | None = None
-    encoding: str = ""
+    encoding: str | None = None
 
 
 #: Without subprograms, as the control does it.

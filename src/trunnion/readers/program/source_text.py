@@ -129,6 +129,11 @@ class SourceText:
             self._read()
         return True
 
+    def rest(self) -> bytes:
+        """Return what follows."""
+        self.load()
+        return self.buffer[self.position :].tobytes()
+
     def next_line(self) -> str:
         """Return the next line and go past it; call ``fill`` before."""
         size = _LINE_WINDOW

@@ -6,10 +6,12 @@ from typing import Final
 
 from trunnion.arrays import Floats
 from trunnion.errors import Severity
+from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.readers.control import arcs
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION
-from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
+from trunnion.readers.control.virtual_control import LINEAR, RAPID, Circle, VirtualControl
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings
 
 #: Motions in force besides rapid and lines: G2 and G3.
@@ -31,6 +33,10 @@ class Rs274Control(VirtualControl):
 
     #: Whether the tool length counts along Z.
     length_active = False
+
+    def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
+        super().__init__(machine, note, shortest=shortest)
+        self.motion = RAPID  # that of the interpreter: G80 and cycles bring it back
 
     #: Whether the control counts in inches when no program runs.
     usual_inches = False

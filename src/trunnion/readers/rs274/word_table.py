@@ -4,10 +4,13 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Enum, IntEnum
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from trunnion.readers.program.word_values import Values
 from trunnion.readers.rs274.block import g_code_text
+
+if TYPE_CHECKING:
+    from trunnion.readers.rs274.word_meanings import WordMeanings
 
 _CODE: Final = re.compile(r"G([0-9]{1,4})(?:\.([0-9]))?|M([0-9]{1,9})")
 _RANGE: Final = re.compile(r"M([0-9]+)\.\.M([0-9]+)")
@@ -128,6 +131,18 @@ class WordTable:
             sets = row.sets[k] if isinstance(row.sets, tuple) else row.sets
             when = self._modes if letter == "G" and row.when is When.BEFORE_MOTION else row.when
             yield letter, replace(row, text=text, code=code, sets=sets, when=when, row=row.text)
+
+    def without_path_by(self, meanings: "WordMeanings") -> frozenset[str]:
+        """Return the words without effect on the path of a control that has some in place of the family's."""
+        own = {("G", code): meaning for code, meaning in meanings.g.items()}
+        own |= {("M", code): meaning for code, meaning in meanings.m.items()}
+        found = set(self.without_path)
+        for (letter, code), meaning in own.items():
+            text = f"M{code}" if letter == "M" else g_code_text(code)
+            found.discard(text)
+            if meaning is not None and self.words(letter, [meaning])[0].effect is Effect.NONE:
+                found.add(text)
+        return frozenset(found)
 
     def words(self, letter: str, codes: Sequence[int]) -> list[Word]:
         """Return the words of codes, of G in tenths."""

@@ -12,14 +12,12 @@ from trunnion.simulation.collisions.bodies import (
     tool_bodies,
 )
 from trunnion.simulation.collisions.checking import check_collisions
-from trunnion.simulation.collisions.findings import Collision
 from trunnion.simulation.collisions.pairs import BodyPairs, body_pairs
 
 __all__ = [
     "Body",
     "BodyKind",
     "BodyPairs",
-    "Collision",
     "body_pairs",
     "check_collisions",
     "fixture_body",

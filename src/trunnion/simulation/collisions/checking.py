@@ -11,10 +11,10 @@ from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import Body, BodyKind, tool_bodies
-from trunnion.simulation.collisions.findings import Collision
 from trunnion.simulation.collisions.pairs import body_pairs
 from trunnion.simulation.collisions.queries import Solid
 from trunnion.simulation.collisions.watching import PairWatch
+from trunnion.simulation.finding import Finding
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.timing import axis_pieces
 
@@ -29,11 +29,9 @@ def check_collisions(
     tools: Mapping[str, ToolShape],
     *,
     near: float = 0.0,
-    step: float = STEP,
     end: int | None = None,
     pairs_told: Callable[[int], None] | None = None,
-    progress: Callable[[int], None] | None = None,
-) -> list[Collision]:
+) -> list[Finding]:
     """Find which bodies touch while a program runs, or come near each other.
 
     run         the program, read with the workpiece zero of the set-up where bodies of the machine are among the bodies
@@ -41,12 +39,10 @@ def check_collisions(
     tools       the tools in the spindle, by their names in ``run.tools``. A tool without a length has that of the
                 machine
     near        distance in mm from which on two bodies are told that do not touch
-    step        between bodies nearer to each other than this, the motion is looked at in such steps, mm
     end         the first row that is left out; None: all are checked
     pairs_told  is told how many pairs of bodies are checked against each other
-    progress    is told how many rows are done
 
-    list of Collision  in the order of the program
+    list of Finding  in the order of the program
 
     Raises ``InputError`` if a tool of the run is not among ``tools``, or the workpiece zero or a tool's length is
     needed and not known.
@@ -60,16 +56,14 @@ def check_collisions(
         pairs_told(len(pairs))
     solids = {k: Solid(everything[k].mesh) for pair in pairs for k in pair}
     watches = [
-        PairWatch(run.machine, run.tools, (everything[i], everything[j]), (solids[i], solids[j]), near, step)
+        PairWatch(run.machine, run.tools, (everything[i], everything[j]), (solids[i], solids[j]), near, STEP)
         for i, j in pairs
     ]
     for pieces in axis_pieces(run, lengths, end):
         for watch in watches:
             watch.follow(pieces)
-        if progress is not None:
-            progress(pieces.end)
-    found = [collision for watch in watches for collision in watch.findings()]
-    return sorted(found, key=lambda each: (each.row, each.fraction, each.between))
+    found = [each for watch in watches for each in watch.findings()]
+    return sorted(found, key=lambda each: (each.rows[0], each.begin, each.between))
 
 
 def _tool_lengths(run: Run, bodies: Sequence[Body], tools: Mapping[str, ToolShape]) -> dict[int, float]:

@@ -85,7 +85,7 @@ def gap_between(
         if is_known:
             break
         corners[count, 0], corners[count, 1], corners[count, 2] = wx, wy, wz
-        count = _nearest_of(corners, count + 1, nearest, chosen, work)
+        count = _nearest_of(corners, count + 1, nearest, chosen)
         x, y, z = nearest[0], nearest[1], nearest[2]
         length = math.sqrt(x * x + y * y + z * z)
         if length >= upper:
@@ -112,7 +112,7 @@ def _support(one: HullPoints, other: HullPoints, pose: Floats2, x: float, y: flo
 
 
 @inner
-def _nearest_of(corners: Floats2, count: int, nearest: Floats, chosen: Floats, work: Floats2) -> int:
+def _nearest_of(corners: Floats2, count: int, nearest: Floats, chosen: Floats) -> int:
     """Write the point of a simplex next to the origin, and keep the corners that it lies between; returns how many.
 
     Four corners that all stay hold the origin within them.

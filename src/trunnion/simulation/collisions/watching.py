@@ -12,8 +12,8 @@ from trunnion.machines import Machine, link_transforms
 from trunnion.machines.links import WORKPIECE, link_chain
 from trunnion.simulation.collisions.bodies import Body
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds, relative_pose, turns_about_itself
-from trunnion.simulation.collisions.findings import Collision
 from trunnion.simulation.collisions.queries import PairQuery, Solid
+from trunnion.simulation.finding import Finding, What
 from trunnion.timing import AxisPieces
 
 #: More stretches of one pair are not told one by one: the last one goes on to the end.
@@ -281,27 +281,27 @@ class PairWatch:
             self._closed.append(self._stretch)
             self._stretch = None
 
-    def findings(self) -> list[Collision]:
+    def findings(self) -> list[Finding]:
         """Return what was found, once all pieces have been followed."""
         stretches = self._closed + ([] if self._stretch is None else [self._stretch])
         return [self._finding(stretch) for stretch in stretches]
 
-    def _finding(self, stretch: _Stretch) -> Collision:
+    def _finding(self, stretch: _Stretch) -> Finding:
         depth, worst, place = stretch.deepest, stretch.worst, stretch.place
         if worst is None:
             worst = stretch.nearest
             relative_pose(self._chain, *self._there, worst.joints, self._pose)
             place = self._query.nearest(self._pose)
-        return Collision(
+        is_near = stretch.worst is None and worst.distance > 0.0
+        return Finding(
+            What.NEAR if is_near else What.BODY,
             between=(self.one.name, self.other.name),
-            row=stretch.first.row,
-            fraction=stretch.first.fraction,
-            last_row=stretch.last.row,
-            worst_row=worst.row,
-            worst_fraction=worst.fraction,
-            depth_mm=depth,
-            distance_mm=worst.distance if stretch.worst is None else 0.0,
+            rows=(stretch.first.row, stretch.last.row),
+            worst=worst.row,
+            depth=worst.distance if is_near else depth,
             place=_in_workpiece(self.machine, self.other.link, worst.joints, place),
+            fraction=worst.fraction,
+            begin=stretch.first.fraction,
         )
 
 

@@ -14,6 +14,7 @@ the three greatest thicknesses.
 import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -31,17 +32,27 @@ from trunnion.simulation.stock.spans import Spans, no_spans
 from trunnion.simulation.tools.pieces import RevolvedPieces
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CutRows:
+    """The rows of a run that cut.
+
+    start, end  at which to begin, which the stock must have been cut up to, and to end
+    idle        those that must not cut, (n,) of the run: rapids, and those in which the spindle stands; None: all may
+    offset      what is added to the numbers of rows in ``Tile.rows``
+    """
+
+    start: int
+    end: int
+    idle: Flags | None = None
+    offset: int = 0
+
+
 def measure(
-    stock: Stock,
+    cutter: "Cutter",
     run: Run,
     tools: Mapping[int, RevolvedPieces],
-    tolerance: float,
+    rows: CutRows,
     *,
-    idle: Flags | None = None,
-    design: tuple[Spans, Spans, Spans] | None = None,
-    offset: int = 0,
-    start: int = 0,
-    end: int | None = None,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Iterator[Chunk]:
@@ -50,28 +61,20 @@ def measure(
     The stock is changed. It may have some tiles only: no tile looks at another one. ``rows_cut`` makes of the chunks
     what each row did.
 
-    stock       the material
-    run         the program
-    tools       the pieces of each tool, by its index in ``run.tools``. Rows of a tool that is not there are not
-                simulated
-    tolerance   how far motions may be off, mm
-    idle        rows that must not cut, (n,): rapids, and those in which the spindle stands
-    design      the finished part as spans of the same lattice
-    offset      what is added to the numbers of rows in ``Tile.rows``
-    start, end  the row at which to begin, which the stock must have been cut up to, and the one at which to end; by
-                default after the last one
-    threads     how many tiles are cut at a time; by default as many as there are processors
-    progress    is called with rows done and rows in all
+    cutter    the material, and how it is cut
+    run       the program
+    tools     the pieces of each tool, by its index in ``run.tools``. Rows of a tool that is not there are not simulated
+    rows      those that cut
+    threads   how many tiles are cut at a time; by default as many as there are processors
+    progress  is called with rows done and rows in all
     """
-    end = len(run) if end is None else end
-    cutter = Cutter(stock, design, tolerance)
+    end = rows.end
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as executor:
-        for first, last, tool in tool_ranges(run, end, start):
+        for first, last, tool in tool_ranges(run, end, rows.start):
             if tool in tools:
                 sweeps = row_sweeps(run, first, last, cutter.sizes(tools[tool]))
-                tiles = cutter.measure(
-                    sweeps, tools[tool], executor, idle, offset, _part_of(progress, first, last, end)
-                )
+                advance = _part_of(progress, first, last, end)
+                tiles = cutter.measure(sweeps, tools[tool], executor, rows.idle, rows.offset, advance)
                 yield Chunk(first, last, tool, tiles)
             if progress:
                 progress(last, end)
@@ -93,7 +96,11 @@ class _Task(NamedTuple):
 
 
 class Cutter:
-    """Cuts stock with sweeps; ``design`` and ``tolerance`` as for ``measure``."""
+    """Cuts stock with sweeps.
+
+    design     the finished part as spans of the same lattice
+    tolerance  how far motions may be off, mm
+    """
 
     def __init__(self, stock: Stock, design: tuple[Spans, Spans, Spans] | None, tolerance: float) -> None:
         self._stock = stock
@@ -121,7 +128,7 @@ class Cutter:
     ) -> Iterator[TileMeasured]:
         """Cut with the sweeps of some rows, and yield what each tile that is reached has measured, in their order.
 
-        ``advance`` is called with the part that is done, others are as for ``measure``.
+        ``advance`` is called with the part that is done, others are those of ``CutRows``.
         """
         at_rest = np.zeros(len(sweeps.row), np.bool_) if idle is None else idle[sweeps.row]
         low, high = float(pieces.bounds[:, 0].min()), float(pieces.bounds[:, 1].max())

@@ -42,7 +42,7 @@ def read_three_mf(data: bytes, label: str, max_bytes: int, max_facets: int) -> t
     """
     try:
         model = _unpacked(data, label, max_bytes)
-        objects, items, unit = _parsed(model, label)
+        objects, items, unit = _parsed(model)
         collected = _Collected(objects, label, max_facets)
         for name, place in items:
             collected.add(name, place, 0)
@@ -99,7 +99,7 @@ def _unpacked(data: bytes, label: str, max_bytes: int) -> bytes:
     return model
 
 
-def _parsed(model: bytes, label: str) -> tuple[dict[str, _Object], list[tuple[str, Floats]], float]:
+def _parsed(model: bytes) -> tuple[dict[str, _Object], list[tuple[str, Floats]], float]:
     objects: dict[str, _Object] = {}
     items: list[tuple[str, Floats]] = []
     unit, current = 1.0, _Object()

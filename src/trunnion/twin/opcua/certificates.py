@@ -31,21 +31,14 @@ class ServerCertificate:
 
 def server_certificate(folder: Path, application: str, host: str) -> ServerCertificate:
     """Return the certificate of a folder; it is made if there is none, or none for this host and application, or it is
+
     over.
 
-    Parameters
-    ----------
-    folder
-        Where it is kept; it is made if need be.
-    application
-        URI of the server, which is part of it.
-    host
-        Address on which the server listens.
+    folder       where it is kept; it is made if need be
+    application  URI of the server, which is part of it
+    host         address on which the server listens
 
-    Raises
-    ------
-    InputError
-        If the folder cannot be written.
+    Raises ``InputError`` if the folder cannot be written.
     """
     name = "".join(c if c.isalnum() else "-" for c in host)
     certificate, key = folder / f"server-{name}.der", folder / f"server-{name}.key.pem"

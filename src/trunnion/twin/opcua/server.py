@@ -110,18 +110,11 @@ class _InternalServer(InternalServer):
 class TwinServer(Server):
     """The server of a program that runs on a machine.
 
-    Parameters
-    ----------
-    program
-        What runs.
-    operated
-        What clients operate.
-    listening
-        The socket on which it serves; its address is part of the endpoint.
-    host
-        Address by which clients name this computer.
-    security
-        None: anybody on this computer reads and operates it.
+    program    what runs
+    operated   what clients operate
+    listening  the socket on which it serves; its address is part of the endpoint
+    host       address by which clients name this computer
+    security   None: anybody on this computer reads and operates it
     """
 
     def __init__(

@@ -92,16 +92,10 @@ class Space:
     async def add(self, parent: Node, path: str, name: str, uri: str, of: ua.NodeId | tuple[str, int]) -> Node:
         """Add an object of a type with its mandatory children.
 
-        Parameters
-        ----------
-        parent
-            Object in which it is.
-        path
-            Its path; those of its children begin with it.
-        name, uri
-            Its browse name, and the namespace of that.
-        of
-            Its type: a NodeId, or namespace and number.
+        parent     object in which it is
+        path       its path; those of its children begin with it
+        name, uri  its browse name, and the namespace of that
+        of         its type: a NodeId, or namespace and number
         """
         kind = of if isinstance(of, ua.NodeId) else ua.NodeId(of[1], self.index(of[0]))
         name_of = ua.QualifiedName(name, self.index(uri))

@@ -55,9 +55,9 @@ def check_is_new(place: OutputPlace) -> None:
                 Problem(
                     str(path),
                     0,
-                    Wording("TWN310", "exists_recording_never")
-                    if path == place.path
-                    else Wording("TWN310", "exists_recording_never_written"),
+                    Wording(
+                        "TWN310", "exists_recording_never" if path == place.path else "exists_recording_never_written"
+                    ),
                 )
             )
 
@@ -65,17 +65,10 @@ def check_is_new(place: OutputPlace) -> None:
 class RecordingWriter:
     """Adds rows to a recording; everything that has been added is in the file, also if the process is killed then.
 
-    Parameters
-    ----------
-    place
-        The file: ``.csv`` or ``.parquet``.
-    names, texts
-        Its columns, and which of them hold texts.
+    place         the file: ``.csv`` or ``.parquet``
+    names, texts  its columns, and which of them hold texts
 
-    Raises
-    ------
-    InputError
-        If it cannot be written.
+    Raises ``InputError`` if it cannot be written.
     """
 
     def __init__(self, place: OutputPlace, names: Sequence[str], texts: frozenset[str]) -> None:

@@ -29,21 +29,12 @@ def record(
 ) -> RecordingSummary:
     """Record until the time is over, or until Ctrl-C, which is how a recording is meant to end.
 
-    Parameters
-    ----------
-    feed
-        The machine.
-    place
-        The file.
-    seconds
-        How long; None: until Ctrl-C.
-    ready
-        Is called with the names of the columns when recording begins.
+    feed     the machine
+    place    the file
+    seconds  how long; None: until Ctrl-C
+    ready    is called with the names of the columns when recording begins
 
-    Raises
-    ------
-    InputError
-        If the machine cannot be connected to, or the file cannot be written.
+    Raises ``InputError`` if the machine cannot be connected to, or the file cannot be written.
     """
     recording = _Recording(feed, place, seconds, ready)
     try:

@@ -14,6 +14,6 @@ def check_basis(context: Context) -> list[Check]:
     demands = {*context.settings.demands, *machine.demands}
     if not demands:
         return []
-    if missing := list(missing_demands(demands, machine)):
+    if missing := list(missing_demands(demands, context.run)):
         return [Check(_KEY, _TITLE, False, "; ".join(wording.what for wording in missing))]
     return [Check(_KEY, _TITLE, True, f"stated: {', '.join(sorted(demands))}")]

@@ -15,7 +15,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.coolant_checks import is_builder_coolant
 
 #: Values with which something runs; those of the machine builder's words are numbers.
-_ON = frozenset({"clockwise", "counter-clockwise", "flood", "mist"})
+_ON = frozenset({"clockwise", "counter-clockwise", "flood", "mist", "through"})
 
 
 @dataclass(slots=True, eq=False)

@@ -8,7 +8,10 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Final, TypeVar
 
+from trunnion.definitions.marked_values import MarkedValue
+from trunnion.machines.unmeasured import POSITIONS, ValueKind, kind_of, unmeasured_values
 from trunnion.messages import phrase
+from trunnion.model.run_samples import joint_samples
 from trunnion.verification.basis import ACCELERATION, RAPID, SPINDLE, TOOL_LENGTH, TRAVEL, ZERO, Basis, missing_of
 from trunnion.verification.checks.basis_check import check_basis
 from trunnion.verification.checks.compensation_checks import check_compensation
@@ -78,6 +81,7 @@ class CheckEntry:
     needs    what it takes: ``Compared`` where it compares with CL files
     run      makes it, or none where it is no question of the program
     bases    what somebody has to state; without one of them it is not checked, or only in part
+    kinds    values of the definition that its answer stands on
     title    of one that is always made, where there is nothing to compare with
     """
 
@@ -85,19 +89,26 @@ class CheckEntry:
     needs: type[Measured]
     run: Callable[[Any], Iterable[Check]]
     bases: tuple[Basis, ...] = ()
+    kinds: tuple[ValueKind, ...] = ()
     title: str = ""
 
-    def checks(self, seen: Measured) -> Iterator[Check]:
-        """Make the check, as far as what it needs is there."""
+    def checks(self, seen: Measured, unmeasured: Iterable[MarkedValue]) -> Iterator[Check]:
+        """Make the check, as far as what it needs is there; ``unmeasured`` values matter to the program."""
         if isinstance(seen, self.needs):
             missing = missing_of(self.bases, seen.context.run.machine)
-            yield from (replace(check, missing=(*missing, *check.missing)) for check in self.run(seen))
+            values = [value for value in unmeasured if kind_of(value) in self.kinds]
+            for check in self.run(seen):
+                answer = replace(check, missing=(*missing, *check.missing))
+                # What was not answered stands on nothing.
+                yield replace(answer, stands_on=tuple(map(str, values))) if check.summary else answer
         elif self.title:
             yield Check(self.key, self.title, True, "", missing=(phrase("no_cl_file"),))
 
 
-def _check(key: str, needs: type[_Needed], run: Callable[[_Needed], Check], *bases: Basis) -> CheckEntry:
-    return CheckEntry(key, needs, lambda seen: (run(seen),), bases, _TITLES.get(key, ""))
+def _check(
+    key: str, needs: type[_Needed], run: Callable[[_Needed], Check], *bases: Basis, on: tuple[ValueKind, ...] = ()
+) -> CheckEntry:
+    return CheckEntry(key, needs, lambda seen: (run(seen),), bases, on, _TITLES.get(key, ""))
 
 
 #: Of checks that compare with CL files, where there are none.
@@ -118,8 +129,8 @@ _TITLES: Final = {
 
 CHECKS: Final = (
     _check("order", Compared, lambda seen: check_order(seen.context)),
-    _check("tip", Compared, lambda seen: check_tip(seen.context, seen.tip)),
-    _check("axis", Compared, lambda seen: check_axis(seen.context, seen.axis, seen.accepted)),
+    _check("tip", Compared, lambda seen: check_tip(seen.context, seen.tip), on=(ValueKind.ANGLES,)),
+    _check("axis", Compared, lambda seen: check_axis(seen.context, seen.axis, seen.accepted), on=(ValueKind.ANGLES,)),
     _check("kind", Compared, lambda seen: check_kind(seen.context)),
     _check("feed", Compared, lambda seen: check_feed(seen.context, seen.accepted, seen.original)),
     _check("spindle", Compared, lambda seen: check_spindle(seen.context)),
@@ -128,22 +139,32 @@ CHECKS: Final = (
     _check("compensation", Compared, lambda seen: check_compensation(seen.context)),
     _check("stops", Compared, lambda seen: check_stops(seen.context)),
     _check("offset", Measured, lambda seen: check_work_offset(seen.context)),
-    _check("home", Compared, lambda seen: check_home(seen.context)),
+    _check("home", Compared, lambda seen: check_home(seen.context), on=(ValueKind.HOME,)),
     _check("holes", Compared, lambda seen: check_holes(seen.context)),
     CheckEntry("normal", Compared, lambda seen: check_normals(seen.context)),
     CheckEntry("reach", Compared, lambda seen: check_reach(seen.context, seen.original)),
     _check("span", Measured, lambda seen: check_between_points(seen.context, seen.motion, seen.errors)),
-    _check("travel", Measured, lambda seen: check_travel(seen.context, seen.motion), TRAVEL, ZERO, TOOL_LENGTH),
-    _check("speed", Measured, lambda seen: check_speed(seen.context, seen.motion), RAPID),
-    _check("acceleration", Measured, lambda seen: check_acceleration(seen.context, seen.motion), ACCELERATION),
-    _check("rpm", Measured, lambda seen: check_spindle_range(seen.context), SPINDLE),
+    _check(
+        "travel", Measured, lambda seen: check_travel(seen.context, seen.motion), TRAVEL, ZERO, TOOL_LENGTH,
+        on=(*POSITIONS, ValueKind.TRAVEL),
+    ),
+    _check(
+        "speed", Measured, lambda seen: check_speed(seen.context, seen.motion), RAPID, on=(*POSITIONS, ValueKind.RAPID),
+    ),
+    _check(
+        "acceleration", Measured, lambda seen: check_acceleration(seen.context, seen.motion), ACCELERATION,
+        on=(*POSITIONS, ValueKind.ACCELERATION),
+    ),
+    _check("rpm", Measured, lambda seen: check_spindle_range(seen.context), SPINDLE, on=(ValueKind.SPINDLE,)),
     _check("turns", Measured, lambda seen: check_turns(seen.context)),
     _check("modal", Measured, lambda seen: check_modal_state(seen.context)),
     _check("words", Measured, lambda seen: check_words(seen.context)),
     CheckEntry("basis", Measured, lambda seen: check_basis(seen.context)),
-)
+)  # fmt: skip
 
 
 def all_checks(seen: Measured) -> tuple[Check, ...]:
     """Every check; those that need more than is known are not checked."""
-    return tuple(check for entry in CHECKS for check in entry.checks(seen))
+    run = seen.context.run
+    unmeasured = unmeasured_values(run.machine, tuple(ValueKind), joint_samples(run))
+    return tuple(check for entry in CHECKS for check in entry.checks(seen, unmeasured))

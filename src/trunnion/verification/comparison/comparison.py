@@ -8,9 +8,16 @@ Only what the words do matters: block numbers, modal habits and number formats m
 additional points on the path of the other. Motions in the machine frame count if both run on the same machine.
 """
 
+from collections.abc import Callable
+from typing import Final
+
 from trunnion.model.run import Run
 from trunnion.verification.comparison.comparer import Comparer
+from trunnion.verification.comparison.nominal_runs import missing_values, with_nominal_values
 from trunnion.verification.comparison.result import Alignment, Comparison
+
+#: How far tips, mm, and tool axes, degrees, may be apart where two programs are shown side by side.
+_TOLERANCE: Final = 0.001
 
 
 def compare(
@@ -23,12 +30,27 @@ def compare(
     path            compare only where the tool goes, and whether at rapid; not feed, spindle, tool, coolant, stops and
                     dwells
     """
-    return Comparer(one, two, tolerance, tolerance if axis_tolerance is None else axis_tolerance, path).compare()
+    angle = tolerance if axis_tolerance is None else axis_tolerance
+
+    def compared(first: Run, second: Run) -> Comparison:
+        return Comparer(first, second, tolerance, angle, path).compare()
+
+    found = compared(one, two)
+    return _elsewhere(one, two, compared) or found if found.same else found
 
 
-def align(one: Run, two: Run, tolerance: float = 0.001) -> Alignment:
-    """Follow two runs together, and return which of their rows go to the same points, and where they differ.
+def _elsewhere(one: Run, two: Run, compared: Callable[[Run, Run], Comparison]) -> Comparison | None:
+    """Return how programs differ that are the same only with a zero and a length of 0, which nobody has stated."""
+    runs = with_nominal_values(one), with_nominal_values(two)
+    if runs == (one, two):
+        return None
+    found = compared(*runs)
+    if found.same:
+        return None
+    stated = " and ".join(dict.fromkeys(missing_values(one.machine) + missing_values(two.machine)))
+    return found.with_words(f"; with {stated}, as nobody has stated them")
 
-    tolerance  how far tips, mm, and tool axes, degrees, may be apart
-    """
-    return Comparer(one, two, tolerance, tolerance, False).follow()
+
+def align(one: Run, two: Run) -> Alignment:
+    """Follow two runs together, and return which of their rows go to the same points, and where they differ."""
+    return Comparer(one, two, _TOLERANCE, _TOLERANCE, False).follow()

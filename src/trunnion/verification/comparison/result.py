@@ -1,7 +1,7 @@
 """The result of a comparison."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Final
 
 from trunnion.arrays import Ints
@@ -78,6 +78,11 @@ class Comparison:
     def same(self) -> bool:
         """Whether both programs make the tool do the same; those that move nothing, or are not understood, do not."""
         return self.count == 0 and self.points > 0 and not self.unknown_words
+
+    def with_words(self, words: str) -> "Comparison":
+        """Return it with words behind those of its differences."""
+        differences = [each and replace(each, text=each.text + words) for each in (self.first, self.worst)]
+        return replace(self, first=differences[0], worst=differences[1])
 
     def lines(self) -> Iterator[str]:
         """Yield the result for a terminal."""

@@ -101,5 +101,6 @@ def _why(axis: int, along: str) -> str:
         return f"no tool length counts here, and elsewhere one counts along {along}"
     name = _NAMES[axis % BY_PARAMETER]
     if axis >= BY_PARAMETER:
-        return f"its length counts along {name} or {along}, as a parameter of the control says"
+        which = "; state length_along_z = true under [control.reading] if it is Z" if along == "Z" else ""
+        return f"its length counts along {name} or {along}, as a parameter of the control says{which}"
     return f"its length counts along {name} here, and the tool lies along {along}"

@@ -19,6 +19,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.expected.holes import Hole
 from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.kinematics.positioning_moves import tool_axis_exit_rows
 
 #: A motion is along the tool axis when it is off by less than this, mm.
 _STRAIGHT = 1e-6
@@ -127,14 +128,14 @@ def _rise(run: Run, row: int) -> float:
 
 def _match_in_order(run: Run, expected: ExpectedPath, cycles: Sequence[Ints]) -> Iterator[MatchedHole]:
     """Hole by hole: by motions before the next cycle if there are any, else by that cycle."""
-    at, used, misses = 0, 0, 0
+    at, used, misses, leaving = 0, 0, 0, _leaving_rows(run)
     before: Hole | None = None
     for index, hole in enumerate(expected.holes):
         limit = int(cycles[used][0]) if used < len(cycles) else len(run)
         found = None
         if misses < _MAX_MISSES:
             row = _find_plunge(run, hole, at, limit, _count_cl_plunges(expected, before, hole))
-            found = None if row is None else _motion_hole(run, expected, index, row, at)
+            found = None if row is None else _motion_hole(run, expected, index, row, at, leaving)
         if found is None and used < len(cycles):
             found = _cycle_hole(run, expected, cycles[used], index)
             used += 1
@@ -188,17 +189,29 @@ def _find_plunge(run: Run, hole: Hole, at: int, limit: int, skipped: int) -> int
     return None
 
 
-def _motion_hole(run: Run, expected: ExpectedPath, index: int, plunge: int, at: int) -> MatchedHole:
-    """Return the hole that row ``plunge`` begins to drill; rows before ``at`` belong to holes before it."""
+def _motion_hole(run: Run, expected: ExpectedPath, index: int, plunge: int, at: int, leaving: set[int]) -> MatchedHole:
+    """Return the hole that row ``plunge`` begins to drill; rows before ``at`` belong to holes before it.
+
+    leaving  as ``_leaving_rows`` returns them
+    """
     hole = expected.holes[index]
     end = _end_of_hole(run, hole, plunge)
     first, after = plunge - 1, expected.holes[index + 1 : index + 2]
     shares_first = first < at or (
         _is_behind_point(expected, index) and _goes_to_cl_point(run, expected, hole.row - 1, first, -1, hole)
     )
-    point_after = all(other.row != hole.row for other in after)
+    point_after = all(other.row != hole.row for other in after) and end not in leaving
     shares_last = point_after and _goes_to_cl_point(run, expected, hole.row, end - 1, 1, hole)
     return MatchedHole(first, end, index, True, shares_first, shares_last)
+
+
+def _leaving_rows(run: Run) -> set[int]:
+    """Rows at which the tool goes home or is changed: it comes to the next CL point by another motion.
+
+    That point may be where the tool left a hole, as the first one of the next operation at the same hole.
+    """
+    said = {event.before_row for event in run.events if event.kind in ("tool_change", "retract")}
+    return said.union(run.state.machine_frame.rows_changing_to(True), tool_axis_exit_rows(run).tolist())
 
 
 def _goes_to_cl_point(run: Run, expected: ExpectedPath, cl: int, row: int, neighbour: int, hole: Hole) -> bool:

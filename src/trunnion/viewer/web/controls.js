@@ -49,7 +49,7 @@ function pressed(page, event) {
   const target = /** @type {HTMLElement} */ (event.target);
   if (event.ctrlKey || event.metaKey || event.altKey || target.matches("input[type=search], select") || element("keys").open) return;
   // Controls keep the keys that are theirs: the space bar presses and ticks, arrows move a slider, Home scrolls a text.
-  if (event.key === " " && target.matches("button, input")) return;
+  if (event.key === " " && target.matches("button, input, summary")) return;
   if (OF_SLIDERS.has(event.key) && target.matches("input[type=range], #listing, #listing-b")) return;
   const rows = (/** @type {string} */ kind) => page.scene.events.filter((each) => each.kind.startsWith(kind)).map((each) => each.row);
   /** @type {Record<string, () => void>} */

@@ -118,7 +118,7 @@ export class Page {
     const three = (/** @type {ArrayLike<number>} */ v, /** @type {number} */ digits) => Array.from(v, (part) => part.toFixed(digits)).join("  ");
     const tool = this.scene.tools[program.rows ? program.tool[row] : 0]?.name ?? "";
     const rows = [
-      [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
+      [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows && program.feed[row] >= 0 ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
       [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
     ];
     element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");
@@ -127,13 +127,17 @@ export class Page {
 
   #fillFindings() {
     const list = element("findings");
-    const open = this.scene.checks.filter((check) => check.state !== "ok");
     element("standing").textContent = this.scene.standing;
     element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
-    for (const check of open) {
+    for (const check of this.scene.checks.filter((one) => one.state !== "ok")) {
       const line = document.createElement("li");
       line.textContent = `${check.key}: ${check.state}: ${check.summary}`;
-      list.append(line);
+      (check.state === "FAIL" ? list : element("unchecked")).append(line);
+    }
+    for (const text of this.scene.stands) {
+      const line = document.createElement("li");
+      line.textContent = text;
+      element("unchecked").append(line);
     }
     this.scene.findings.forEach((each) => {
       const line = document.createElement("li"), button = document.createElement("button");

@@ -425,7 +425,9 @@ export class Space {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    // A size that is set clears the canvas: what was drawn is drawn again before the screen shows it empty.
+    if (this.drawn) this.drawNow();
+    else this.draw();
   }
 
   /** @param {string} colour of the background */

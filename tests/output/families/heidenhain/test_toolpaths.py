@@ -97,7 +97,7 @@ def test_tcp_comes_on_after_the_rotary_axes_are_placed_and_goes_off_before_the_r
 
 def test_the_program_of_more_operations_calls_a_tool_only_when_it_is_another(post: Post) -> None:
     second = HEAD.replace("OP1", "OP2").replace("4000", "2500")
-    third = HEAD.replace("OP1", "OP3").replace("TOOL,1", "TOOL,2").replace("CLW", "CCLW")
+    third = HEAD.replace("OP1", "OP3").replace("TOOL,1,ADJUST,1", "TOOL,2,ADJUST,2").replace("CLW", "CCLW")
     blocks = post(HEAD + FOOT + second + FOOT + third + FOOT, "--set", "delta_radius=-0.05", "--set", "delta_length=.1")
     calls = [block for block in blocks if block.startswith("TOOL CALL")]
     assert calls == ["TOOL CALL 1 Z S4000 DL+0.1 DR-0.05", "TOOL CALL Z S2500", "TOOL CALL 2 Z S4000 DL+0.1 DR-0.05"]

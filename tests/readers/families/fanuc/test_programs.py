@@ -469,3 +469,19 @@ def test_a_length_is_in_force_from_g43_to_g49_and_its_number_is_kept(run: Runner
 def test_contour_control_says_on_or_off(run: Runner) -> None:
     assert fanuc(run, "G21\nG5.1 Q1\nG5.1 Q0\n").diagnostics == ()
     assert [each.line for each in fanuc(run, "G21\nG5.1\nG5.1 Q-1\n").errors] == [2, 3]
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("G1 X9. F100.\nG41 D1\nG1 X20.\nG40\nG1 X30.\n", []),
+        ("G1 X9. F100.\nG2 X10. Y1. R1.\nG41 D1\nG1 X20.\nG40 X30.\n", [4]),
+        ("G1 X9. F100.\nG2 X10. Y1. R1.\nG1 G41 D1\nX20.\nG3 X22. R1.\nG40\nG1 X30.\n", [7]),
+        ("G1 X9. F100.\nG2 X10. Y1. R1.\nG1 G41 D1\nX20.\nG3 X22. R1.\nG1 G40\nX30.\nG2 X32. R1.\nG40\n", []),
+        ("G1 X9. F100.\nG41 D1\nG2 X10. Y1. R1.\nG1 X20.\nG40 X30.\n", [4]),
+    ],
+)
+def test_radius_compensation_begins_and_ends_on_lines(run: Runner, text: str, lines: list[int]) -> None:
+    found = fanuc(run, f"G0 X0. Y0. Z0.\n{text}M30\n")
+    errors = [each.line for each in found.diagnostics if "radius compensation begins or ends" in each.text]
+    assert errors == lines

@@ -182,3 +182,16 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
     for one in (fast, slow):
         object.__setattr__(one, "diagnostics", ())
     same(fast, slow)
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("G1 X1. C350. F100\nX2. C357.\nX3. C0.\nX4. C9.\nX5. C357.\n", [2, 4, 6]),
+        ("G1 X1. C350. F100\nX2. C10. A5.\nG0 X3. C350.\nG1 X4. C0. A9.\n", [2, 3, 5]),
+        ("G1 X1. C10. F100\nX2. C180.\nX3. C350.\nX4. C200.\nX5. C50.\n", []),
+    ],
+)
+def test_a_cut_that_passes_the_end_of_a_turn_is_noted(run: Runner, text: str, lines: list[int]) -> None:
+    got = fidia(run, f"G196\n{text}G197\n")
+    assert [each.line for each in got.diagnostics if each.code == "NC342"] == lines

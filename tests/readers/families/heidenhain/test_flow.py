@@ -14,6 +14,7 @@ from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, formula
+from trunnion.readers.program.options import RunOptions
 
 
 def xs(run: Run) -> list[float]:
@@ -148,7 +149,7 @@ def test_programs_that_are_not_named_are_not_found(tmp_path: Path) -> None:
         (inner / beside).write_text("L X+666\n")
     names = ["../SECRET.H", "..\\SECRET", "BESIDE", str(tmp_path / "SECRET.H"), "TNC:\\..\\SECRET.H"]
     (inner / "MAIN.H").write_text("\n".join(f"CALL PGM {name}" for name in names))
-    found = run_program(inner / "MAIN.H", load_machine("dmu65"), subprograms=[inner / "NAMED.H"])
+    found = run_program(inner / "MAIN.H", load_machine("dmu65"), RunOptions(subprograms=[inner / "NAMED.H"]))
     assert len(found) == 0
     assert [f.line for f in found.errors if "BEGIN PGM" not in f.text] == [1, 2, 3, 4, 5]
 

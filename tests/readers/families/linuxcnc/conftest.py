@@ -9,6 +9,7 @@ from tests.support.reading import Runner
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 
 @pytest.fixture
@@ -24,6 +25,6 @@ def run(tmp_path: Path) -> Runner:
         program.write_text(text, encoding="utf-8")
         named = [tmp_path / name for name in files or {}]
         model = machine or at_zero("dmu65")
-        return run_program(program, model, subprograms=named, family="linuxcnc", **settings)  # type: ignore[arg-type]
+        return run_program(program, model, RunOptions(subprograms=named, **settings), family="linuxcnc")  # type: ignore[arg-type]
 
     return runner

@@ -10,6 +10,7 @@ from trunnion.errors import InputError
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
+from trunnion.readers.program.options import RunOptions
 
 
 def xs(result: Run) -> list[float]:
@@ -146,7 +147,7 @@ def test_nothing_is_ever_read_that_was_not_named(tmp_path: Path, yl569: Machine,
     for beside in ("BESIDE.SPF", "NAMED.SPF"):
         (inner / beside).write_text("X98\nM17")
     (inner / "MAIN.MPF").write_text(f'EXTCALL("{name}")\nX1')
-    result = run_program(inner / "MAIN.MPF", yl569, subprograms=[inner / "NAMED.SPF"])
+    result = run_program(inner / "MAIN.MPF", yl569, RunOptions(subprograms=[inner / "NAMED.SPF"]))
     assert xs(result) == [1]
     assert "missing subprogram" in result.errors[0].text
 
@@ -254,7 +255,7 @@ def test_files_that_cannot_be_named(tmp_path: Path, yl569: Machine, names: list[
     for file in ("MAIN.MPF", "notes.txt", "ONE.SPF", "a/one.spf"):
         (tmp_path / file).write_text("X1")
     with pytest.raises(InputError, match=what):
-        run_program(tmp_path / "MAIN.MPF", yl569, subprograms=[tmp_path / name for name in names])
+        run_program(tmp_path / "MAIN.MPF", yl569, RunOptions(subprograms=[tmp_path / name for name in names]))
 
 
 def test_a_subprogram_goes_before_a_main_program_of_its_name(run: Runner) -> None:

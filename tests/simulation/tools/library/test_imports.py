@@ -115,6 +115,16 @@ def test_each_type_of_autodesk_is_a_kind(tool: dict[str, Any], form: dict[str, A
     assert autodesk(tool).tool(3).sections == tool_shape(ToolSizes(**{**body, **neck, **form})).sections
 
 
+@pytest.mark.parametrize("kind", ["slot mill", "lollipop mill"])
+def test_a_head_without_a_stated_shoulder_stands_on_its_shank(kind: str) -> None:
+    sizes = {key: value for key, value in entry(kind)["geometry"].items() if key != "shoulder-diameter"}
+    thin = {**entry(kind), "geometry": {**sizes, "LCF": 2.0, "SFDM": 6.0}}
+    meant = {**entry(kind), "geometry": {**sizes, "LCF": 2.0, "SFDM": 6.0, "shoulder-diameter": 6.0}}
+    assert autodesk(thin).tool(3).sections == autodesk(meant).tool(3).sections
+    with pytest.raises(InputError, match="neck"):
+        autodesk({**entry(kind), "geometry": {**sizes, "LCF": 2.0, "SFDM": 10.0}}).tool(3)
+
+
 def test_inches_are_converted_and_custom_shafts_followed() -> None:
     tool = entry("flat end mill", "inches", DC=0.5, LCF=1.0, LB=2.0, SFDM=0.5, shoulder_length=1.0)
     tool["shaft"] = {"segments": [{"height": 0.5, "lower-diameter": 0.5, "upper-diameter": 0.75}]}
@@ -397,7 +407,6 @@ def test_a_tool_bit_has_the_volume_of_its_body(shape: str) -> None:
     [
         (bit("slittingsaw.fcstd"), "slittingsaw is a shape that is not read"),
         (bit("endmill.fcstd", Diameter="6 stone"), "Diameter has the unit stone"),
-        (bit("endmill.fcstd", Diameter="6,5 mm"), "Diameter is 6,5 mm, not a number with its unit"),
         (bit("endmill.fcstd", Diameter=-6), "Diameter is -6"),
         (bit("endmill.fcstd", Diameter=None), "its diameter is not stated"),
         (bit("drill.fcstd", TipAngle="6 mm"), "TipAngle has the unit mm"),
@@ -411,6 +420,39 @@ def test_a_tool_bit_that_cannot_be_read_is_refused(library: ToolLibrary, said: s
     with pytest.raises(InputError, match=r"bit\.fctb: error: tool bit bit") as raised:
         library.tool(None, "bit")
     assert said in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "diameter"),
+    [("0,25 in", 6.35), ("6,000 mm", 6.0), ('3/8"', 9.525), ("3/8 in", 9.525), ('1 1/2"', 38.1), ("1+1/2 in", 38.1)],
+)
+def test_a_size_may_have_a_comma_or_be_a_fraction_of_an_inch(text: str, diameter: float) -> None:
+    assert bit("endmill.fcstd", Diameter=text).tools[0].sizes.diameter == pytest.approx(diameter)
+
+
+@pytest.mark.parametrize("text", ["1.234,5 mm", "1,234.5 mm", "3/0 in", "3/8", "3/8 mm", "1/2/3 in"])
+def test_other_numbers_are_none(text: str) -> None:
+    with pytest.raises(InputError, match="not a number with its unit"):
+        bit("endmill.fcstd", Diameter=text).tool(None, "bit")
+
+
+@pytest.mark.parametrize(
+    ("shape", "parameters", "said"),
+    [
+        ("endmill.fcstd", {"CuttingEdgeHeight": "60 mm"}, "CuttingEdgeHeight is 60 mm, more than Length, 50 mm"),
+        ("torus.fcstd", {"FlatRadius": 1.0, "TorusRadius": 1.0}, "the radius of its corner is 2 mm by one"),
+        ("bullnose.fcstd", {"CornerRadius": 1.0, "TorusRadius": 2.0}, "the radius of its corner is 1 mm by one"),
+    ],
+)
+def test_a_tool_bit_that_contradicts_itself_is_refused(shape: str, parameters: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        bit(shape, **parameters).tool(None, "bit")
+
+
+def test_a_tool_bit_with_two_shapes_is_refused() -> None:
+    root = {"name": "bit", "shape": "ballend.fcstd", "shape-type": "Endmill", "parameter": {"Diameter": 6.0}}
+    with pytest.raises(InputError, match=r"endmill by its shape-type, and its shape is ballend\.fcstd"):
+        _from_json("bit.fctb", json.dumps(root).encode()).tool(None, "bit")
 
 
 # LinuxCNC
@@ -431,20 +473,28 @@ def test_a_tool_table_gives_diameters_and_no_form(tmp_path: Path) -> None:
         found.tool(1)
 
 
-def test_mistakes_of_a_tool_table_are_told_with_their_lines(tmp_path: Path) -> None:
-    text = "T1 P1 D10\nT1 P2 D5\nP3 D5\nT4 P4 D5 D6\nT5 P5 DIAM\nT-1 P1\nT1.5 P1\nT7 P7 D-3\nT8 K1\n"
-    with pytest.raises(InputError) as raised:
-        table(tmp_path, text)
-    assert [(problem.line, problem.what) for problem in raised.value.problems] == [
-        (2, "tool 1 is there twice"),
-        (3, "has no number of a tool, which is a whole number behind T"),
-        (4, "has D twice"),
-        (5, '"DIAM" is no word of a tool table'),
-        (6, "has no number of a tool, which is a whole number behind T"),
-        (7, "has no number of a tool, which is a whole number behind T"),
-        (8, "tool 7 has the diameter -3"),
-        (9, '"K1" is no word of a tool table'),
+def test_a_line_that_linuxcnc_skips_makes_its_own_tool_unusable(tmp_path: Path) -> None:
+    text = "T1 P1 D10\nT1 P2 D5\nP3 D5\nT4 P4 D5 D6\nT5 P5 DIAM\nT-1 P1\nT1.5 P1\nT7 P7 D-3\nT8 K1\nT9 P9 D8\n"
+    found = table(tmp_path, text)
+    assert found.diameters == {9: 8.0}
+    assert [(tool.number, tool.problems[0].line, tool.problems[0].what) for tool in found.unusable] == [
+        (1, 2, "tool 1 is there twice"),
+        (None, 3, "has no number of a tool, which is a whole number behind T"),
+        (4, 4, "has D twice"),
+        (5, 5, '"DIAM" is no word of a tool table'),
+        (None, 6, "has no number of a tool, which is a whole number behind T"),
+        (None, 7, "has no number of a tool, which is a whole number behind T"),
+        (7, 8, "tool 7 has the diameter -3"),
+        (8, 9, '"K1" is no word of a tool table'),
     ]
+    with pytest.raises(InputError, match="has D twice"):
+        found.tool(4)
+
+
+def test_a_text_without_a_line_of_a_tool_table_is_refused_with_its_lines(tmp_path: Path) -> None:
+    with pytest.raises(InputError) as raised:
+        table(tmp_path, "G0 X1\nsome text\n")
+    assert [problem.line for problem in raised.value.problems] == [1, 2]
 
 
 @pytest.mark.parametrize(("unit", "said"), [("", "unit: error: is not stated"), ("cm", 'unit: error: is "cm"')])

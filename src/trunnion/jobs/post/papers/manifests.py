@@ -10,10 +10,10 @@ caller names, and no others.
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, TypeAlias
 
 from trunnion.errors import InputError, Problem, Severity, unusable_file
 from trunnion.files import file_on_disk
@@ -50,6 +50,36 @@ _OF_CHECK: Final = ("key", "state", "missing", "summary", "worst", "limit", "uni
 
 #: Bytes of a name that file systems take.
 _LONGEST_NAME: Final = 255
+
+
+@dataclass(frozen=True, slots=True)
+class ManifestEntry:
+    """What a manifest says of a file: of one that was read without ``what``, and without checksum where it is none on
+    the disk, as what came from stdin.
+    """
+
+    name: str
+    what: Annotated[str, Figure(none="", is_optional=True)] = ""
+    size: Annotated[int | None, Figure("bytes", is_optional=True)] = None
+    sha256: Annotated[str | None, Figure(is_optional=True)] = None
+
+    @staticmethod
+    def of(name: str, path: Path, what: str = "") -> "ManifestEntry":
+        """Return the entry of a file that is on the disk."""
+        return ManifestEntry(name, what, path.stat().st_size, checksum(path))
+
+
+#: What was read for a post, by what it is.
+PostInputs: TypeAlias = dict[str, list[ManifestEntry]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Operation:
+    """An operation with its tool and the seconds that it takes."""
+
+    name: str
+    tool: str
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +130,7 @@ def checksum(path: FilePath) -> str:
 # Writing
 
 
-def post_inputs(job: PostJob, result: PostResult) -> dict[str, list[dict[str, object]]]:
+def post_inputs(job: PostJob, result: PostResult) -> PostInputs:
     """Return what a post has read, by what it is, each file as it is now."""
     return {
         "cl": inputs_of(file_on_disk(toolpath.file) for toolpath in result.toolpaths),
@@ -110,22 +140,16 @@ def post_inputs(job: PostJob, result: PostResult) -> dict[str, list[dict[str, ob
     }
 
 
-def manifest_bytes(
-    target: "Target",
-    program: Program,
-    job: PostJob,
-    result: PostResult,
-    inputs: Mapping[str, list[dict[str, object]]],
-) -> bytes:
+def manifest_bytes(target: "Target", program: Program, job: PostJob, result: PostResult, inputs: PostInputs) -> bytes:
     """Return the manifest of a post whose other files are complete and flushed; ``inputs`` as ``post_inputs``."""
     main = target.path.name if target.path is not None else target.name
-    files = [_entry(main, target.files.path, "program")]
-    files += [_entry(path.name, path, "subprogram") for path in target.files.other_paths]
+    files = [ManifestEntry.of(main, target.files.path, "program")]
+    files += [ManifestEntry.of(path.name, path, "subprogram") for path in target.files.other_paths]
     folder = target.papers["manifest"].path.parent
     names = {place.entry: name for name, place in target.papers.items()}
     for path, place in target.files.papers:
         if place.path.parent == folder and not place.is_stream:
-            files.append(_entry(place.path.name, path, names[place.entry]))
+            files.append(ManifestEntry.of(place.path.name, path, names[place.entry]))
     data = {
         "schema": SCHEMA,
         "made_by": MADE_BY,
@@ -136,29 +160,25 @@ def manifest_bytes(
         "may_run": result.passed,
         "simulation_passed": None if result.simulation is None else result.simulation.passed,
         "files": files,
-        "inputs": dict(inputs),
+        "inputs": inputs,
         "settings": dict(sorted(job.settings.items())),
         "settings_of_operations": {name: dict(sorted(own.items())) for name, own in sorted(job.own_settings.items())},
         "settings_in_force": dict(sorted(program.effective_settings().items())),
         "overruled": [clean(each.what) for each in result.problems if each.severity is Severity.ERROR],
         "warnings": [clean(each.what) for each in result.problems if each.severity is Severity.WARNING],
-        "standing": to_data(result.standing),
+        "standing": result.standing,
         **_proof(result.verification),
     }
-    return (as_json(data) + "\n").encode("utf-8", "replace")
+    return (as_json(to_data(data)) + "\n").encode("utf-8", "replace")
 
 
-def _entry(name: str, path: Path, what: str) -> dict[str, object]:
-    return {"name": name, "what": what, "bytes": path.stat().st_size, "sha256": checksum(path)}
-
-
-def inputs_of(files: Iterable[FilePath]) -> list[dict[str, object]]:
-    """Files that were read, each once; without checksums where they are none on the disk, as what came from stdin."""
-    found: dict[str, dict[str, object]] = {}
-    for file in files:
-        path = Path(file)
-        known = {"bytes": path.stat().st_size, "sha256": checksum(path)} if path.is_file() else {}
-        found.setdefault(os.path.realpath(path), {"name": clean(path.name), **known})
+def inputs_of(files: Iterable[FilePath]) -> list[ManifestEntry]:
+    """Return the entries of files that were read, each once."""
+    found: dict[str, ManifestEntry] = {}
+    for path in map(Path, files):
+        name = clean(path.name)
+        entry = ManifestEntry.of(name, path) if path.is_file() else ManifestEntry(name)
+        found.setdefault(os.path.realpath(path), entry)
     return list(found.values())
 
 
@@ -173,7 +193,7 @@ def _proof(verification: Verification | None) -> dict[str, object]:
         ],
         "seconds": float(seconds.sum()),
         "operations": [
-            {"name": clean(own.name), "tool": clean(own.tool), "seconds": float(seconds[own.first : own.end].sum())}
+            _Operation(clean(own.name), clean(own.tool), float(seconds[own.first : own.end].sum()))
             for own in verification.operations
         ],
     }

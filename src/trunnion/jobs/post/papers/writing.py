@@ -23,6 +23,7 @@ from trunnion.verification import Verification
 
 if TYPE_CHECKING:  # imported where they are written
     from trunnion.jobs.inputs.simulation_input import SimulationInput
+    from trunnion.jobs.post.papers.manifests import PostInputs
     from trunnion.jobs.simulate.result import SimulationResult
     from trunnion.reporting.setup_sheet import SheetFile
 
@@ -38,7 +39,7 @@ class PostPapers:
     program: Program
     job: PostJob
     result: PostResult
-    inputs: dict[str, list[dict[str, object]]]
+    inputs: "PostInputs"
 
     def with_checks(
         self,
@@ -102,7 +103,7 @@ class PostPapers:
 
 def post_papers(target: Target, program: Program, job: PostJob, result: PostResult) -> PostPapers:
     """Return the papers of a post that is proven."""
-    inputs: dict[str, list[dict[str, object]]] = {}
+    inputs: PostInputs = {}
     if "manifest" in target.papers:
         from trunnion.jobs.post.papers.manifests import post_inputs
 

@@ -50,9 +50,7 @@ def cycle_lines(
     missing = [word.strip() for word in settings.get("missing_cycles", "").split(",")]
     if code in missing or (dwell and f"{code} P" in missing):
         raise UnsupportedCycleError(
-            Wording("CTL350", "dwell_control_no", method=cycle.method)
-            if code not in missing
-            else Wording("CTL350", "control_no_cycle", method=cycle.method)
+            Wording("CTL350", "dwell_control_no" if code not in missing else "control_no_cycle", method=cycle.method)
         )
     before: list[str] = []
     if cycle.method in (HoleMethod.TAP, HoleMethod.FLOATING_TAP):

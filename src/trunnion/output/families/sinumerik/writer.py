@@ -33,7 +33,7 @@ from trunnion.output.shared import iso
 from trunnion.output.shared.iso import arc_words as arc_words
 from trunnion.output.shared.iso import event_words as event_words
 from trunnion.output.shared.iso import row_words as row_words
-from trunnion.output.shared.lines import program_stop
+from trunnion.output.shared.lines import program_stop, split_text
 from trunnion.output.shared.spindle import dwell_text
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
@@ -82,6 +82,10 @@ HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
 TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, _OFFSET_FIELD, "interpolation"})
 
+#: A block has 512 characters at most, with its number; the display shows 124 of a message.
+_COMMENT_BYTES: Final = 480
+_MESSAGE_BYTES: Final = 124
+
 #: _ST of CYCLE800 with 0 as its ones digit: a new plane, not one that is added.
 _NEW_SWIVEL: Final = re.compile(r"[0-9]{0,7}0")
 
@@ -90,8 +94,8 @@ _FRAME_MODE = "57"
 
 
 def comment(text: str) -> list[str]:
-    """Return one line that starts with a semicolon."""
-    return [f";{text}"]
+    """Return lines that start with a semicolon."""
+    return [f";{piece}" for piece in split_text(text, _COMMENT_BYTES)]
 
 
 def escape_comment(text: str) -> str:
@@ -172,7 +176,9 @@ def stop(event: Stop, codes: Codes) -> list[str]:
 
 def message(event: Message) -> list[str]:
     """Return a comment, or MSG for the operator; a quotation mark would end its text."""
-    return ['MSG("' + event.text.replace('"', "'") + '")'] if event.display else comment(event.text)
+    if not event.display:
+        return comment(event.text)
+    return [f'MSG("{piece}")' for piece in split_text(event.text.replace('"', "'"), _MESSAGE_BYTES)]
 
 
 def first_block_words(motion: Motion, tool: str, register: int, settings: Mapping[str, str]) -> dict[str, float]:

@@ -12,6 +12,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
+from trunnion.readers.control.virtual_control import LINEAR
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
@@ -40,6 +41,9 @@ class FanucInterpreter(CycleInterpreter):
         self._blocks_ahead = 0
         # G23: the areas that G22 forbids are not watched.
         self._limits_off = False
+        # The row from which radius compensation begins or ends; -1: no motion waits for that.
+        self._compensates_from = -1
+        self._limits_set_at = 0
         self._needs_number = self.control.settings.needs_program_number
         self._nurbs = NurbsBlocks(self.control)
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
@@ -176,6 +180,9 @@ class FanucInterpreter(CycleInterpreter):
         radius = block.take("D")
         if radius is not None and 0 <= radius < 1e6:
             modal.radius.set(row, int(radius))
+        if self._compensates_from == row and MOTIONS.get(self.motion_code, 0) > LINEAR:
+            self._compensates_from = -1
+            self._note(Wording("NC210", "compensation_switched_on_arc"), Severity.ERROR)
 
     def _close_block(self, block: Block) -> None:
         assign(self._variables, block)
@@ -191,7 +198,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _stroke_limits(self, word: Word, block: Block) -> None:
         self.control.set_mode("limits", word.text, self._limits_off, word.sets)
-        self._limits_off = word.sets
+        self._limits_off, self._limits_set_at = word.sets, self.control.row
         if any(letter in block.words for letter in word.letters):
             self._note(Wording("NC220", "g22_positions_limits_axes_may"), Severity.ERROR)
 
@@ -211,7 +218,8 @@ class FanucInterpreter(CycleInterpreter):
         on = word.sets and self._numbers_length(block)
         control.set_mode("length", word.text, control.length_active, on)
         control.set_length(on)
-        if on and control.plane_axis != 2:  # parameter 5001 says whether G43 counts across the plane or along Z
+        # Parameter 5001 says whether G43 counts across the plane or along Z.
+        if on and control.plane_axis != 2 and not control.settings.length_along_z:
             control.record_length(control.plane_axis)
         if word.text == "G44":
             self._note(Wording("NC220", "g44_tool_length_other_sign"), Severity.ERROR)
@@ -221,6 +229,12 @@ class FanucInterpreter(CycleInterpreter):
 
     def _end_modal_macro(self, word: Word, block: Block) -> None:
         self._stack[-1].modal = None
+
+    def _compensation(self, word: Word, block: Block) -> None:
+        before = self.control.modal.compensation.current
+        super()._compensation(word, block)
+        if bool(before) != bool(word.sets):
+            self._compensates_from = self.control.row
 
     def _begin_compensation(self, block: Block) -> None:
         self._check_look_ahead()
@@ -267,6 +281,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _may_be_left_on(self) -> list[str]:
         left = super()._may_be_left_on()
+        left += ["G23"] if self._limits_off and self.control.cuts_behind(self._limits_set_at) else []
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
         return left
 

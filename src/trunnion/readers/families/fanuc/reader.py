@@ -34,5 +34,6 @@ READER: Final = FamilyReader(
     uses_length_numbers=True,
     raw_words=RAW_WORDS,
     offsets_of=offsets_of,
+    words_of=lambda machine: TABLE.without_path_by(settings_of(machine).words),
     check_reading=settings_of,
 )

@@ -48,6 +48,7 @@ class Settings:
     threads_stop_spindle  the spindle stands still after threads, until M3 or M4
     home_ends_length  G28 takes the tool length off for the blocks behind it
     home_takes_all  G28 without axes takes all of them home
+    length_along_z  G43 counts along Z in every working plane; else a parameter may make it count across the plane
     kept_by  what decides which modes the end of a program ends, as messages say it
     extended_offsets  the highest P of G54.1, or of the word that the control has in its place
     whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
@@ -67,6 +68,7 @@ class Settings:
     whole_feeds_count: bool = False
     home_ends_length: bool = False
     home_takes_all: bool = False
+    length_along_z: bool = False
     kept_by: str = KEPT_BY
     extended_offsets: int = HIGHEST_EXTENDED
     variables: Mapping[str, float] = field(default_factory=dict)
@@ -148,6 +150,7 @@ def settings_of(machine: Machine) -> Settings:
         whole_feeds_count=table.text("whole_feeds", "feeds", one_of=("feeds", "increments")) == "increments",
         home_ends_length=table.flag("home_ends_length", False),
         home_takes_all=table.flag("home_takes_all", False),
+        length_along_z=table.flag("length_along_z", False),
         kept_by=table.text("kept_by", KEPT_BY),
         variables=read_variables(table, _VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),

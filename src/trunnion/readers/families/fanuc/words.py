@@ -140,12 +140,12 @@ TABLE: Final = WordTable(
         group="plane of the rotary position",
     ),
     Word(
-        "G: smoothness", "degree `P`, rough to fine; `E`: how far corners may be rounded", act="smoothness",
-        letters="PE", values={"P": whole(1, 3)}, numbered=True,
+        "G: smoothness", "degree `P`, rough to fine; `E`: how far corners may be rounded", effect=_NONE,
+        act="smoothness", letters="PE", values={"P": whole(1, 3)}, numbered=True,
     ),
     Word(
-        "G: look-ahead", "how many blocks the control reads ahead; 0: as many as it can", act="look_ahead",
-        letters="P", values={"P": whole(0, 15)}, numbered=True,
+        "G: look-ahead", "how many blocks the control reads ahead; 0: as many as it can", effect=_NONE,
+        act="look_ahead", letters="P", values={"P": whole(0, 15)}, numbered=True,
     ),
     Word("M29", "stops the spindle for a rigid thread; event `m`", act="stop_for_thread", own=False),
     Word("M98", "calls a subprogram", act="call", letters="PL", when=_AFTER, numbered=True, calls=True),

@@ -2,6 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
 
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine
@@ -18,6 +21,12 @@ from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
+
+#: Words with which a block goes to a place.
+_PLACE: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
+
+#: An axis that is off the end of its turn by less than this stands at it, degrees.
+_NO_TURN: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +68,28 @@ class FidiaControl(Rs274Control):
     def takes_shortest_path(self, axis: Axis) -> bool:
         """Return True (unconfirmed), except for axes whose output has all turns."""
         return axis.output is not AngleOutput.NONE
+
+    def resolve_rows(self) -> None:
+        """Determine the axis positions after the rows so far; note each cut that passes the end of a displayed turn."""
+        first, before, c = self.columns.resolved, self.current_joints.copy(), self.columns
+        super().resolve_rows()
+        if first == c.n or not self.tip_programmed:
+            return
+        rows = slice(first, c.n)
+        cuts = (c.kind[rows] != Kind.RAPID) & ((c.programmed[rows] & int(_PLACE)) != 0)
+        for which, column in enumerate(self.machine.rotary):
+            axis = self.machine.axes[column]
+            if not axis.endless or not self.takes_shortest_path(axis):
+                continue
+            start = -180.0 if axis.output is AngleOutput.SYMMETRIC else 0.0
+            turns = np.floor((np.append(before[column], c.rotary[rows, which]) - start + _NO_TURN) / 360.0)
+            for row in np.flatnonzero(cuts & (np.diff(turns) != 0.0)).tolist():
+                self._note_at(first + row, Wording("NC342", "end_of_turn_in_cut", axis=axis.name))
+
+    def _note_at(self, row: int, wording: Wording) -> None:
+        here, self.line = self.line, int(self.columns.line[row - self.columns.base])
+        self.note(wording, Severity.WARNING)
+        self.line = here
 
     def change_tool(self) -> None:
         """Change to the selected tool, whose length counts from the next G55 on."""

@@ -34,5 +34,6 @@ READER: Final = FamilyReader(
     WORK_OFFSETS,
     TABLE.is_own,
     raw_words=RAW_WORDS,
+    words_of=lambda machine: TABLE.without_path_by(settings_of(machine).words),
     check_reading=settings_of,
 )

@@ -109,9 +109,7 @@ class HeidenhainControl(PlaneControl):
         self.report_trailing_modes()
         if left := self.left_on():
             self.report_left(left, may_begin=True)
-        if self.shortest_path and not self._cancels_shortest_path:
-            self.note(Wording("NC363", "ends_m126_taken_end_program"), Severity.WARNING)
-        elif self._cancels_shortest_path:
+        if self._cancels_shortest_path:
             self.end_operation("ends_with_m126")
             end = self.line
             for line, left_on in self._shortest_path_left_on:

@@ -22,7 +22,6 @@ from trunnion.readers.families.heidenhain.plane_frames import plane
 #: Kinds of PLANE that are simulated, besides RELATIV, AXIAL and RESET.
 _KINDS: Final = ("SPATIAL", "EULER", "VECTOR", "POINTS")
 
-_POSITIONING_MODES: Final = frozenset({"TURN", "MOVE", "STAY"})
 _SEQUENCES: Final = {"SEQ+": 1, "SEQ-": -1, "SYM+": 1, "SYM-": -1}
 
 

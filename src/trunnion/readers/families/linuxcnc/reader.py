@@ -41,5 +41,6 @@ READER: Final = FamilyReader(
     is_own_word,
     uses_length_numbers=True,
     raw_words=RAW_WORDS,
+    words_of=lambda machine: TABLE.without_path_by(settings_of(machine)[1]),
     check_reading=settings_of,
 )

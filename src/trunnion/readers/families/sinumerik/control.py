@@ -208,9 +208,7 @@ class SinumerikControl(VirtualControl):
             arc.end[self.plane_axis] = end[self.plane_axis]
             return arc
         if centre is None:
-            raise arcs.ArcError(
-                Wording("NC320", "circle_no_centre") if in_plane else Wording("NC320", "circle_neither_end_nor_centre")
-            )
+            raise arcs.ArcError(Wording("NC320", "circle_no_centre" if in_plane else "circle_neither_end_nor_centre"))
         return arcs.by_centre(start, end, centre, self.plane_axis, clockwise, turns)
 
     # Frames along the tool

@@ -23,11 +23,15 @@ from trunnion.readers.program.interpreter import ProgramEnd
 
 @dataclass(slots=True, eq=False)
 class ActiveProgram(interpreter.ActiveProgram):
-    """A program or subprogram that is being executed, and its modal cycle or subprogram (MCALL)."""
+    """A program or subprogram that is being executed, and its modal cycle or subprogram (MCALL).
+
+    header_end  the last of the lines without a block with which the file begins
+    """
 
     source: SinumerikText
     variables: Variables = field(default_factory=Variables)
     modal: Call | None = None
+    header_end: int = 0
 
 
 #: What a condition that never changes consists of, besides numbers.

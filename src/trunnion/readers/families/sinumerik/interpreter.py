@@ -36,6 +36,7 @@ from trunnion.readers.families.sinumerik.words import (
     M_AFTER_MOTION,
 )
 from trunnion.readers.program.declared_variables import DeclaredVariables
+from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
@@ -99,6 +100,7 @@ class SinumerikInterpreter(WordInterpreter):
         stripped = words.strip()
         skipped = stripped.startswith("/") and self._options.skip
         if not stripped or stripped.startswith("%") or (skipped and len(words) <= MAX_LENGTH):
+            self._read_header(active, line, stripped)
             self._record_comment(line, comment)
             return
         if len(words) > MAX_LENGTH:
@@ -113,6 +115,14 @@ class SinumerikInterpreter(WordInterpreter):
                 self._execute_statement(active, line, tokens, at)
         finally:
             self._record_comment(line, comment)
+
+    def _read_header(self, active: ActiveProgram, line: int, words: str) -> None:
+        """Read a line without a block; the transfer header of another program ends this one."""
+        if line == active.header_end + 1:
+            active.header_end = line
+        elif words.startswith("%") and active.source.rest().strip():
+            self._note(Wording("NC160", "second_program_begins_needs_file"), Severity.ERROR)
+            raise ProgramEnd
 
     def _has_words(self, raw: str) -> bool:
         words = split_comment(raw.rstrip("\r"))[0].strip()

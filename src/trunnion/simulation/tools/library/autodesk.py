@@ -130,7 +130,7 @@ def _with_body(form: ToolSizes, tool: JsonObject, geometry: JsonObject) -> ToolS
 
 def _with_shoulder(found: ToolSizes, geometry: JsonObject) -> ToolSizes:
     """Return a tool with its shoulder, which goes from the cutter to the shank."""
-    diameter = geometry.length("shoulder-diameter") or (0.0 if found.kind is ToolKind.TAPER else found.diameter)
+    diameter = geometry.length("shoulder-diameter") or _usual_shoulder(found)
     top = min(geometry.length("shoulder-length"), found.length)
     if found.kind is ToolKind.THREAD_MILL:
         # Below LCF it is as thick as the grooves.
@@ -143,6 +143,15 @@ def _with_shoulder(found: ToolSizes, geometry: JsonObject) -> ToolSizes:
     if top < found.flute_length or not diameter:
         return found
     return replace(found, neck_diameter=diameter, neck_length=top)
+
+
+def _usual_shoulder(found: ToolSizes) -> float:
+    """Return the shoulder of a tool that states none: as thick as the cutter, or as the shank behind a head."""
+    if found.kind is ToolKind.TAPER:
+        return 0.0
+    if found.kind in (ToolKind.LOLLIPOP, ToolKind.T_SLOT):
+        return found.shank_diameter if found.shank_diameter < found.diameter else 0.0
+    return found.diameter
 
 
 def _with_return_flank(found: ToolSizes, neck: float, top: float) -> ToolSizes:

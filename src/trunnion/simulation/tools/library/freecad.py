@@ -15,9 +15,16 @@ from trunnion.simulation.tools.sizes import ANGLE_LIMITS, BodyPiece, ToolKind, T
 
 #: mm to a unit of length, degrees to a unit of angle; a parameter without a unit is in mm or degrees.
 _LENGTHS: Final[Mapping[str, float]] = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
+#: Sizes that say the same differ by no more than this, mm.
+_SAME: Final = 1e-3
+
 _ANGLES: Final = frozenset({"", "°", "deg"})
 
-_VALUE: Final = re.compile(r"(\d{1,12}(?:\.\d{0,20})?)\s*([^\d.,\s]{0,5})", re.ASCII)
+#: A number with its unit: with a point or a comma, as the language of the system has it, or a fraction of an inch.
+_VALUE: Final = re.compile(r"(?P<number>\d{1,12}(?:[.,]\d{0,20})?)\s*(?P<unit>[^\d.,\s]{0,5})", re.ASCII)
+_FRACTION: Final = re.compile(
+    r"(?:(?P<whole>\d{1,6})(?:\s*[+-]\s*|\s+))?(?P<part>\d{1,6})/(?P<of>[1-9]\d{0,5})\s*(?P<unit>in|\")", re.ASCII
+)
 
 #: Names of shapes, in small letters without hyphens -> kind.
 _KINDS: Final[Mapping[str, ToolKind]] = {
@@ -63,7 +70,9 @@ class _Parameters:
         if value is None:
             return 0.0, ""
         if isinstance(value, str) and (match := _VALUE.fullmatch(value.strip())):
-            return float(match[1]), match[2].strip()
+            return float(match["number"].replace(",", ".")), match["unit"]
+        if isinstance(value, str) and (match := _FRACTION.fullmatch(value.strip())):
+            return int(match["whole"] or 0) + int(match["part"]) / int(match["of"]), match["unit"]
         number = finite(value)
         if number is None or number < 0.0:
             self.faults.append(phrase("no_number_with_unit", size=key, value=str(value)[:40]))
@@ -77,13 +86,14 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
     shape = short_text(root.get("shape-type")) or short_text(root.get("shape")).removesuffix(".fcstd")
     given = root.get("parameter")
     parameters = _Parameters(given if isinstance(given, dict) else {})
-    known = re.split(r"[/\\]", shape)[-1].casefold().replace("-", "").replace("_", "")
+    known = _known(shape)
     faults = []
     sizes = None
     if known not in _KINDS:
         faults = [phrase("shape_not_read", shape=shape) if shape else phrase("no_shape")]
     else:
         sizes = _sizes(known, parameters)
+        _note_contradictions(root, known, parameters)
         faults = parameters.faults or [fault_of_size(each) for each in shape_faults(sizes)]
     if faults or sizes is None:
         problems = tuple(Problem(file, 0, Wording("SIM152", "tool_bit", name=name, fault=fault)) for fault in faults)
@@ -91,6 +101,21 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
     remarks = [Wording("SIM155", "tool_bit_without_holder", length=sizes.length)] if sizes.length else []
     remarks += [Wording("SIM155", "tap_without_thread")] if known == "tap" else []
     return ToolLibrary(file, (LibraryTool(sizes, None, name, shape, tuple(remarks)),))
+
+
+def _known(shape: str) -> str:
+    """Return the name of a shape as ``_KINDS`` has it."""
+    return re.split(r"[/\\]", shape)[-1].removesuffix(".fcstd").casefold().replace("-", "").replace("_", "")
+
+
+def _note_contradictions(root: Mapping[str, Any], known: str, bit: _Parameters) -> None:
+    """Note what a tool bit says twice, and not the same."""
+    file = short_text(root.get("shape"))
+    if known != _known(file) and _KINDS.get(_known(file), _KINDS[known]) is not _KINDS[known]:
+        bit.faults.append(phrase("shapes_contradict", first=known, second=file))
+    edge, length = bit.length("CuttingEdgeHeight"), bit.length("Length")
+    if 0.0 < length < edge:
+        bit.faults.append(phrase("edge_longer_than_tool", edge=edge, length=length))
 
 
 def _sizes(shape: str, bit: _Parameters) -> ToolSizes:
@@ -107,8 +132,11 @@ def _sizes(shape: str, bit: _Parameters) -> ToolSizes:
 
 def _bull(form: ToolSizes, bit: _Parameters) -> ToolSizes:
     flat = bit.length("FlatRadius")
-    corner = 0.5 * form.diameter - flat if flat else bit.length("CornerRadius") or bit.length("TorusRadius")
-    return replace(form, corner_radius=corner)
+    stated = [0.5 * form.diameter - flat] if flat else []
+    stated += [radius for key in ("CornerRadius", "TorusRadius") if (radius := bit.length(key))]
+    if stated and max(stated) - min(stated) > _SAME:
+        bit.faults.append(phrase("corner_radii_contradict", first=stated[0], second=stated[1]))
+    return replace(form, corner_radius=stated[0] if stated else 0.0)
 
 
 def _drill(form: ToolSizes, bit: _Parameters) -> ToolSizes:

@@ -46,7 +46,7 @@ def read_tools(path: str | Path, unit: str = "") -> ToolLibrary:
     name = str(path)
     data = _read(file, _MAX_TABLE if suffix == ".tbl" else MAX_BYTES)
     if suffix == ".tbl":
-        return read_tool_table(name, _text(name, data), _unit(unit))
+        return read_tool_table(name, _text(data), _unit(unit))
     if data.startswith(_ZIP):
         data = _unpack(name, data)
     return _from_json(name, data)
@@ -65,7 +65,7 @@ def _read(file: Path, most: int) -> bytes:
     return data
 
 
-def _text(name: str, data: bytes) -> str:
+def _text(data: bytes) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -8,10 +8,13 @@ from typing import Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
-from trunnion.simulation.tools.library.library import ToolLibrary
+from trunnion.simulation.tools.library.library import ToolLibrary, UnusableTool
 from trunnion.simulation.tools.sizes import GREATEST
 
 _WORD: Final = re.compile(r"([A-Za-z])([+-]?(?:\d{1,12}(?:\.\d{0,20})?|\.\d{1,20}))", re.ASCII)
+
+#: The number of the tool in a line that is not understood.
+_TOOL: Final = re.compile(r"(?<!\S)[Tt](\d{1,9})(?!\S)", re.ASCII)
 
 #: Letters that a line may have: tool, pocket, diameter, offsets of the axes, angles and orientation of a lathe tool.
 _LETTERS: Final = frozenset("TPDXYZABCUVWIJQ")
@@ -24,28 +27,33 @@ def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
     text  of the table
     unit  mm to a unit of the table
 
-    Raises ``InputError`` if it is no tool table, with every mistake and its line.
+    LinuxCNC skips a line that it does not understand: the tool of such a line cannot be used, and the others can.
+
+    Raises ``InputError`` if no line is one of a tool table, with every mistake and its line.
     """
     diameters: dict[int, float] = {}
     seen: set[int] = set()
-    problems: list[Problem] = []
+    unusable: list[UnusableTool] = []
     for line, content in enumerate(text.split("\n"), 1):
-        words, fault = _words(content.partition(";")[0])
+        content = content.partition(";")[0]
+        words, fault = _words(content)
+        if fault is None and words:
+            number, diameter = int(words["T"]), words.get("D", 0.0) * unit
+            if number in seen:
+                fault = Wording("SIM151", "tool_twice", number=number)
+            elif not 0.0 <= diameter <= GREATEST:
+                fault = Wording("SIM174", "tool_diameter", number=number, words=words["D"])
+            elif diameter:
+                diameters[number] = diameter
+            seen.add(number)
         if fault is not None:
-            problems.append(Problem(file, line, fault))
-        if not words or fault is not None:
-            continue
-        number, diameter = int(words["T"]), words.get("D", 0.0) * unit
-        if number in seen:
-            problems.append(Problem(file, line, Wording("SIM151", "tool_twice", number=number)))
-        elif not 0.0 <= diameter <= GREATEST:
-            problems.append(Problem(file, line, Wording("SIM174", "tool_diameter", number=number, words=words["D"])))
-        elif diameter:
-            diameters[number] = diameter
-        seen.add(number)
-    if problems:
-        raise InputError(problems)
-    return ToolLibrary(file, diameters=diameters)
+            called = _TOOL.search(content)
+            unusable.append(UnusableTool(int(called[1]) if called else None, "", (Problem(file, line, fault),)))
+    if unusable and not seen:
+        raise InputError([problem for tool in unusable for problem in tool.problems])
+    for tool in unusable:
+        diameters.pop(-1 if tool.number is None else tool.number, None)
+    return ToolLibrary(file, unusable=tuple(unusable), diameters=diameters)
 
 
 def _words(line: str) -> tuple[dict[str, float], Wording | None]:

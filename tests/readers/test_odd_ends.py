@@ -1,0 +1,69 @@
+"""Circles that end a digit beside their start, and what a program leaves on or has behind itself."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+
+#: Machine -> a program with room for the end of a circle about X0 Y0 from X10 Y0.
+_CIRCLES = {
+    "matsuura_mx330": "%\nO0001\nG21 G90 G17 G54\nG0 X10. Y0. Z0.\nG3 X10. Y{} Z{} I-10. J0. F90.\nM30\n%\n",
+    "haas_umc750": "%\nO00001\nG21 G90 G17 G54\nG0 X10. Y0. Z0.\nG3 X10. Y{} Z{} I-10. J0. F90.\nM30\n%\n",
+    "yl569": "G17 G90 G71\nG0 X10 Y0 Z0\nG3 X10 Y{} Z{} I-10 J0 F90\nM30\n",
+    "xyzac_trt": "G17 G90 G21\nG0 X10 Y0 Z0\nG3 X10 Y{} Z{} I-10 J0 F90\nM2\n",
+    "dmu65": "BEGIN PGM P MM\nTOOL CALL 1 Z S9\nL X+10 Y+0 Z+0 R0 FMAX\nCC X+0 Y+0\nC X+10 Y{} Z{} DR+ F90\nM30\n"
+    "END PGM P MM\n",
+}
+
+
+def _said(machine: str, text: str, folder: Path) -> list[str]:
+    program = folder / "part.nc"
+    program.write_text(text, encoding="utf-8")
+    return [each.code for each in trunnion.read_program(program, machine=machine).diagnostics]
+
+
+@pytest.mark.parametrize("machine", _CIRCLES)
+@pytest.mark.parametrize(
+    ("end", "height", "found"),
+    [("-0.001", "-1", True), ("0.001", "-1", True), ("-0.001", "0", True), ("0.001", "0", False), ("0.", "0.", False)],
+)
+def test_a_circle_that_ends_beside_its_start_is_remarked_upon(
+    machine: str, end: str, height: str, found: bool, tmp_path: Path
+) -> None:
+    assert ("NC323" in _said(machine, _CIRCLES[machine].format(end, f"{height}."), tmp_path)) is found
+
+
+_SINUMERIK = "%_N_PART_MPF\n;$PATH=/_N_WKS_DIR\nG17 G90 G71\nG0 X0 Y0 Z0\nG1 X1 F9\n"
+
+
+@pytest.mark.parametrize(
+    ("rest", "codes"),
+    [
+        ("M30\n%\n", []),
+        ("X2\nM30\n", []),
+        ("%\n", []),
+        ("%_N_OTHER_MPF\nX30\nM30\n", ["NC160", "NC161"]),
+        ("%\nX30\nM30\n", ["NC160", "NC161"]),
+        ("M30\n%_N_OTHER_MPF\nX30\nM30\n", ["NC161"]),
+    ],
+)
+def test_a_transfer_header_in_the_midst_begins_another_program(rest: str, codes: list[str], tmp_path: Path) -> None:
+    found = _said("yl569", _SINUMERIK + rest, tmp_path)
+    assert found[:1] == codes[:1]
+    assert set(found) <= set(codes)
+
+
+@pytest.mark.parametrize("words", ["RND=2", "RNDM=2", "CHF=1", "CHR=1"])
+def test_corners_that_a_sinumerik_rounds_are_refused_by_name(words: str, tmp_path: Path) -> None:
+    program = tmp_path / "part.mpf"
+    program.write_text(f"G17 G90 G71\nG0 X0 Y0 Z0\nG1 X9 {words} F9\nY9\nM30\n")
+    name, said = words.partition("=")[0], [each.text for each in trunnion.read_program(program, machine="yl569").errors]
+    assert any(text.startswith(name) and "known but not simulated" in text for text in said), said
+
+
+def test_g23_that_is_left_on_is_reported(tmp_path: Path) -> None:
+    head = "%\nO0001\nG21 G90 G17 G54\n"
+    cut = "G0 X0. Y0. Z0.\nG1 X9. F90.\n"
+    assert _said("matsuura_mx330", f"{head}G23\n{cut}M30\n%\n", tmp_path) == ["NC351"]
+    assert _said("matsuura_mx330", f"{head}G23\n{cut}G22\nM30\n%\n", tmp_path) == []
