@@ -27,8 +27,8 @@ def test_mistakes_of_axes_and_of_the_control_come_together(tmp_path: Path, capsy
     )
     lines = told(tmp_path, capsys, text)
     assert [line.split(";")[0] for line in lines] == [
-        ":3: error: axis[5].carries is missing",
-        ":3: error: axis[5].direction is missing",
+        ":3: error: axis W carries is missing",
+        ":3: error: axis W direction is missing",
         ":3: error: axis has 4 linear and 2 rotary axes (X, Y, Z, W, C, B)",
         ":7: error: control.known.M30 is a word of the control itself, or begins with one: "
         "the declaration would hide it",

@@ -85,4 +85,4 @@ def test_a_mistake_in_a_body_is_told_with_its_line(text: str, line: int, words: 
         loaded(tmp_path, HEAD + text)
     (problem,) = caught.value.problems
     assert problem.line == line, problem
-    assert words in re.sub(r"body\[\d+\]", "body[#]", str(problem))
+    assert words in re.sub(r"(?<=error: )body \w+ |body\[\d+\]\.", "body[#].", str(problem))

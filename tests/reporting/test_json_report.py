@@ -103,3 +103,13 @@ def test_text_of_all_languages_stays_as_it_is(tmp_path: Path) -> None:
     name = '</script>"轮毂\\ Prüf\ud800'
     assert data_of(blade(name), tmp_path)["program"] == '</script>"轮毂\\ Prüf\ufffd'
     assert "轮毂" in (tmp_path / "report.json").read_text(encoding="utf-8")
+
+
+def test_a_speed_that_is_not_known_is_null_and_a_gap(tmp_path: Path) -> None:
+    verification = blade()
+    feed = verification.tip_feed.copy()
+    feed[3] = np.nan
+    said = data_of(replace(verification, tip_feed=feed), tmp_path)["columns"]
+    assert said["tip_feed"][3] is None
+    assert said["speed B"][3] is said["speed C"][3] is None
+    assert None not in said["tip_feed"][4:]

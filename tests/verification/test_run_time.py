@@ -153,3 +153,17 @@ def test_a_template_prints_times_and_others_cost_nothing(tmp_path: Path, capfd: 
     text = target.read_text(encoding="utf-8")
     assert " s of " in text or " min of " in text
     capfd.readouterr()
+
+
+def test_a_rapid_of_an_axis_without_a_stated_speed_has_no_feed(tmp_path: Path) -> None:
+    """It took what another axis needed for a rounding of 1e-12 mm, and had 1e20 mm/min."""
+    yl569 = load_machine("yl569")
+    machine = replace(yl569, axes=tuple(replace(axis, rapid=None) if axis.name == "X" else axis for axis in yl569.axes))
+    program = tmp_path / "part.mpf"
+    program.write_text("G54 G90 G17 G710 G94\nG0 X0 Y0 Z50 B0 C0\nG0 X300 Z50.0000000001\nG0 Y20\nG1 X0 F500\nM30\n")
+    found = verify(run_program(program, machine), columns=True)
+    assert np.isnan(found.tip_feed).tolist()[1:] == [True, False, False]
+    assert found.tip_feed[2] > 0.0
+    assert found.tip_feed[3] == pytest.approx(500.0)
+    every = verify(run_program(program, yl569), columns=True)
+    assert np.isfinite(every.tip_feed).all()

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path, PurePath
 from typing import Any, Final
 
+from trunnion.cli.checked_files import checked_data, checked_file
 from trunnion.cli.controls import control_lines
 from trunnion.cli.machine_text import machine_data, machine_lines, machine_list
 from trunnion.cli.printing import print_result, tell_problem
@@ -64,10 +65,16 @@ def machines(given: Given) -> int:
 
 
 def check(given: Given) -> int:
-    """Validate the definition of a machine with its control, or of a control, and show what it means.
+    """Validate the definition of a machine with its control, or of a control, and show what it means; or another file.
 
     Every mistake comes at once.
     """
+    other = checked_file(given.file)
+    if other is not None:
+        for remark in other.remarks:
+            tell_problem(problem_line(remark))
+        show(given, lambda: checked_data(other), [f"{given.file}: good: {other.text}"])
+        return 0
     if given.file in shipped_controls() or is_control_file(Path(given.file)):
         _check_control_file(given.file)
         _warn_of_branches(load_control(load_control_table(given.file)))
@@ -103,7 +110,7 @@ def _check_control_file(file: str) -> None:
     table = load_control_table(file)
     machine = stand_in(file, table)
     checks = (lambda: load_control(table), lambda: check_reading(machine), lambda: check_statements(machine))
-    _raise(all_problems(checks))
+    _raise(all_problems(checks, table.sources))
 
 
 def _check_is_known(name: str) -> None:

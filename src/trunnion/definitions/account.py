@@ -3,9 +3,10 @@ for, and the problems.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
+from pathlib import PurePath
 from typing import Final, Self
 
 from trunnion.definitions.expected import Expected, Form, Question
@@ -13,7 +14,7 @@ from trunnion.definitions.messages import meant_word
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
 from trunnion.errors import InputError, Problem, key_subject
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording
 
 #: Keys that are not known and are told one by one: for each a similar one is looked for.
 _MOST_UNREAD: Final = 100
@@ -21,6 +22,9 @@ _MOST_UNREAD: Final = 100
 #: Keys that stand above all tables, and tables of the control that people write without its name.
 _OF_WHOLE_FILE: Final = frozenset({"schema", "extends", "description"})
 _OF_CONTROL: Final = frozenset({"templates", "settings", "known", "reading", "between_points"})
+
+#: Tables that are called by their names.
+_NAMED: Final = re.compile(r"(axis|body)\[\d+\]")
 
 #: How the names of shipped files begin.
 _SHIPPED: Final = str(files("trunnion"))
@@ -37,7 +41,7 @@ class TableAccount:
     read_keys  keys that a getter has been called for
     children   tables that getters have returned
     questions  takes what getters ask for, if it is there; shared with all tables that are made of this one
-    sources    files that were read for the definition, also those of which no value counts
+    sources    files that were read for the definition, also those of which no value counts; its own first
     """
 
     content: LocatedValue
@@ -118,7 +122,7 @@ class TableAccount:
 
     # Problems
 
-    def add_problem(self, key: str, wording: Wording | str, cure: str = "", *, code: str = "DEF330") -> None:
+    def add_problem(self, key: str, wording: Wording) -> None:
         """Note a mistake in the value of a key; an empty key means the table itself.
 
         Where the value comes from a shipped file, what another file says of this table is what does not fit it: that is
@@ -126,12 +130,18 @@ class TableAccount:
         """
         file, line = self.location(key)
         path = self.key_path(key) if key else self.path
-        if isinstance(wording, str):
-            wording = foreign(wording, cure, code)
         if file != self.file and file.startswith(_SHIPPED):
-            wording = wording.within("inherited", file=file, line=line)
+            wording = wording.within("inherited", file=PurePath(file).name, line=line)
             file, line = self.file, self._own_line()
-        self.problems.append(Problem(file, line, wording.of_key(path), subject=key_subject(path)))
+        self.problems.append(Problem(file, line, wording.of_key(self._said_path(key)), subject=key_subject(path)))
+
+    def _said_path(self, key: str) -> str:
+        """Return the path of a key as people call it: an axis by its letter, ``axis B limits_deg``."""
+        name = self._values.get("name")
+        kind = _NAMED.fullmatch(self.path)
+        if kind is None or name is None or not isinstance(name.value, str) or not name.value.strip() or key == "name":
+            return self.key_path(key) if key else self.path
+        return f"{kind[1]} {name.value} {key}".rstrip()
 
     def _own_line(self) -> int:
         """Return the line of the one key that the last file to change the table states besides its name, or of its
@@ -146,7 +156,7 @@ class TableAccount:
         Raises ``InputError`` if there is one, with all of them in the order of files and lines.
         """
         if self.problems:
-            raise InputError(in_order(self.problems))
+            raise InputError(in_order(self.problems, self.sources))
 
     def report_unread_keys(self) -> None:
         """Note each key that has not been read; call it when the table has been read."""
@@ -185,9 +195,22 @@ class TableAccount:
             self.questions.append(Question(self.path, key, expected))
 
 
-def in_order(problems: Iterable[Problem]) -> list[Problem]:
-    """Return problems, each once, by files and lines; those in shipped files, which others cause, come last."""
-    return sorted(dict.fromkeys(problems), key=lambda each: (each.file.startswith(_SHIPPED), each.file, each.line))
+def in_order(problems: Iterable[Problem], sources: Sequence[str] = ()) -> list[Problem]:
+    """Return problems, each once, by files and lines.
+
+    sources  of the definition, its own file first. What does not fit it in a shipped file, which nobody is to change,
+             is told of that own file, and comes last
+    """
+    found = dict.fromkeys(problems)
+    own = next((file for file in sources if not file.startswith(_SHIPPED)), "")
+    ordered = sorted(found, key=lambda each: (each.file.startswith(_SHIPPED), each.file, each.line))
+    return [_told_of(each, own) if own and each.file.startswith(_SHIPPED) else each for each in ordered]
+
+
+def _told_of(problem: Problem, own: str) -> Problem:
+    """Return a problem in a shipped file as one of the file that extends it."""
+    wording = problem.wording.within("inherited", file=PurePath(problem.file).name, line=problem.line)
+    return Problem(own, 0, wording, severity=problem.severity, subject=problem.subject)
 
 
 def _plain(content: LocatedValue) -> object:

@@ -58,7 +58,7 @@ def bucket_of(time: Floats, buckets: int) -> Ints:
 def extreme_rows(columns: Sequence[SingleFloats], bucket: Ints) -> Ints:
     """Rows to keep, increasing: of each bucket the first, the last, and the first at each column's extremes.
 
-    columns   (n,) float32 each, finite
+    columns   (n,) float32 each; NaN counts as 0
     bucket    (n,) int64, increasing
     """
     starts = np.flatnonzero(np.diff(bucket, prepend=bucket[0] - 1))
@@ -66,7 +66,8 @@ def extreme_rows(columns: Sequence[SingleFloats], bucket: Ints) -> Ints:
     keep = np.zeros(len(bucket), np.bool_)
     keep[starts] = True
     keep[starts + sizes - 1] = True
-    for column in columns:
+    for each in columns:
+        column = np.nan_to_num(each)
         for extreme in (np.minimum, np.maximum):
             hits = np.flatnonzero(column == np.repeat(extreme.reduceat(column, starts), sizes))
             keep[hits[np.searchsorted(hits, starts)]] = True

@@ -5,6 +5,7 @@ Out:    UTF-8 JSON, with null for NaN and infinities.
 """
 
 import json
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -57,6 +58,7 @@ def _columns(content: ReportContent, series: PlotSeries) -> Iterator[tuple[str, 
             yield name, [None if np.isnan(value) else value for value in content.recorded.worst[:, k].tolist()]
 
 
-def _rounded(series: PlotSeries, column: str) -> list[float]:
+def _rounded(series: PlotSeries, column: str) -> list[float | None]:
+    """Return the values of a column, None where they are not known."""
     values: list[float] = np.round(series.values[column][1:].astype(np.float64), DECIMALS).tolist()
-    return values
+    return [None if math.isnan(value) else value for value in values]

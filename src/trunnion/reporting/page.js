@@ -68,7 +68,11 @@ for (const own of ["", "recorded-"]) (() => {
   // ------------------------------------------------------------------------------------------------------------------
   // Texts
 
+  /* What uPlot leaves open: null where a value is not known. */
+  const withGaps = (column) => (column.some(Number.isNaN) ? Array.from(column, (value) => (Number.isNaN(value) ? null : value)) : column);
+
   const number = (value, unit) => {
+    if (Number.isNaN(value)) return "not known:";
     const decimals = unit.endsWith("/min") ? (Math.abs(value) < 100 ? 1 : 0) : 3;
     return value.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, "").replace("-", "\u2212");
   };
@@ -322,7 +326,7 @@ for (const own of ["", "recorded-"]) (() => {
     for (const { u, spec } of plots) {
       u.stretch = { table, from: first };
       u.batch(() => {
-        u.setData([table.time, ...spec.lines.map((line) => table[line.column])].map((c) => c.subarray(first, end)), false);
+        u.setData([table.time, ...spec.lines.map((line) => table[line.column])].map((c) => withGaps(c.subarray(first, end))), false);
         u.setScale("x", { min: view[0], max: view[1] });
         u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
       });

@@ -52,7 +52,7 @@ class PlotSeries:
     """Columns of n + 1 points: the state before the first motion, then one point at the end of each motion.
 
     seconds       (n+1,) float32   duration of the motion, 0 for the first point; the running sum is the time axis
-    values        name -> (n+1,) float32
+    values        name -> (n+1,) float32; NaN in speeds whose time is not known
     lines         name -> (n+1,) int32: ``block``, ``number``, ``cl``, and ``file`` if there are subprograms
     timed         whether ``seconds`` are seconds; otherwise no time is known and each motion counts 1
     tool_changes  the point after which each one happens, and the name of the tool; of a recording, what is marked
@@ -110,8 +110,9 @@ def _values(verification: Verification, seconds: Floats) -> dict[str, SingleFloa
     for k in machine.rotary:
         turned = np.abs(np.diff(run.joints[:, k], prepend=run.start[k]))
         with np.errstate(divide="ignore", invalid="ignore"):
-            values[f"speed{k}"] = _as_float32(np.where(seconds > 0.0, turned / seconds * 60.0, 0.0))
-    values["feed"] = _as_float32(verification.tip_feed)
+            speed = np.where(seconds > 0.0, turned / seconds * 60.0, 0.0)
+        values[f"speed{k}"] = _with_gaps(speed, verification.tip_feed)
+    values["feed"] = _with_gaps(verification.tip_feed, verification.tip_feed)
     values["programmed"] = _as_float32(np.where(run.feed_mode == 94, run.feed, 0.0))
     return values
 
@@ -140,7 +141,7 @@ def _plots(verification: Verification) -> Iterator[Plot]:
     # The slides alone cannot move the tip faster than all of them together at rapid, along the diagonal.
     diagonal = math.hypot(*(machine.axes[k].rapid or np.inf for k in machine.linear))
     limits = (round(diagonal),) if math.isfinite(diagonal) else ()
-    curves = Curve("feed", "tip", limits, "slides at rapid"), Curve("programmed", "programmed")
+    curves = Curve("feed", "tip", limits, "linear axes at rapid"), Curve("programmed", "programmed")
     yield Plot("Tip feed", "mm/min", curves, step=True)
 
 
@@ -156,7 +157,7 @@ def _position_plot(verification: Verification, k: int) -> Plot:
 
 
 def _centred_limits(verification: Verification, k: int) -> tuple[float, ...]:
-    """Limits of a slide at their true distance, with the motion in the middle."""
+    """Limits of a linear axis at their true distance, with the motion in the middle."""
     axis = verification.machine.axes[k]
     values = verification.run.joints[travel_rows(verification.run, axis), k]
     if not np.isfinite(axis.high - axis.low) or not len(values) or not np.isfinite(values).all():
@@ -186,6 +187,14 @@ def _as_float32(column: Floats, before: float | None = None) -> SingleFloats:
         points[1:] = column
     points[0] = before if before is not None else points[min(1, len(column))] if len(column) else 0.0
     points[~np.isfinite(points)] = 0.0
+    return points
+
+
+def _with_gaps(column: Floats, tip_feed: Floats) -> SingleFloats:
+    """Return a column of speeds as ``_as_float32`` does, with NaN where the time of a motion is not known."""
+    points = _as_float32(column)
+    if len(tip_feed) == len(column):
+        points[1:][np.isnan(tip_feed)] = np.nan
     return points
 
 

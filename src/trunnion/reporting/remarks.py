@@ -28,6 +28,13 @@ class RemarkGroup:
     line: OptionalLine
     count: int
 
+    def __str__(self) -> str:
+        """Return it as a line, as ``Problem`` is printed, with its count."""
+        place = f"{self.file}:{self.line}" if self.line else self.file
+        what = f"{self.text}; {self.cure}" if self.cure else self.text
+        more = f" (and {self.count - 1} more like it)" if self.count > 1 else ""
+        return f"{place}: {self.severity}: {what}{f' [{self.code}]' if self.code else ''}{more}"
+
 
 def remark_groups(problems: Iterable[Problem]) -> tuple[RemarkGroup, ...]:
     """Return the groups of problems that say the same of several places of a file or tool."""

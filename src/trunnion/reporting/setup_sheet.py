@@ -116,6 +116,7 @@ class SetupSheet:
     """Everything on the sheet.
 
     content     what the report says of checks, axes and times
+    title       of the program, as it was set or as the CL file has it
     may_run     proven, and nothing was overruled
     simulated   whether its simulation found nothing; None: it was not simulated
     offsets     the work offsets that the program takes
@@ -146,7 +147,8 @@ class SetupSheet:
         Figure("checks", take=lambda content: to_data(content.checks, only=_OF_CHECK)),
     ]
     version: Annotated[str, Figure("made_by", after="control")]
-    part: Annotated[str, Figure(none="", after="program")]
+    title: Annotated[str, Figure(none="", after="program")]
+    part: Annotated[str, Figure(none="", after="title")]
     may_run: bool
     simulated: Annotated[bool | None, Figure("simulation_passed")]
     offsets: Annotated[tuple[str, ...], Figure("work_offsets")]
@@ -180,7 +182,9 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
     joints = run.joints[rows]
     first = bisect_left(run.events, operation.first, key=lambda event: event.before_row)
     end = bisect_left(run.events, operation.end, key=lambda event: event.before_row)
-    coolants = [str(event.value) for event in run.events[first:end] if event.kind == "coolant"]
+    # Coolant that the operation before has left on is on in this one.
+    before = [event for event in run.events[:first] if event.kind == "coolant"][-1:]
+    coolants = [str(event.value) for event in (*before, *run.events[first:end]) if event.kind == "coolant"]
     return CutRanges(
         rotary=(_turns(run, joints, run.machine.primary, cuts), _turns(run, joints, run.machine.secondary, cuts)),
         rpm=_range(run.rpm[rows], cuts & (run.spindle[rows] != 0)),

@@ -78,6 +78,7 @@ def _title(sheet: SetupSheet) -> str:
     items = [
         ("Machine", content.machine),
         ("Control", content.control),
+        ("Title", sheet.title),
         ("Part", sheet.part),
         ("Work offset", ", ".join(sheet.offsets) or "none"),
         ("Workpiece zero on the machine, mm", zero),

@@ -42,7 +42,7 @@ class SimulationContent:
     """A simulation.
 
     facts    names and values of what it is about
-    remarks  what was taken for granted or broken off
+    remarks  what was taken for granted or broken off, each thing once with its count
     data     all of it, as the command prints it as data
     """
 

@@ -21,6 +21,9 @@ from trunnion.timing.schedule import Schedule
 #: 0.02 mm.
 _STRAIGHT_TURN = 0.5
 
+#: Axes that move by no more than this, mm or degrees, stand still.
+_NO_MOTION = 1e-9
+
 #: Pieces into which the rows of a run are cut: so many for each row, and so many besides for the whole run. Where more
 #: would be needed, all rows of a chunk are cut into fewer.
 _MOST_PIECES = 16
@@ -33,7 +36,7 @@ class RowTimes:
 
     moving    (n,)  seconds of motion
     waiting   (n,)  seconds that the axes wait at the end of each; before the first row, that of the first
-    tip_feed  (n,)  mean speed of the tip while it moves, mm/min
+    tip_feed  (n,)  mean speed of the tip while it moves, mm/min; NaN where nobody knows how fast an axis goes
     """
 
     moving: Floats
@@ -51,6 +54,7 @@ class RunTimer:
         self._schedule = Schedule(run, self._dynamics)
         self._path = PathBuilder(run, self._schedule.stops)
         self._travel = np.empty(len(run))
+        self._untimed = np.zeros(len(run), np.bool_)
         self._read_with = run.machine.tool_length or 0.0
         self._spare = _SPARE_PIECES
 
@@ -59,6 +63,11 @@ class RunTimer:
         joints = positions.joints
         n = len(joints) - 1
         self._travel[first : first + n] = feeds[FeedRow.TRAVEL]
+        # A rapid, or a motion without a feed, of an axis without a stated speed: the others say nothing of its time.
+        free = np.isinf(self._dynamics.speed)
+        if free.any():
+            moves = (np.abs(np.diff(joints[:, free], axis=0)) > _NO_MOTION).any(axis=1)
+            self._untimed[first : first + n] = np.isinf(feeds[FeedRow.RATE]) & moves
         length = np.full(n, self._read_with)
         counts = self._inside.counts(first, joints, length, _STRAIGHT_TURN)
         pieces = int(counts.sum())
@@ -94,6 +103,7 @@ class RunTimer:
         moving = path.of_rows(piece_seconds(path, self._dynamics))
         with np.errstate(divide="ignore", invalid="ignore"):
             tip_feed = np.where(moving > 0.0, 60.0 * self._travel / moving, 0.0)
+        tip_feed[self._untimed] = np.nan
         waiting = np.zeros(len(moving))
         if len(moving):
             waits = self._schedule.timed(np.cumsum(np.where(np.isfinite(moving), moving, 0.0))).waits

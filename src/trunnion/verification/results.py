@@ -163,7 +163,7 @@ class Verification:
 
     seconds   (n,)   float64   time that the row takes (``trunnion.verification.kinematics.run_time``)
     waiting   (n,)   float64   those of these seconds in which the axes wait: dwells, tool changes, the spindle
-    tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min
+    tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min; NaN where its time is not known
     cl_line   (n,)   int32     line of the CL file that the row belongs to, 0 for none
 
     ``clamping`` is how the part is clamped, as far as somebody said it; None: nobody did.

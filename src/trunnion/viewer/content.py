@@ -189,9 +189,9 @@ def _phases(verification: Verification, toolpaths: Sequence[Toolpath]) -> NDArra
 
 
 def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
-    """Speed of the tip, (n,), mm/min; 0 where it is not known."""
-    feed = verification.tip_feed if len(verification.tip_feed) else np.zeros(len(verification.run))
-    return np.nan_to_num(feed, posinf=0.0).astype(np.float32)
+    """Speed of the tip, (n,), mm/min; -1 where it is not known."""
+    feed = verification.tip_feed if len(verification.tip_feed) else np.full(len(verification.run), np.nan)
+    return np.nan_to_num(feed, nan=-1.0, posinf=-1.0).astype(np.float32)
 
 
 def _length(shape: ToolShape | None, machine: Machine) -> float:

@@ -63,7 +63,7 @@ M5
 @pytest.mark.parametrize("base", ["matsuura_mx330", "haas_umc750"])
 def test_x_and_y_may_stand_anywhere_where_the_machine_says_so(base: str, tmp_path: Path) -> None:
     source, output = _source(tmp_path), tmp_path / "part.nc"
-    with pytest.raises(trunnion.RefusedError, match="while the slides are not at home"):
+    with pytest.raises(trunnion.RefusedError, match="while the linear axes are not at home"):
         trunnion.post(source, machine=_machine(tmp_path, base, _Z_ONLY), output=output)
     proof = '[proof]\nhome_at_tool_change = ["Z"]\nhome_at_end = ["Z"]\n'
     machine = _machine(tmp_path, base, proof + _Z_ONLY)
@@ -80,7 +80,7 @@ def test_x_and_y_may_stand_anywhere_where_the_machine_says_so(base: str, tmp_pat
 
 def test_at_the_end_more_may_be_asked_for_than_at_a_tool_change(tmp_path: Path) -> None:
     machine = _machine(tmp_path, "matsuura_mx330", '[proof]\nhome_at_tool_change = ["Z"]\n' + _Z_ONLY)
-    with pytest.raises(trunnion.RefusedError, match=r"ends in line \d+ while the slides are not at home"):
+    with pytest.raises(trunnion.RefusedError, match=r"ends in line \d+ while the linear axes are not at home"):
         trunnion.post(_source(tmp_path), machine=machine)
 
 

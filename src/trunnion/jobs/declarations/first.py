@@ -20,16 +20,16 @@ _NEW: Final = job(
 )  # fmt: skip
 
 _CHECK: Final = job(
-    "check", "validate the definition of a machine or a control",
+    "check", "validate a definition, a project or another file",
     Option(
         "file", "", FileIn("NAME_OR_FILE", leads="definition"),
-        "definition to validate: a TOML file, or a shipped one",
+        "file to validate, or a shipped definition",
     ),
     JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
     run="definitions:check",
     examples=[
         ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
-        ("trunnion check dmu65", "a shipped one"),
+        ("trunnion check part.toml", "a project, a tool library, an impeller or a file of jobs"),
     ],
 )  # fmt: skip
 

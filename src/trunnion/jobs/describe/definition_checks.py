@@ -1,6 +1,6 @@
 """Every mistake of a machine's definition at once: of its axes, its control, its words for readers and CL files."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from trunnion.controls import load_control
@@ -20,7 +20,7 @@ def machine_problems(table: Table, key: str) -> list[Problem]:
     """
 
     def fresh() -> Table:
-        return Table(table.content, table.path, list(table.problems))
+        return Table(table.content, table.path, list(table.problems), sources=table.sources)
 
     def control() -> Table:
         return fresh().table("control")
@@ -37,19 +37,23 @@ def machine_problems(table: Table, key: str) -> list[Problem]:
             lambda: check_reading(stand_in(key, control())),
             lambda: check_statements(stand_in(key, control())),
             lambda: check_statements(read_machine(fresh(), key)),
-        )
+        ),
+        table.sources,
     )
 
 
-def all_problems(checks: Iterable[Callable[[], object]]) -> list[Problem]:
-    """Return the problems that all checks raise together, each once, those in shipped files last."""
+def all_problems(checks: Iterable[Callable[[], object]], sources: Sequence[str] = ()) -> list[Problem]:
+    """Return the problems that all checks raise together, each once, those in shipped files last.
+
+    sources  of the definition, as ``in_order`` takes them
+    """
     problems: dict[Problem, None] = {}
     for check in checks:
         try:
             check()
         except InputError as error:
             problems |= dict.fromkeys(error.problems)
-    return in_order(problems)
+    return in_order(problems, sources)
 
 
 def stand_in(file: str, control: Table) -> Machine:

@@ -7,7 +7,7 @@ from typing import Final
 from trunnion.controls import Control
 from trunnion.controls.inches import without_comments
 from trunnion.controls.template import Template
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 
 #: What changes whether a line is one of the program: statements of the template language.

@@ -1,7 +1,7 @@
 """What a simulation found, as a record for scripts, data and reports."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Annotated, Any, ClassVar, Final
 
@@ -16,6 +16,7 @@ from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperat
 from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.stock.deviation import Excess
+from trunnion.simulation.tools.profile import ToolShape
 
 #: Air cuts that are told, the longest ones.
 _MOST_AIR: Final = 20
@@ -50,6 +51,7 @@ class SimulationResult:
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     setup      its name, where this is one of several
     setups     the results of each, where there are several
+    tools      their bodies by the words of the program; of several set-ups those of the last
     pairs      of bodies that were checked against each other, of all programs
     turn, tilt of the part as it is clamped, degrees; all places are those of the part as it is drawn. Of several
                set-ups those of the last one
@@ -79,6 +81,7 @@ class SimulationResult:
     simulation: Annotated[Simulation, NOT_DATA]
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
+    tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
 
     @property
     @Figure("remarks", after="operations")
@@ -123,6 +126,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
         simulation=found,
         setup=cut.setup.name,
         not_measured=_not_measured(cut),
+        tools=cut.setup.tools,
     )
 
 

@@ -67,7 +67,7 @@ def _axis_words(machine: Machine) -> list[int]:
 
 
 def check_home(context: Context) -> Check:
-    """Motions in the machine frame: at rapid, back along one slide first, and to the machine's home positions.
+    """Motions in the machine frame: at rapid, back along one linear axis first, and to the machine's home positions.
 
     A program that never goes to the home of the machine's definition has positions of its own, which are not checked.
     """
@@ -77,7 +77,7 @@ def check_home(context: Context) -> Check:
     if not (motions.at_home & motions.named).any():
         return _check_other_positions(context)
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
-    good = "slides and rotary axes at home before, after and at every tool change"
+    good = "linear and rotary axes at home before, after and at every tool change"
     stated = context.run.machine.home_at
     if stated:
         which = (f"{' '.join(names) or 'no axis'} at {_NAMES[place]}" for place, names in stated.items())
@@ -107,12 +107,12 @@ def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
         not_retracted = k == 0 or row != motions.rows[k - 1] + 1
         moves = bool((np.abs(motions.joints[k] - motions.before[k]) > HOME_TOLERANCE).any())
         if not_retracted and len(axes) > 1 and (moves or row == 0):
-            text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one slide"
+            text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one linear axis"
             yield context.place(row, 0.0, text)
 
 
 def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator[Place]:
-    """Yield the last motion before each tool change and end of program for which the slides are not at home."""
+    """Yield the last motion before each tool change and end of program for which the linear axes are not at home."""
     run = context.run
     for event in run.events:
         if event.kind not in ("tool_change", "end") or not 0 < event.before_row <= len(run):
@@ -125,7 +125,7 @@ def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator
         was_home = k >= 0 and motions.at_home[k, slides].all()
         if not (was_home and _slides_stay_home(run, slides, int(motions.rows[k]) + 1, row + 1)):
             what = "changes the tool" if event.kind == "tool_change" else "ends"
-            text = f"{what} in line {event.line} while the slides are not at home; this is the last motion before"
+            text = f"{what} in line {event.line} while the linear axes are not at home; this is the last motion before"
             yield context.place(row, 0.0, text)
 
 

@@ -158,7 +158,7 @@ export class Curves {
     const rows = [["seconds", "line", ...curves.map(({ name, unit }) => `${name} ${unit}`)].join(",")];
     const { program } = this;
     for (let i = 0; i < program.pieces; i++) {
-      const values = curves.map(({ at }) => Number(at(i).toFixed(5)));
+      const values = curves.map(({ at }) => at(i)).map((value) => (Number.isNaN(value) ? "" : Number(value.toFixed(5))));
       rows.push([program.time[i + 1].toFixed(4), program.line[program.row[i]], ...values].join(","));
     }
     return `${rows.join("\n")}\n`;

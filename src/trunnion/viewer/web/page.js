@@ -118,7 +118,7 @@ export class Page {
     const three = (/** @type {ArrayLike<number>} */ v, /** @type {number} */ digits) => Array.from(v, (part) => part.toFixed(digits)).join("  ");
     const tool = this.scene.tools[program.rows ? program.tool[row] : 0]?.name ?? "";
     const rows = [
-      [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
+      [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows && program.feed[row] >= 0 ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
       [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
     ];
     element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");

@@ -60,7 +60,8 @@ export class PathColours {
       this.space.paint((piece) => stock.colourOf(stock.rowOff[program.row[piece]]));
       this.#legend([]);
     } else {
-      const value = by === "feed" ? (/** @type {number} */ piece) => program.feed[program.row[piece]] : (/** @type {number} */ piece) => rotarySpeed(program, piece);
+      const speed = by === "feed" ? (/** @type {number} */ piece) => program.feedOf(program.row[piece]) : (/** @type {number} */ piece) => rotarySpeed(program, piece);
+      const value = (/** @type {number} */ piece) => speed(piece) || 0; // one that is not known has the colour of none
       let most = 0;
       for (let i = 0; i < program.pieces; i++) if (program.kind[program.row[i]] !== 0) most = Math.max(most, value(i));
       this.space.paint((piece) => scaled(value(piece) / (most || 1)));

@@ -95,6 +95,12 @@ export class Program {
   rowAt(time) { return this.pieces ? this.row[this.pieceAt(time)] : 0; }
 
   /**
+   * Speed of the tip in a row, mm/min; NaN where its time is not known.
+   * @param {number} row
+   */
+  feedOf(row) { return this.feed[row] < 0 ? NaN : this.feed[row]; }
+
+  /**
    * Length of the tool of a row, mm.
    * @param {number} row
    */

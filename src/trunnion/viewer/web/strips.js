@@ -14,7 +14,7 @@ export function strips(program) {
     at: (/** @type {number} */ piece) => program.axes[k][piece + 1],
   }));
   /** @type {any} */
-  const feed = { name: "F", unit: "mm/min", low: null, high: null, at: (/** @type {number} */ piece) => program.feed[program.row[piece]] };
+  const feed = { name: "F", unit: "mm/min", low: null, high: null, at: (/** @type {number} */ piece) => program.feedOf(program.row[piece]) };
   /** @type {any} */
   const rotary = { name: "ω", unit: "°/min", low: null, high: null, at: (/** @type {number} */ piece) => rotarySpeed(program, piece) };
   const limited = program.machine.axes.flatMap((axis, k) => (axis.placed && axis.low !== null && axis.high !== null ? [k] : []));
@@ -27,13 +27,14 @@ export function strips(program) {
 }
 
 /**
- * Speed of the faster rotary axis, degrees a minute; 0 where no time is known.
+ * Speed of the faster rotary axis, degrees a minute; 0 in no time, NaN where that is not known.
  * @param {ShownProgram} program
  * @param {number} piece
  */
 export function rotarySpeed(program, piece) {
   const takes = program.time[piece + 1] - program.time[piece];
   if (!(takes > 0) || !program.scene.timed) return 0;
+  if (Number.isNaN(program.feedOf(program.row[piece]))) return NaN;
   let most = 0;
   program.machine.axes.forEach((axis, k) => {
     if (axis.rotary) most = Math.max(most, Math.abs(program.axes[k][piece + 1] - program.axes[k][piece]));

@@ -403,3 +403,26 @@ def test_papers_that_cannot_be(folder: Path, tmp_path: Path, capsys: pytest.Capt
     assert "name the machine" in capsys.readouterr().err
     assert main(["verify", str(folder / "job.json"), "--zero", "0,0,0"]) == 2
     assert "says nothing about a manifest" in capsys.readouterr().err
+
+
+def test_the_sheet_has_title_library_coolant_and_what_compensation_means(tmp_path: Path) -> None:
+    first = HEAD.replace("SPINDL", "COOLNT/THRU\nSPINDL") + "GOTO/20.0,-3.5,5.0\n" + FOOT
+    second = HEAD.replace("OP1", "OP2").replace("SPINDL", "CUTCOM/LEFT,1\nSPINDL")
+    (tmp_path / "part.cls").write_text(first.replace("END-OF-PATH", "CUTCOM/OFF\nEND-OF-PATH") + second + FOOT)
+    sheet, page = tmp_path / "sheet.json", tmp_path / "sheet.html"
+    for paper in (sheet, page):
+        trunnion.post(
+            tmp_path / "part.cls", machine="yl569", output=tmp_path / "job.mpf", sheet=paper, force=True,
+            settings={"title": "Our <hub>"},
+            simulation={"stock": "box:60,60,20,-30,-30,-20", "cell": 4.0,
+                        "tools": ["1=flat:10,length=60,flutes=20,shank=10,holder=40x50"]},
+        )  # fmt: skip
+    data = json.loads(sheet.read_text("utf-8"))
+    assert data["title"] == "Our <hub>"
+    (tool,) = data["tools"]
+    assert (tool["holder"], tool["stick_out"]) == ("Ø40 × 50 mm", 60.0)
+    coolants = [each["coolant"] for each in data["operations"]]
+    assert coolants[0].startswith("through the tool (THRU, not read back)")
+    (note,) = [note for each in data["operations"] for note in each["notes"] if "radius compensation" in note]
+    assert note.startswith("radius compensation with the radius of the tool: the path is that of the tool's centre")
+    assert "Our &lt;hub&gt;" in page.read_text("utf-8")

@@ -1,9 +1,10 @@
 """The setup sheet of a post: what is known of machine, tools, operations and files, and what is left to a person."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from trunnion.machines import Machine
 from trunnion.model.clamping_notices import PLACED_NOTICES
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.run import NO_OFFSET, Run
-from trunnion.model.toolpath import CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool
+from trunnion.model.toolpath import Coolant, CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
@@ -25,6 +26,7 @@ from trunnion.reporting.html_text import format_number
 from trunnion.reporting.path_drawing import DrawnBody, path_drawing
 from trunnion.reporting.remarks import remark_groups
 from trunnion.reporting.setup_sheet import (
+    CutRanges,
     SetupSheet,
     SheetFile,
     SheetOperation,
@@ -34,8 +36,15 @@ from trunnion.reporting.setup_sheet import (
 )
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage
+from trunnion.simulation.tools.profile import Role, Section
 from trunnion.verification import Verification
 from trunnion.wording import counted, one_line
+
+if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.jobs.simulate.result import SimulationResult
+
+#: Coolants whose M code readers do not know, in words.
+_UNREAD_COOLANTS: Final = {"THRU": "through the tool", "AIR": "air", "TAP": "for tapping"}
 
 #: Warnings of a post that a sheet repeats.
 _MOST_WARNINGS = 20
@@ -60,6 +69,7 @@ def setup_sheet(
     return SetupSheet(
         content=content,
         version=MADE_BY,
+        title=clean(program.effective_setting("title")),
         part=clean(next((toolpath.part for toolpath in result.toolpaths if toolpath.part), "")),
         may_run=result.passed,
         simulated=None if result.simulation is None else result.simulation.passed,
@@ -68,7 +78,7 @@ def setup_sheet(
         tool_length=machine.tool_length,
         system=_system(program, job),
         rotary=rotary,
-        tools=tuple(_tools(calls, operations, run.uses_length_numbers)),
+        tools=tuple(_with_bodies(_tools(calls, operations, run.uses_length_numbers), result.simulation)),
         operations=operations,
         start=tuple(_start(program, run, operations, rotary)),
         to_check=tuple(clean(one_line(text)) for text in _to_check(program, job, result, run)),
@@ -118,7 +128,7 @@ def _operations(
             seconds=usage.seconds,
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),
-            cuts=cut_ranges(verification.run, own),
+            cuts=_with_asked_coolant(cut_ranges(verification.run, own), motions),
             notes=tuple(
                 dict.fromkeys(_notes(motions, _own_register(program, motions, call), names_radius=names_radius))
             ),
@@ -140,7 +150,12 @@ def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) 
                 rpm = event.rpm
             case CutterComp() if event.side != "OFF":
                 number = (event.register or own_register) if names_radius else 0
-                yield f"radius compensation with {f'D{number}' if number else 'the radius of the tool'}"
+                # Points of a CL file are those of the tool's centre; contours are refused.
+                yield (
+                    f"radius compensation with {f'D{number}' if number else 'the radius of the tool'}: the path is that"
+                    " of the tool's centre, so enter by how much the tool is larger than its size here (smaller:"
+                    " negative), and not its radius"
+                )
             case Stop():
                 yield "optional stop (M1)" if event.optional else "stop (M0)"
             case CycleOn() if event.mode[:1] == ("TAP",):
@@ -148,6 +163,38 @@ def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) 
                 per_minute = values.get("MMPM", (0.0,))[0] / rpm if rpm else 0.0
                 if pitch := values.get("MMPR", (per_minute,))[0]:
                     yield f"pitch {format_number(pitch)} mm"
+
+
+def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion]) -> CutRanges:
+    """Return ranges with the coolants that the CL file asks for by words that nobody reads back."""
+    asked = {event.kind for motion in motions for event in motion.operation.events if isinstance(event, Coolant)}
+    unread = [f"{said} ({word}, not read back)" for word, said in _UNREAD_COOLANTS.items() if word in asked]
+    return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *unread))))
+
+
+def _with_bodies(tools: Iterable[SheetTool], simulation: "SimulationResult | None") -> Iterator[SheetTool]:
+    """Yield tools with what a simulation knew of them, from libraries and arguments, where the CL file says nothing."""
+    shapes = {} if simulation is None else simulation.tools
+    for tool in tools:
+        shape = shapes.get(tool.call)
+        if shape is None:
+            yield tool
+            continue
+        holder = [section for section in shape.sections if section.role is Role.HOLDER]
+        yield replace(
+            tool,
+            name=tool.name or clean(shape.description or shape.name),
+            flute_length=tool.flute_length or shape.flute_length,
+            stick_out=tool.stick_out or (holder[0].bottom if holder else 0.0),
+            set_length=tool.set_length or (0.0 if shape.is_drawn_only else shape.length),
+            holder=tool.holder or ", ".join(map(_holder_piece, holder)),
+        )
+
+
+def _holder_piece(section: Section) -> str:
+    """Return a piece of a holder in words, such as ``Ø40 × 50 mm``."""
+    widest = max(max(each.start[0], each.end[0]) for each in section.outline)
+    return f"Ø{format_number(2.0 * widest)} × {format_number(section.top - section.bottom)} mm"
 
 
 def _is_of_holes(motions: Sequence[Motion]) -> bool:
@@ -234,7 +281,7 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     if machine.workpiece_zero is None:
         yield "Travel: nobody said where the workpiece zero is, so the proof only knows that the motion fits somewhere."
     else:
-        yield "The workpiece zero is where the sheet says: the limits of the slides were proven for it."
+        yield "The workpiece zero is where the sheet says: the limits of the linear axes were proven for it."
     if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions):
         yield "Without TCP the program holds for this zero and this tool length alone: measure both before each part."
     yield "Tools: the right one in each pocket, its length and radius measured and entered, its edge sharp, no run-out."

@@ -1,0 +1,125 @@
+"""``trunnion check`` of files that are no definition of a machine or a control: what they are, and every mistake.
+
+In:     a file.
+Out:    what it is in a line, once its loader has read all of it.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.definitions import LocatedValue, load_table, own_keys
+from trunnion.errors import InputError, Problem
+from trunnion.machines.loading import machine_library
+from trunnion.wording import counted
+
+#: The line by which a file names its schema.
+_SCHEMA: Final = re.compile(r"\s*#:schema \S*trunnion-([a-z]+)\.schema\.json\s*$", re.MULTILINE)
+
+#: Ends of the names of tool libraries of other systems.
+_LIBRARIES: Final = (".json", ".fctb", ".fctl", ".tbl", ".tools")
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedFile:
+    """A file that was read: of which ``kind`` it is, what it has in words, and warnings."""
+
+    file: str
+    kind: str
+    text: str
+    remarks: tuple[Problem, ...] = ()
+
+
+def _project(path: Path) -> tuple[str, tuple[Problem, ...]]:
+    from trunnion.jobs.project.file import load_project, read_project
+
+    table = load_table(path, machine_library(), kind="project")
+    if not _has_key(table.content, "output"):
+        simulated = read_project(path)
+        return f"a project: {counted(len(simulated.setups), 'set-up')} to simulate", ()
+    found = load_project(path)
+    programs = ", ".join(posted.output.name for posted in found.posted if posted is not None)
+    return f"a project: {counted(len(found.posted), 'set-up')}; it posts {programs}", ()
+
+
+def _has_key(content: LocatedValue, key: str) -> bool:
+    inner = content.value
+    if isinstance(inner, dict):
+        return key in inner or any(_has_key(each, key) for each in inner.values())
+    return isinstance(inner, list) and any(_has_key(each, key) for each in inner if isinstance(each, LocatedValue))
+
+
+def _tools(path: Path) -> tuple[str, tuple[Problem, ...]]:
+    from trunnion.simulation.tools.library import read_tools
+
+    found = read_tools(path)
+    unusable = f"; {len(found.unusable)} of no form that is known" if found.unusable else ""
+    return f"a tool library: {counted(len(found.tools), 'tool')}{unusable}", ()
+
+
+def _impeller(path: Path) -> tuple[str, tuple[Problem, ...]]:
+    from trunnion.jobs.impeller.models import load_impeller
+
+    found = load_impeller(path)
+    return f"an impeller: {counted(found.definition.number, 'blade')}", found.remarks
+
+
+def _nodes(path: Path) -> tuple[str, tuple[Problem, ...]]:
+    from trunnion.twin.recording.nodes import load_nodes
+
+    return f"a list of nodes: {counted(len(load_nodes(path).columns), 'column')}", ()
+
+
+def _batch(path: Path) -> tuple[str, tuple[Problem, ...]]:
+    from trunnion.batch.jobs_file import load_batch
+
+    return f"a file of jobs: {counted(len(load_batch(path).jobs), 'job')}", ()
+
+
+#: How each kind is read, and keys at the top of which one tells it; of the first that has one.
+_KINDS: Final[dict[str, tuple[Callable[[Path], tuple[str, tuple[Problem, ...]]], frozenset[str]]]] = {
+    "impeller": (_impeller, frozenset({"hub", "blade"})),
+    "batch": (_batch, frozenset({"job"})),
+    "nodes": (_nodes, frozenset({"columns", "namespace"})),
+    "project": (_project, frozenset({"setup", "simulation", "programs", "output", "stock"})),
+    "tools": (_tools, frozenset({"tool"})),
+}
+
+#: Keys that none of these has.
+_OF_DEFINITIONS: Final = frozenset({"axis", "spindle", "control", "facts", "workpiece", "family", "templates"})
+
+
+def checked_file(name: str) -> CheckedFile | None:
+    """Read a file of a kind other than machine and control; None if it is none.
+
+    Raises ``InputError`` with every mistake in it.
+    """
+    kind = _kind(Path(name))
+    if kind is None:
+        return None
+    text, remarks = _KINDS[kind][0](Path(name))
+    return CheckedFile(name, kind, text, remarks)
+
+
+def _kind(path: Path) -> str | None:
+    try:
+        if not path.is_file():
+            return None
+        if path.suffix.lower() in _LIBRARIES:
+            return "tools"
+        stated = _SCHEMA.match(path.read_text(encoding="utf-8-sig"))
+        keys = own_keys(path)
+    except (InputError, OSError, ValueError):
+        return None  # what is wrong is told by the loader of definitions
+    if stated is not None and stated[1] in _KINDS:
+        return stated[1]
+    if keys & _OF_DEFINITIONS:
+        return None
+    return next((kind for kind, (_, marks) in _KINDS.items() if keys & marks), None)
+
+
+def checked_data(found: CheckedFile) -> dict[str, Any]:
+    """Return it as data."""
+    return {"schema": 1, "file": Path(found.file).as_posix(), "kind": found.kind, "text": found.text}
