@@ -105,11 +105,10 @@ def is_cl_file(path: Path) -> bool:
     return packed or recognize_dialect(head).marked or _MOTION.search(head) is not None
 
 
-def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
+def cl_sources(file: Path | BinaryIO) -> list[ClSource]:
     """Return the CL files in a file or a stream: several in a ZIP archive, in the order of their names.
 
     file  a path, or a binary stream, which is read to its end
-    name  what a stream is called in messages
 
     Raises ``InputError`` if it cannot be read, is damaged, has no CL file, or is an archive in an archive.
     """
@@ -130,6 +129,7 @@ def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
                 Problem(name, 0, Wording("FIL120", "cannot_read_or_give", strerror=error.strerror or error))
             ) from error
     else:
+        name = "stdin"
         spool = _spooled(file, name)
         size = spool.seek(0, io.SEEK_END)
 

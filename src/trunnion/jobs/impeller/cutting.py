@@ -42,7 +42,7 @@ from trunnion.jobs.simulate.simulating import simulate
 from trunnion.machines import Machine
 from trunnion.machines.inverse import inverse
 from trunnion.machines.spindle_range import spindle_speed_fault
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Operation, Tool, Toolpath
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.simulation.meshes import picture
@@ -202,7 +202,7 @@ def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
     if not known:
         raise InputError(argument_problem("impeller", Wording("IMP310", "no_operations")))
     if isinstance(names, str) or not all(isinstance(name, str) for name in names):
-        raise wrong_argument("operations", names, "give a list of names")
+        raise wrong_argument("operations", names, phrase("give_names"))
     if unknown := [name for name in names if name not in known]:
         raise InputError(
             [

@@ -58,7 +58,7 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
             )
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
         if not uses_length_numbers and loads and register not in (0, loads[-1].number):
-            problems.append(_lost_register(program, operation, loads[-1]))
+            problems += _lost_register(program, operation, loads[-1])
         before = known.setdefault(call, [])
         if operation.tool in (other.tool for other in before):
             continue
@@ -67,15 +67,17 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
     return problems
 
 
-def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Problem:
-    """Return a warning of a register for the length, which the control does not take."""
-    return warning(
-        program.file_of(operation),
-        load.line,
-        Wording(
-            "CTL715", "length_is_that_of_tool", tool=load.number, register=load.adjust, control=program.control.name
-        ),
+def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Iterator[Problem]:
+    """Yield a warning of a register for the length that the control does not take, nor the operation as its edge."""
+    edge, said = program.effective_setting("edge", operation), {"tool": load.number, "register": load.adjust}
+    if edge == str(load.adjust):
+        return
+    wording = (
+        Wording("CTL715", "length_is_that_of_edge", control=program.control.name, edge=edge, **said)
+        if edge
+        else Wording("CTL715", "length_is_that_of_tool", control=program.control.name, **said)
     )
+    yield warning(program.file_of(operation), load.line, wording)
 
 
 def _conflict(call: str, before: Sequence[Operation], operation: Operation, file: str) -> Iterator[Problem]:
