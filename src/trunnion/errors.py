@@ -111,6 +111,11 @@ class Problem:
         return one_line(f"{place}: {self.severity}: {self.wording.text('what', words)}{cure}{code}")
 
 
+def warning(file: str, line: int, wording: Wording, *, subject: Subject | None = None) -> Problem:
+    """Return a problem that does not stop the work."""
+    return Problem(file, line, wording, Severity.WARNING, subject)
+
+
 def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     """Problems that differ only in their lines become one: at the first line, with their number."""
     alike: dict[tuple[object, ...], list[Problem]] = {}

@@ -128,3 +128,24 @@ def test_two_tools_with_one_length_register_are_refused_where_it_counts(
     said = "part.cls:15: error: tool 2 of operation B has length register 1, as tool 1 has"
     assert (said in err) is refused
     assert post.all(text, "--set", "tool=B:3", machine=machine)[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("machine", "more", "said"),
+    [
+        ("yl569", (), "takes the length of a cutting edge: D1"),
+        ("yl569", ("--set", "edge=3"), "takes the length of a cutting edge: D3"),
+        ("yl569", ("--set", "edge=5"), ""),
+        ("hs664rt", (), "takes the length of the tool"),
+        ("dmu65", (), "takes the length of the tool"),
+        ("matsuura_mx330", (), ""),
+    ],
+)
+def test_a_length_register_that_the_control_does_not_take_is_warned_of(
+    machine: str, more: tuple[str, ...], said: str, post: Post
+) -> None:
+    text = OPERATION.format(name="OP1", tool="D20", data=MILL, number="2,ADJUST,5")
+    code, _, err = post.all(text, *more, machine=machine)
+    assert code == 0
+    assert ("CTL715" in err) == bool(said)
+    assert said in err

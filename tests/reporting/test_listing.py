@@ -82,7 +82,7 @@ def test_the_lines_say_what_the_control_does(run: trunnion.Run) -> None:
 
 def test_slides_stand_beside_the_tip(run: trunnion.Run) -> None:
     lines = lines_of(run, slides=True)
-    assert "; SX SY SZ: slides, mm, counted from the workpiece zero" in lines
+    assert "; SX SY SZ: linear axes, mm, counted from the workpiece zero" in lines
     body = [line.split() for line in lines if not line.startswith(";")]
     row = next(k for k, words in enumerate(body) if words[-1] == "line")
     cut = body[row]

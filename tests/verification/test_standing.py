@@ -8,10 +8,13 @@ import pytest
 import trunnion
 from tests.support.locations import YL569
 from tests.support.verifying import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
+from trunnion.definitions.marked_values import MarkedValue
 from trunnion.errors import InputError, Severity
 from trunnion.machines import Machine, load_machine
+from trunnion.machines.unmeasured import unmeasured_values
 from trunnion.messages import foreign
 from trunnion.verification import check_lines
+from trunnion.verification.checks import table
 from trunnion.verification.results import Check, State, Verification
 
 HUB = YL569 / "2_hub_rough.cls"
@@ -161,3 +164,16 @@ def test_a_demand_for_measured_values_counts_those_that_matter(tmp_path: Path, v
     assert not basis.passed
     assert "X limits_mm" in basis.summary
     assert "B point_mm" not in basis.summary
+
+
+def test_what_nobody_measured_is_asked_once_for_all_checks(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def counted(*given: object) -> tuple[MarkedValue, ...]:
+        asked.append(given)
+        return unmeasured_values(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(table, "unmeasured_values", counted)
+    found = trunnion.verify(YL569 / "2_hub_rough.expected.mpf", machine="yl569", cl=HUB)
+    assert sum(bool(check.stands_on) for check in found.checks) > 1
+    assert len(asked) == 1

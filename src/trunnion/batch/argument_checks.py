@@ -33,18 +33,18 @@ def check_tiles(action: Action, tiles: object) -> int:
     return count
 
 
-def beside_fault(name: str) -> Wording | str:
-    """Return what is wrong with the name of a file that goes with each input; empty if it can be used.
+def beside_fault(name: str) -> Wording | None:
+    """Return what is wrong with the name of a file that goes with each input; None if it can be used.
 
-    >>> beside_fault("{folder}/{stem}.cls"), beside_fault("{name}.cls"), beside_fault("*.cls")
-    ('', 'has { or } elsewhere than in {folder} and {stem}', 'is a pattern')
+    >>> beside_fault("{folder}/{stem}.cls"), str(beside_fault("{name}.cls")), str(beside_fault("*.cls"))
+    (None, 'has { or } elsewhere than in {folder} and {stem}', 'is a pattern')
     """
     if fault := pattern_fault(name.replace("{folder}/", "", 1) or name):
         return fault
     rest = name.replace("{folder}", "").replace("{stem}", "")
     if "{" in rest or "}" in rest:
-        return "has { or } elsewhere than in {folder} and {stem}"
-    return phrase("pattern") if "*" in rest or "?" in rest else ""
+        return phrase("braces_elsewhere")
+    return phrase("pattern") if "*" in rest or "?" in rest else None
 
 
 def check_to_cl(said: Mapping[str, Any], machine: Machine | None) -> None:

@@ -22,7 +22,7 @@ from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Kept, Store, open_store
 from trunnion.batch.worker_task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.extras import import_extra
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.messages import Wording
@@ -280,11 +280,8 @@ class DaskWorkers:
         if not is_running:
             self._observer.problems(
                 [
-                    Problem(
-                        self._address,
-                        0,
-                        Wording("BAT230", "scheduler_gone_awaited", patience=self._scheduler.patience),
-                        severity=Severity.WARNING,
+                    warning(
+                        self._address, 0, Wording("BAT230", "scheduler_gone_awaited", patience=self._scheduler.patience)
                     )
                 ]
             )
@@ -314,7 +311,7 @@ class DaskWorkers:
             self._silent_for = alone + _REMIND
             self._observer.problems(
                 [
-                    Problem(
+                    warning(
                         self._address,
                         0,
                         Wording(
@@ -323,7 +320,6 @@ class DaskWorkers:
                             format_duration=format_duration(alone),
                             address=self._address,
                         ),
-                        severity=Severity.WARNING,
                     )
                 ]
             )

@@ -16,7 +16,7 @@ from trunnion.batch.share_seals import BrokenSealError, Seal, sealed, unsealed
 from trunnion.batch.stores import Kept, Store, TakenError
 from trunnion.batch.worker_task import NO_COSTS, SHARE_FILE, Costs, Outcome, Status, Task
 from trunnion.batch.workers import DAMAGED, Assignment
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.jobs.observer import Observer
 from trunnion.messages import Wording
 
@@ -85,7 +85,7 @@ class Divisions:
             raise InputError(Problem(seal.file, 0, Wording("BAT320", "one_shares_would", name=name))) from None
         except BrokenSealError as error:
             wording = Wording("BAT395", "share_is_made_again", reason=str(error))
-            self._observer.problems([Problem(seal.file, 0, wording, severity=Severity.WARNING)])
+            self._observer.problems([warning(seal.file, 0, wording)])
             return False
         return content is not None
 

@@ -22,7 +22,7 @@ from trunnion.files import name_fault
 from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.project.stated_values import StatedValues
 from trunnion.jobs.registry import JOBS
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.options.kinds import FileOut, Setting
 from trunnion.options.option import Option
 
@@ -243,12 +243,13 @@ def _folder_name(table: Table, key: str) -> str:
     name = table.text(key, "").rstrip("/")
     if not name:
         return ""
-    fault = pattern_fault(name) or ("begins with ~, which stands for no folder here" if name[0] == "~" else "")
-    fault = f'"{name[:100]}" {fault}' if fault else name_fault(PurePosixPath(name))
-    if fault:
-        table.add_problem(key, fault, 'name a folder, such as "out"', code="FIL340")
-        return ""
-    return name
+    if fault := pattern_fault(name) or (phrase("begins_with_tilde") if name[0] == "~" else None):
+        table.add_problem(key, Wording("FIL340", "no_folder_name", name=name[:100], fault=fault))
+    elif fault := name_fault(PurePosixPath(name)):
+        table.add_problem(key, Wording("FIL340", "name_of_no_folder", fault=fault))
+    else:
+        return name
+    return ""
 
 
 def _values(tables: _Tables, table: Table) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from trunnion.batch.jobs import Batch, Unit
 from trunnion.batch.records import FOLDER, Record, known_of, parse_record, record_name
 from trunnion.batch.share_seals import file_of
 from trunnion.batch.stores import Store, TakenError
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.project.paths import is_file
 from trunnion.messages import Wording
@@ -45,14 +45,10 @@ def remove_obsolete(batch: Batch, units: Sequence[Unit], store: Store, observer:
                 store.remove(name)
     told.sort(key=lambda problem: problem.file)
     if len(told) > _MOST_TOLD:
-        more = Problem(
-            store.label, 0, Wording("BAT360", "more", count=len(told) - _MOST_TOLD), severity=Severity.WARNING
-        )
+        more = warning(store.label, 0, Wording("BAT360", "more", count=len(told) - _MOST_TOLD))
         told[_MOST_TOLD:] = [more]
     if others:
-        told.append(
-            Problem(store.label, 0, Wording("BAT370", "results_file_another", others=others), severity=Severity.WARNING)
-        )
+        told.append(warning(store.label, 0, Wording("BAT370", "results_file_another", others=others)))
     if told:
         observer.problems(told)
 
@@ -70,7 +66,7 @@ def remove_obsolete_shares(batch: Batch, units: Sequence[Unit], store: Store, ob
     if others:
         observer.problems(
             [
-                Problem(
+                warning(
                     store.label,
                     0,
                     Wording(
@@ -79,7 +75,6 @@ def remove_obsolete_shares(batch: Batch, units: Sequence[Unit], store: Store, ob
                         count=len(others),
                         others=tuple(sorted({f"{SHARES}/{each.partition('-')[0]}-*" for each in others})[:_MOST_HOMES]),
                     ),
-                    severity=Severity.WARNING,
                 )
             ]
         )
@@ -106,10 +101,6 @@ def _removed(record: Record, store: Store) -> Iterator[Problem]:
         if there in checksums:
             store.remove(name)
             store.remove_empty(name)
-            yield Problem(
-                name, 0, Wording("BAT360", "removed_no_such", record_file=record.file), severity=Severity.WARNING
-            )
+            yield warning(name, 0, Wording("BAT360", "removed_no_such", record_file=record.file))
         else:
-            yield Problem(
-                name, 0, Wording("BAT370", "stays_although_no", record_file=record.file), severity=Severity.WARNING
-            )
+            yield warning(name, 0, Wording("BAT370", "stays_although_no", record_file=record.file))

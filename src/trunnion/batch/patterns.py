@@ -9,18 +9,18 @@ from trunnion.messages import Wording, phrase
 _MOST = 1000
 
 
-def pattern_fault(pattern: str) -> Wording | str:
-    """Return what is wrong with a pattern; empty if it can be used.
+def pattern_fault(pattern: str) -> Wording | None:
+    """Return what is wrong with a pattern; None if it can be used.
 
-    >>> pattern_fault("../*.cls"), pattern_fault("parts/**/*.cls")
-    ('leads out of the folder', '')
+    >>> str(pattern_fault("../*.cls")), pattern_fault("parts/**/*.cls")
+    ('leads out of the folder', None)
     """
     parts = pattern.split("/")
     if not pattern or len(pattern) > _MOST:
         return phrase("empty") if not pattern else phrase("too_long")
     if pattern.startswith("/") or ".." in parts or "\\" in pattern or ":" in parts[0]:
-        return "leads out of the folder"
-    return phrase("two_side_side") if "" in parts else ""
+        return phrase("leads_out_of_folder")
+    return phrase("two_side_side") if "" in parts else None
 
 
 def matches(name: str, pattern: str) -> bool:

@@ -13,21 +13,21 @@ from trunnion.messages import Wording, phrase
 _MOST = 100_000
 
 
-def unmatched(folder: Path, pattern: str, results: Path | None) -> Wording | str:
-    """Which file of a folder a pattern means that is none of the inputs, and why; empty: there is none."""
+def unmatched(folder: Path, pattern: str, results: Path | None) -> Wording | None:
+    """Which file of a folder a pattern means that is none of the inputs, and why; None: there is none."""
     looked = 0
     for at, folders, names in os.walk(folder):
         here = PurePosixPath(Path(at).relative_to(folder).as_posix())
         for name in sorted([*folders, *names]):
             looked += 1
             if looked > _MOST:
-                return ""
+                return None
             file = (here / name).as_posix()
             if matches(file, pattern) and (why := _reason(folder, file, results)):
-                return f"{file[:200]} {why}"
+                return why
         if any((Path(at) / name).is_symlink() and _leads_there(here / name, pattern) for name in folders):
             return phrase("links_folders_not", pattern=pattern[:200])
-    return ""
+    return None
 
 
 def _leads_there(link: PurePosixPath, pattern: str) -> bool:
@@ -35,18 +35,18 @@ def _leads_there(link: PurePosixPath, pattern: str) -> bool:
     return pattern.removeprefix("./").startswith(f"{link.as_posix()}/")
 
 
-def _reason(folder: Path, file: str, results: Path | None) -> str:
-    path = folder / file
+def _reason(folder: Path, file: str, results: Path | None) -> Wording | None:
+    path, named = folder / file, file[:200]
     if path.is_symlink() and not is_within(path, folder):
-        return "is a link that leads out of the folder"
+        return phrase("link_out_of_folder", file=named)
     if not is_file(path):
-        return "" if path.is_dir() else "is no file that can be read to its end"
+        return None if path.is_dir() else phrase("not_read_to_end", file=named)
     if any(part.startswith(".") for part in PurePosixPath(file).parts):
-        return "is hidden, as names that begin with a point are"
+        return phrase("hidden_file", file=named)
     above = [folder / each for each in PurePosixPath(file).parents][:-1]
     if any((each / FOLDER).is_dir() or (results is not None and _is_same(each, results)) for each in above):
-        return "lies in a folder of results"
-    return ""
+        return phrase("among_results", file=named)
+    return None
 
 
 def _is_same(one: Path, other: Path) -> bool:

@@ -54,7 +54,7 @@ class PartReach:
     @property
     @Figure("no_travel")
     def without_travel(self) -> Ints:
-        """Facets that have a tool axis with which the slides do not reach them."""
+        """Facets that have a tool axis with which the linear axes do not reach them."""
         return np.asarray(np.flatnonzero(self.axis & ~self.travel))
 
     @property

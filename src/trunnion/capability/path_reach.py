@@ -21,7 +21,7 @@ class PathReach:
     points       how many there are
     tilts        least and greatest tilt of the tool axis from the workpiece's Z, degrees
     no_axis      points whose tool axis the rotary axes do not give, and the line of the first; 0 for none
-    no_travel    points beyond the travel of the slides with every rotary position, and the line of the first
+    no_travel    points beyond the travel of the linear axes with every rotary position, and the line of the first
     """
 
     file: str

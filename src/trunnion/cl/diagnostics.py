@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, Severity, warning
 from trunnion.messages import Wording
 
 #: More problems than this are counted, not listed.
@@ -35,7 +35,7 @@ class Diagnostics:
         said = wording.what, wording.cure
         times = self._repeated[said] = self._repeated.get(said, 0) + 1
         if times == 1:
-            self._add(Problem(self.file, line, wording, severity=Severity.WARNING))
+            self._add(warning(self.file, line, wording))
 
     def fatal(self, line: int, wording: Wording) -> InputError:
         """Return this error with all earlier ones as an exception: the file cannot be read any further."""

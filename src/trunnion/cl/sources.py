@@ -22,7 +22,7 @@ from typing import BinaryIO, Final, cast
 from trunnion.cl.byte_streams import Bzip2Stream, SharedStream
 from trunnion.cl.dialects import recognize_dialect
 from trunnion.encoding import EncodingDetector
-from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.errors import InputError, Problem, unusable_file, warning
 from trunnion.messages import Wording
 from trunnion.wording import one_line
 
@@ -105,11 +105,10 @@ def is_cl_file(path: Path) -> bool:
     return packed or recognize_dialect(head).marked or _MOTION.search(head) is not None
 
 
-def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
+def cl_sources(file: Path | BinaryIO) -> list[ClSource]:
     """Return the CL files in a file or a stream: several in a ZIP archive, in the order of their names.
 
     file  a path, or a binary stream, which is read to its end
-    name  what a stream is called in messages
 
     Raises ``InputError`` if it cannot be read, is damaged, has no CL file, or is an archive in an archive.
     """
@@ -130,6 +129,7 @@ def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
                 Problem(name, 0, Wording("FIL120", "cannot_read_or_give", strerror=error.strerror or error))
             ) from error
     else:
+        name = "stdin"
         spool = _spooled(file, name)
         size = spool.seek(0, io.SEEK_END)
 
@@ -210,7 +210,7 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         why = _why_no_cl_file(inside, info, opened)
         if why:
             wording = Wording("FIL170", "left_out", reason=why)
-            left_out.append(Problem(inside, 0, wording, severity=Severity.WARNING))
+            left_out.append(warning(inside, 0, wording))
         else:
             sources.append(ClSource(inside, opened))
     if not sources:

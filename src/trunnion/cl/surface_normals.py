@@ -19,7 +19,7 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Floats, Floats2, Ints, Lines
 from trunnion.decimal_bytes import EXACT_DIGITS, POWERS_OF_TEN, parse_decimal
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.jit import ONE, inner, kernel, unsigned
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Moves, Operation, Tool, Toolpath
@@ -85,12 +85,7 @@ def _why_no_normals(tool: Tool, contact: Floats) -> str:
 
 
 def _remark(file: str, operation: Operation, why: str) -> Problem:
-    return Problem(
-        file,
-        operation.line,
-        Wording("CL940", "operation", operation=operation.name, why=why),
-        severity=Severity.WARNING,
-    )
+    return warning(file, operation.line, Wording("CL940", "operation", operation=operation.name, why=why))
 
 
 def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:

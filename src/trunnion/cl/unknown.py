@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.statement import parse
-from trunnion.errors import Problem, Severity, merge_repeated
+from trunnion.errors import Problem, merge_repeated, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import ShopStatement, Toolpath, UnknownStatement
 
@@ -43,11 +43,9 @@ def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
 def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
     """Return what is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, Wording("CL210", "unknown", unknown=event.what), severity=Severity.WARNING)
+        warning(toolpath.file, event.line, Wording("CL210", "unknown", unknown=event.what))
         if event.acts
-        else Problem(
-            toolpath.file, event.line, Wording("CL220", "unknown", unknown=event.what), severity=Severity.WARNING
-        )
+        else warning(toolpath.file, event.line, Wording("CL220", "unknown", unknown=event.what))
         for event in _unknown_events(toolpath)
     )
 

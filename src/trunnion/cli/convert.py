@@ -11,7 +11,7 @@ from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_fold
 from trunnion.cli.wording import problem_line
 from trunnion.controls import load_control
 from trunnion.dialect_names import WRITTEN_DIALECTS
-from trunnion.errors import Problem, Severity
+from trunnion.errors import warning
 from trunnion.files import check_outputs
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.guard import files_read
@@ -50,7 +50,7 @@ def _told_of_dialect(given: Given) -> None:
     """Take ``--dialect`` alone for ``--to-dialect``, as it was before; a warning says so until the next version."""
     if given.to_dialect is None and given.dialect is not None and given.to_cl:
         wording = Wording("ARG190", "dialect_of_written")
-        tell_problem(problem_line(Problem("trunnion convert", 0, wording, severity=Severity.WARNING)))
+        tell_problem(problem_line(warning("trunnion convert", 0, wording)))
         given.values["to_dialect"], given.values["dialect"] = given.dialect, None
 
 

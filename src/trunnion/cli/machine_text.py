@@ -36,7 +36,7 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
         "",
         "Where the tool points, in directions of the workpiece, and where the spindle's gauge point is then;",
     )
-    yield "slides at zero, positions in mm from the workpiece zero"
+    yield "linear axes at zero, positions in mm from the workpiece zero"
     yield from _pose_lines(jogs)
     yield ""
     yield from _solution_lines(jogs)

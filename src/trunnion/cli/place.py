@@ -279,7 +279,7 @@ def _point(place: PartPlace) -> str:
 
 
 def _overlap(found: Placement) -> str:
-    """How much travel is missing, where both limits of one slide conflict and nothing else does."""
+    """How much travel is missing, where both limits of one linear axis conflict and nothing else does."""
     ends = {(limit.axis, limit.end) for limit in found.limits}
     if found.fits or found.best is None or len(ends) != 2 or len({axis for axis, _ in ends}) > 1:
         return ""
@@ -290,7 +290,7 @@ def _value(goal: str, place: PartPlace) -> str:
     """Return the value of a goal in words."""
     what = {
         "rotary": "the rotary axes turn",
-        "slides": "the slides travel",
+        "slides": "the linear axes travel",
         "time": "as the planner of speeds has it, it takes",
         "overspeed": "the axes do not reach the feed in",
     }

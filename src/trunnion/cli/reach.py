@@ -90,14 +90,14 @@ def _ranges(tilts: list[float], step: float) -> str:
 
 
 def _not_judged(found: Reach) -> str:
-    """Return what is not known of slides, in words, with what to give; empty where all are judged."""
+    """Return what is not known of linear axes, in words, with what to give; empty where all are judged."""
     slides, machine = found.unjudged_axes, found.machine
     if not slides:
         return ""
     free = [k for k in machine.linear if not machine.axes[k].has_limits]
     cure = "give --zero" if machine.workpiece_zero is None else "give --tool-length"
     cure = "the machine states no limits" if len(free) == len(slides) else cure
-    names = "slides are" if len(slides) == len(machine.linear) else f"{' and '.join(slides)} {_is(len(slides))}"
+    names = "linear axes are" if len(slides) == len(machine.linear) else f"{' and '.join(slides)} {_is(len(slides))}"
     return f"{names} not judged ({cure})"
 
 
@@ -114,7 +114,7 @@ def _part_lines(part: PartReach, found: Reach) -> Iterator[str]:
     yield f"{part.name}: {share}"
     for which, why in (
         (~part.axis, "no such tool axis"),
-        (part.axis & ~part.travel, "beyond the travel of the slides"),
+        (part.axis & ~part.travel, "beyond the travel of the linear axes"),
     ):
         if which.any():
             tilts = np.degrees(np.arccos(np.clip(part.normal[which, 2], -1.0, 1.0)))
@@ -122,7 +122,7 @@ def _part_lines(part: PartReach, found: Reach) -> Iterator[str]:
             yield f"  {why}: {lost:.1f} %, normals tilted from {tilts.min():.1f}° to {tilts.max():.1f}°"
     for k in missed[:_MOST].tolist():
         i, j, n = part.normal[k] + 0.0
-        why = "beyond the travel of the slides" if part.axis[k] else "no such tool axis"
+        why = "beyond the travel of the linear axes" if part.axis[k] else "no such tool axis"
         yield (
             f"  facet {k + 1}: {part.area[k]:.1f} mm² at {position(part.centre[k])},"
             f" normal {i:.3f} {j:.3f} {n:.3f}: {why}"

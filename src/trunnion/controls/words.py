@@ -152,20 +152,17 @@ def round_column(value: Floats, scale: float, out: Ints) -> None:
         out[row] = count
 
 
-def round_to_counts(value: Floats, decimals: int, out: Ints | None = None) -> Ints:
+def round_to_counts(value: Floats, decimals: int) -> Ints:
     """Return values as counts, rounded as ``f"{value:.{decimals}f}"`` rounds.
 
-    value : (n,) float64        NaN for an absent word
-    decimals                    digits after the point, at most 9
-    out : (n,) int64, optional  array for the counts
+    value     (n,) float64; NaN for an absent word
+    decimals  digits after the point, at most 9
 
     (n,) int64  ``ABSENT`` where ``value`` is NaN
 
     Raises ``OverflowError`` if a count has more digits than a double.
     """
-    if out is None:
-        out = np.empty(len(value), np.int64)
-    scale = float(10**decimals)
+    out, scale = np.empty(len(value), np.int64), float(10**decimals)
     if len(value):
         widest = max(abs(float(np.fmax.reduce(value))), abs(float(np.fmin.reduce(value))))
         if widest * scale > LARGEST_COUNT:  # False for NaN: a column without a number

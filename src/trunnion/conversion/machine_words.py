@@ -7,7 +7,7 @@ word means. What only the source declares to be without effect on the path is le
 from collections.abc import Sequence
 from dataclasses import replace
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Event, Insert, Toolpath
@@ -29,7 +29,7 @@ def carry_machine_words(
         return toolpath, ()
     if target is None:
         return toolpath, (
-            Problem(
+            warning(
                 toolpath.file,
                 inserts[0].line,
                 Wording(
@@ -38,7 +38,6 @@ def carry_machine_words(
                     fromkeys=tuple(dict.fromkeys(event.text for event in inserts)),
                     source=source.key,
                 ),
-                severity=Severity.WARNING,
             ),
         )
     if source.key == target.key and source.control.to_dict() == target.control.to_dict():
@@ -90,13 +89,12 @@ class _Words:
             )
             return
         self.problems.append(
-            Problem(
+            warning(
                 self._file,
                 event.line,
                 Wording("CNV150", "not_carried_over", event=event.text, means=word.means, target=self._target)
                 if word.means
                 else Wording("CNV150", "not_carried_over_no", event=event.text, target=self._target),
-                severity=Severity.WARNING,
             )
         )
 

@@ -8,7 +8,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.states import SAID_ANYHOW
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, warning
 from trunnion.messages import Wording
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Moves
@@ -43,7 +43,7 @@ class Warnings:
 
     def __call__(self, line: int, wording: Wording, file: int = 0) -> None:
         """Add a warning; ``file`` is an index as in ``Run.file``."""
-        self._found.append(Problem(self._files[file], line, wording, severity=Severity.WARNING))
+        self._found.append(warning(self._files[file], line, wording))
 
     def refuse(self, line: int, wording: Wording, file: int = 0) -> None:
         """Add an error: the program must not be converted without it."""

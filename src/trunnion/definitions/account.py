@@ -14,7 +14,7 @@ from trunnion.definitions.messages import meant_word
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
 from trunnion.errors import InputError, Problem, key_subject
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording
 
 #: Keys that are not known and are told one by one: for each a similar one is looked for.
 _MOST_UNREAD: Final = 100
@@ -122,7 +122,7 @@ class TableAccount:
 
     # Problems
 
-    def add_problem(self, key: str, wording: Wording | str, cure: str = "", *, code: str = "DEF330") -> None:
+    def add_problem(self, key: str, wording: Wording) -> None:
         """Note a mistake in the value of a key; an empty key means the table itself.
 
         Where the value comes from a shipped file, what another file says of this table is what does not fit it: that is
@@ -130,8 +130,6 @@ class TableAccount:
         """
         file, line = self.location(key)
         path = self.key_path(key) if key else self.path
-        if isinstance(wording, str):
-            wording = foreign(wording, cure, code)
         if file != self.file and file.startswith(_SHIPPED):
             wording = wording.within("inherited", file=PurePath(file).name, line=line)
             file, line = self.file, self._own_line()

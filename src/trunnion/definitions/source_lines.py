@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final, NamedTuple, TypeAlias
 
 #: Deeper keys are refused unread: the time of the TOML parser grows with the cube of their depth.
@@ -103,8 +104,11 @@ class Layout:
     comments: list[tuple[int, int]]
 
 
+@lru_cache(8)
 def layout(text: str) -> Layout:
-    """Where everything stands in a TOML text, which ``tomllib`` does not keep.
+    """Where everything stands in a TOML text, which ``tomllib`` does not keep; nobody changes it.
+
+    It is kept for a while: a definition is loaded, and then searched for marks.
 
     Nothing is checked here: for a text that is not TOML, the places mean nothing.
 

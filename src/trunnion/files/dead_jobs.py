@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.files.hidden_folders import hidden_folders_in, remove_folder
 from trunnion.files.journal import Outcome, read_journal
 from trunnion.files.locks import LOCK, FolderLock, hold
@@ -55,7 +55,7 @@ def _settle(hidden: Path) -> list[Problem]:
         return _settle_held(hidden, locks)
     except (OSError, ValueError) as error:
         what = Wording("FIL290", "not_settled", name=hidden.name, error=error)
-        return [Problem(str(hidden.parent), 0, what, severity=Severity.WARNING)]
+        return [warning(str(hidden.parent), 0, what)]
     finally:
         for each in locks:
             each.release()
@@ -82,12 +82,12 @@ def _settle_held(hidden: Path, locks: list[FolderLock]) -> list[Problem]:
 def _told(folder: Path, outcome: Outcome | None) -> list[Problem]:
     """Return what is said of a job."""
     if outcome is None:
-        return [Problem(str(folder), 0, Wording("FIL290", "removed"), severity=Severity.WARNING)]
+        return [warning(str(folder), 0, Wording("FIL290", "removed"))]
     names = _names(outcome.files)
     told = [Wording("FIL290", "finished" if outcome.finished else "rolled_back", names=names)]
     if outcome.changed:
         told.append(Wording("FIL290", "changed_since", names=_names(outcome.changed)))
-    return [Problem(str(folder), 0, each, severity=Severity.WARNING) for each in told]
+    return [warning(str(folder), 0, each) for each in told]
 
 
 def _names(files: Iterable[Path]) -> str:

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem, warning
 from trunnion.geometry.approximation import approximate
 from trunnion.geometry.closest import closest_parameters
 from trunnion.geometry.curves import DEGREE, BSplineCurve
@@ -130,9 +130,8 @@ def _runs_back(table: PointTable, spans: tuple[Span, ...]) -> Iterator[Problem]:
     """Spans in which the curve goes against its points: an end whose tangent does not belong to them, mostly."""
     for k, span in enumerate(spans):
         if span.runs_back:
-            yield Problem(
+            yield warning(
                 table.file,
                 table.lines[k + 1],
                 Wording("IMP123", "runs_back_before", table_called=table.called, turn=span.turn, radius=span.radius),
-                severity=Severity.WARNING,
             )

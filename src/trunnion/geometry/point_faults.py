@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.geometry.point_tables import MOST_POINTS, PointTable, too_many
 from trunnion.messages import Wording
 
@@ -46,16 +46,8 @@ def point_faults(table: PointTable) -> Iterator[Problem]:
     cosine = np.einsum("ij,ij->i", steps[:-1], steps[1:]) / (lengths[:-1] * lengths[1:])
     for k in np.flatnonzero(cosine < np.cos(np.radians(_BACK))).tolist():
         angle = np.degrees(np.arccos(max(cosine[k], -1.0)))
-        yield Problem(
-            file,
-            lines[k + 1],
-            Wording("IMP122", "turns_back_here", table_called=table.called, angle=angle),
-            severity=Severity.WARNING,
-        )
+        yield warning(file, lines[k + 1], Wording("IMP122", "turns_back_here", table_called=table.called, angle=angle))
     for k in np.flatnonzero(lengths > _JUMP * np.median(lengths)).tolist():
-        yield Problem(
-            file,
-            lines[k + 1],
-            Wording("IMP122", "gap_mm_before", table_called=table.called, lengths=lengths[k]),
-            severity=Severity.WARNING,
+        yield warning(
+            file, lines[k + 1], Wording("IMP122", "gap_mm_before", table_called=table.called, lengths=lengths[k])
         )

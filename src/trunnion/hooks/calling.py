@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.cl import unknown_statement_remarks
 from trunnion.controls.vocabulary import HOOKS_NOTICE
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.hooks import Block, Context
 from trunnion.hooks.checks import fingerprint, operation_fault, value_fault
 from trunnion.hooks.files import HookFile, function_failure
@@ -138,11 +138,10 @@ class Hooks:
         )
         name = next(iter(file.functions))
         return [
-            Problem(
+            warning(
                 str(file.path),
                 file.line_of(name),
                 Wording("HOK140", "operation_hooks_program", before=before.name, subject=tuple(what)),
-                severity=Severity.WARNING,
             )
         ]
 

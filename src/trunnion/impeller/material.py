@@ -15,7 +15,7 @@ from typing import Annotated, Final
 
 import numpy as np
 
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.shroud import shroud_form
@@ -102,11 +102,10 @@ def _one_turn(impeller: Impeller, step: MachiningStep, radius: float) -> Iterato
     stands = form < stock.diameter / 2.0
     height = stock.top - float(heights[stands].min(initial=stock.top))
     if step.step_down >= height > radius:
-        yield Problem(
+        yield warning(
             definition.file,
             step.line,
             Wording("IMP331", "step_down_mm", step=step.name, step_down=step.step_down, height=height),
-            severity=Severity.WARNING,
         )
 
 
@@ -119,7 +118,7 @@ def side_problems(
     for one in clearance:
         left = before.hub if one.body == "the hub" else before.blades
         if one.part is not Role.CUTTER and one.distance < left:
-            yield Problem(
+            yield warning(
                 file,
                 step.line,
                 Wording(
@@ -131,7 +130,6 @@ def side_problems(
                     body=one.body,
                     left=left,
                 ),
-                severity=Severity.WARNING,
             )
 
 
@@ -145,7 +143,7 @@ def _too_much(
     before = [one for one in steps[:place] if one.kind is clears]
     behind = [one for one in steps[place + 1 :] if one.kind is clears]
     if before:
-        return Problem(
+        return warning(
             file,
             step.line,
             Wording("IMP332", "up_mm", step=step.name, stands=stands, radius=radius, before=before[-1].name)
@@ -158,9 +156,8 @@ def _too_much(
                 radius=radius,
                 before=before[-1].name,
             ),
-            severity=Severity.WARNING,
         )
-    return Problem(
+    return warning(
         file,
         step.line,
         (
@@ -176,7 +173,6 @@ def _too_much(
             if is_form
             else Wording("IMP332", "up_mm_metal_stand_hub", step=step.name, stands=stands, radius=radius, clears=clears)
         ),
-        severity=Severity.WARNING,
     )
 
 

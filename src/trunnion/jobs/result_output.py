@@ -13,7 +13,7 @@ from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output,
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.registry import JOBS
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording
 from trunnion.options.kinds import FileOut
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
@@ -43,15 +43,15 @@ class Target:
         return tuple(self.path.with_name(file.name) for file in self.files.other_paths) if self.path else ()
 
 
-def check_output_name(argument: str, file: object, endings: Sequence[str], what: str) -> OutputPlace:
-    """Return the place of an output whose name tells its form, which is found out before any work; ``what`` says why it
+def check_output_name(argument: str, file: object, endings: Sequence[str], why: Wording | None) -> OutputPlace:
+    """Return the place of an output whose name tells its form, which is found out before any work; ``why`` says why it
     is so.
 
     Raises ``InputError`` if its name ends otherwise, or it cannot be written.
     """
     place = resolve_output(check_path(argument, file))
     if Path(place.name).suffix.lower() not in endings:
-        raise InputError(Problem(place.name, 0, foreign(what, f"let its name end in {' or '.join(endings)}", "FIL260")))
+        raise InputError(Problem(place.name, 0, Wording("FIL260", "other_ending", why=why, endings=tuple(endings))))
     return place
 
 

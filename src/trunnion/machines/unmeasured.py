@@ -72,7 +72,7 @@ def unmeasured_values(
 
     joints  (n, 5) some axis values that count, in the order of ``machine.axes``; None: any may
     """
-    found = [value for value in machine.nobody_measured if _kind(value) in kinds]
+    found = [value for value in machine.nobody_measured if kind_of(value) in kinds]
     if joints is None or not found:
         return tuple(found)
     rows = joints[np.isfinite(joints).all(axis=1)]
@@ -86,7 +86,8 @@ def corners(machine: Machine, ranges: Mapping[str, tuple[float, float]]) -> Floa
     return np.array(list(product(*(ranges.get(axis.name, (0.0, 0.0)) for axis in machine.axes))))
 
 
-def _kind(value: MarkedValue) -> ValueKind:
+def kind_of(value: MarkedValue) -> ValueKind:
+    """Return what a value is about."""
     return _TABLES.get(value.table) or _KINDS.get(value.key, ValueKind.CONTROL)
 
 

@@ -19,7 +19,12 @@ def joint_samples(run: Run) -> Floats:
     """Return axis values (k, 5) of rows with the extremes of each programmed column, and of some between, in order."""
     if not len(run):
         return np.zeros((0, 5))
-    columns = np.column_stack((run.xyz, run.rotary))
-    ends = (columns.argmin(axis=0), columns.argmax(axis=0))
+    ends = [row for columns in (run.xyz, run.rotary) for column in columns.T for row in _extremes(column)]
     between = np.linspace(0, len(run) - 1, min(len(run), _EVEN)).astype(np.int64)
-    return run.positions(np.unique(np.concatenate((*ends, between)))).joints
+    return run.positions(np.unique(np.concatenate((ends, between)))).joints
+
+
+def _extremes(column: Floats) -> tuple[int, int]:
+    """Return the first rows of the least and of the greatest value; a copy without gaps is searched faster."""
+    dense = np.ascontiguousarray(column)
+    return int(dense.argmin()), int(dense.argmax())

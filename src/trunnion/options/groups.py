@@ -226,7 +226,7 @@ CUTTING: Final = Group(
 JSON: Final = Option(
     "json",
     "--json",
-    FileOut("FILE|-", (".json",), "data is JSON", stdout=True),
+    FileOut("FILE|-", (".json",), phrase("data_is_json"), stdout=True),
     "the result as data: into a file, or with - to stdout in place of text",
     many=Many.MAYBE,
     own=True,
@@ -235,7 +235,7 @@ JSON: Final = Option(
 REPORT: Final = Option(
     "report",
     "--report",
-    FileOut("FILE", PAGE_OR_DATA, "a report is a page or data"),
+    FileOut("FILE", PAGE_OR_DATA, phrase("report_is_page_or_data")),
     "what was checked, as a page (.html) or data (.json)",
     key="report",
 )
@@ -243,7 +243,7 @@ REPORT: Final = Option(
 SHEET: Final = Option(
     "sheet",
     "--sheet",
-    FileOut("FILE", PAGE_OR_DATA, "a setup sheet is a page or data"),
+    FileOut("FILE", PAGE_OR_DATA, phrase("sheet_is_page_or_data")),
     "setup sheet to print (.html), or its data (.json)",
     key="sheet",
 )

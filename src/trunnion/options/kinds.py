@@ -238,7 +238,7 @@ class FileOut:
     """A file that is written.
 
     endings  of its name, one of which it has; empty: any
-    why      the name ends so
+    why      the phrase of why the name ends so
     form     what is written, where others know its endings: ``mesh``; empty: ``endings`` says it
     stdout   whether ``-`` is stdout
     folder   whether it may be a folder, which takes files of other names
@@ -246,7 +246,7 @@ class FileOut:
 
     metavar: str = "FILE"
     endings: Sequence[str] = ()
-    why: str = ""
+    why: Wording | None = None
     form: str = ""
     stdout: bool = False
     folder: bool = False

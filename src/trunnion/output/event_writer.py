@@ -275,7 +275,11 @@ class EventWriter:
         settings = {**self._control.settings, **program.settings_of(self._motion.operation)}
         words = {**self._family.template_values(settings, None), **values}
         self._templates.write(NEW_SPEED_WITH_TCP, words, self._motion)
-        self._blocks.writer.forget()  # what X, Y and Z mean has changed between
+        writer = self._blocks.writer
+        active = writer.modal_state()
+        writer.forget()  # what X, Y and Z mean has changed between, and not how feeds count
+        if "feed_mode" in active:
+            writer.remember("feed_mode", active["feed_mode"])
 
     def _is_switched_in(self, lines: Sequence[str], event: WordEvent) -> bool:
         """Whether lines begin with the words of an event, among other M words and settings."""

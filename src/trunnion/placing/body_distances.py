@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.placing.best_turn import TurnResult
@@ -52,7 +52,7 @@ def touch_warnings(found: Placement) -> list[Problem]:
     if touching is None:
         return []
     return [
-        Problem(
+        warning(
             touching.file,
             touching.line,
             Wording(
@@ -62,7 +62,6 @@ def touch_warnings(found: Placement) -> list[Problem]:
                 between_2=touching.between[1],
                 goal=found.goal,
             ),
-            severity=Severity.WARNING,
         )
     ]
 

@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 from typing import Final
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
 from trunnion.messages import Wording, phrase
@@ -44,7 +44,7 @@ def stated_place(program: Path) -> HeadNotices:
 def damaged_notices(program: Path, stated: HeadNotices) -> list[Problem]:
     """Warnings of notices that are not as they were written, or that contradict each other."""
     return [
-        Problem(str(program), line, Wording("PLC250", "damaged_in_program", fault=fault), severity=Severity.WARNING)
+        warning(str(program), line, Wording("PLC250", "damaged_in_program", fault=fault))
         for line, fault in stated.faults
     ]
 
@@ -72,7 +72,7 @@ def unlike_cl_files(
             wording = Wording(
                 "PLC220", "clamped_otherwise_than_given", own=own, of_cl=of_cl, given=clamped, remedy=remedy
             )
-        found.insert(0, Problem(str(program), 0, wording, severity=Severity.WARNING))
+        found.insert(0, warning(str(program), 0, wording))
     return found
 
 
@@ -96,12 +96,7 @@ def unlike_bodies(program: Path, given: Clamping, machine: Machine) -> list[Prob
         told = _told(stated.clamping.turn, stated.clamping.tilt)
         found.insert(
             0,
-            Problem(
-                str(program),
-                0,
-                Wording("PLC230", "head_says_part", clamping=stated.clamping, told=told),
-                severity=Severity.WARNING,
-            ),
+            warning(str(program), 0, Wording("PLC230", "head_says_part", clamping=stated.clamping, told=told)),
         )
     return found
 
@@ -124,12 +119,7 @@ def _unlike_zero(program: Path, stated: HeadNotices, machine: Machine) -> list[P
     given += [] if length is None else [f"tool length {number(length)}"]
     return [
         *found,
-        Problem(
-            str(program),
-            0,
-            Wording("PLC240", "head_says_slides", said=tuple(said), given=tuple(given)),
-            severity=Severity.WARNING,
-        ),
+        warning(str(program), 0, Wording("PLC240", "head_says_slides", said=tuple(said), given=tuple(given))),
     ]
 
 

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.machines import Machine, forward
 from trunnion.messages import Wording
 from trunnion.model.frames import frame_from_vectors
@@ -70,13 +70,12 @@ def supported_mode(
     replaceable = options.mode_for(operation.name) is None and options.simultaneous_mode in capabilities.modes
     if mode is MachiningMode.TILTED and mode not in capabilities.modes and replaceable:
         return options.simultaneous_mode, [
-            Problem(
+            warning(
                 file,
                 operation.line,
                 Wording("PLN320", "operation_control_does", operation=operation.name, mode=mode)
                 if options.tcp
                 else Wording("PLN320", "operation_control_does_not", operation=operation.name, mode=mode),
-                severity=Severity.WARNING,
             )
         ]
     return options.simultaneous_mode if mode is MachiningMode.TCP else mode, []

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.machines import Machine, inverse, spindle_speed_fault
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import PoleStrategy
@@ -31,12 +31,7 @@ def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]
     machine, options = request.machine, request.options
     names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
     if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
-        yield Problem(
-            file,
-            0,
-            Wording("PLN420", "definition_no_rapid", machine=machine.key, names=tuple(names)),
-            severity=Severity.WARNING,
-        )
+        yield warning(file, 0, Wording("PLN420", "definition_no_rapid", machine=machine.key, names=tuple(names)))
 
 
 def spindle_speed_problems(file: str, operation: Operation, machine: Machine) -> Iterable[Problem]:
@@ -92,7 +87,7 @@ def _made_rewinds(chosen: ChosenPoses, rewinds: Sequence[Rewind], feed_share: fl
         if all(per_min):
             said["time"], variant = format_duration(seconds), "rewinds_of_time"
     wording = Wording("PLN220", variant, **said)
-    return Problem(chosen.file, int(moves.line[first.row]), wording, severity=Severity.WARNING)
+    return warning(chosen.file, int(moves.line[first.row]), wording)
 
 
 def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Problem]:
@@ -102,7 +97,7 @@ def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Prob
     machine = request.machine
     for column, turns in wound_turns(machine, chosen.rotary):
         axis = machine.axes[column]
-        yield Problem(
+        yield warning(
             chosen.file,
             int(chosen.operation.moves.line[-1]),
             (
@@ -125,7 +120,6 @@ def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Prob
                     format_duration=format_duration(60.0 * 360.0 * turns / axis.rapid),
                 )
             ),
-            severity=Severity.WARNING,
         )
 
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Flags
-from trunnion.errors import Problem, RefusedError, Severity
+from trunnion.errors import Problem, RefusedError, warning
 from trunnion.messages import Wording
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
@@ -183,11 +183,10 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
         log.append(Decision(prepared.file, operation.name, cycles.line, -1, DecisionTopic.HOLES, text))
         if cycles.reason != REQUESTED:
             warnings.append(
-                Problem(
+                warning(
                     prepared.file,
                     cycles.line,
                     Wording("PLN640", "as_motion", reason=cycles.reason, description=cycles.description),
-                    severity=Severity.WARNING,
                 )
             )
     return replace(

@@ -17,7 +17,7 @@ from trunnion.reporting.content import ReportContent
 from trunnion.reporting.detail_levels import detail_levels, select_rows
 from trunnion.reporting.html_plots import column_element, column_elements, element_prefix, plot_section
 from trunnion.reporting.html_tables import page_body
-from trunnion.reporting.html_text import escape, source_hash
+from trunnion.reporting.html_text import page_head, source_hash
 from trunnion.reporting.plot_series import PlotSeries
 
 _ASSETS = files("trunnion.reporting")
@@ -79,14 +79,4 @@ def _head(title: str, scripts: Sequence[str], pictures: bool) -> str:
     images = "img-src data:; " if pictures else ""
     allowed = f"script-src {sources}; style-src {source_hash(style)}; {images}"
     policy = f"default-src 'none'; {allowed}base-uri 'none'; form-action 'none'"
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<title>{escape(title)}</title>
-<style>{style}</style>
-</head>
-"""
+    return page_head(title, style, policy)

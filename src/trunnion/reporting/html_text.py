@@ -12,6 +12,21 @@ def escape(value: object) -> str:
     return html.escape(str(value), quote=True)
 
 
+def page_head(title: str, style: str, policy: str) -> str:
+    """Return the beginning of a page up to its body; ``policy`` says what it may load and run."""
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>{escape(title)}</title>
+<style>{style}</style>
+</head>
+"""
+
+
 def note_lines(lines: Iterable[str]) -> str:
     """Return lines as notes."""
     return "".join(f'<p class="note">{escape(line)}</p>\n' for line in lines)

@@ -114,7 +114,8 @@ def _head(run: Run, program: str, slides: bool, made_by: str) -> Iterator[str]:
     yield f"{names[0]}: primary rotary axis, {names[1]}: secondary rotary axis, as the machine shows them, degrees"
     if slides:
         placed = all(machine.is_placed(k) for k in machine.linear)
-        yield "SX SY SZ: slides, mm, " + ("as the machine shows them" if placed else "counted from the workpiece zero")
+        shown = "as the machine shows them" if placed else "counted from the workpiece zero"
+        yield f"SX SY SZ: linear axes, mm, {shown}"
     yield "machine: the block states positions of the machine; the tip is known again when X, Y and Z are programmed"
     yield "S: rev/min, 0 where the spindle stands. F: as programmed; a rapid has none"
     widths = [_LINE_WIDTH, _NUMBER_WIDTH, *[_WIDTH] * (8 if slides else 5), _SPEED_WIDTH, _WIDTH]

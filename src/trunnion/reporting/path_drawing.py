@@ -48,7 +48,7 @@ class DrawnBody:
     faces: Ints
 
 
-def path_drawing(run: Run, bodies: Sequence[DrawnBody] = (), axis_names: str = "XYZ") -> str:
+def path_drawing(run: Run, bodies: Sequence[DrawnBody] = ()) -> str:
     """Return the drawing as an SVG element; empty if nothing is known of the path."""
     view = _view()
     tips, cutting = _known_tips(run)
@@ -70,7 +70,7 @@ def path_drawing(run: Run, bodies: Sequence[DrawnBody] = (), axis_names: str = "
     parts = [f'<path class="{escape(kind)}" d="{_edge_data(placed(each))}"/>' for kind, each in edges]
     for kind, data in _path_data(placed(flat), cutting):
         parts.append(f'<path class="{kind}" d="{data}"/>')
-    parts += _triad(placed(np.zeros((1, 2)))[0], view, axis_names)
+    parts += _triad(placed(np.zeros((1, 2)))[0], view)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img"'
     label = "Tool path in the workpiece: cuts as lines, rapids dashed, and the program zero"
     return f'{head} aria-label="{label}">' + "".join(parts) + "</svg>"
@@ -168,11 +168,11 @@ def _feature_edges(body: DrawnBody) -> Floats:
     return vertices[ends[~smooth & ~second]]
 
 
-def _triad(origin: Floats, view: Floats, names: str) -> Iterator[str]:
+def _triad(origin: Floats, view: Floats) -> Iterator[str]:
     """Yield the axes at the program zero, with their names."""
     yield f'<circle class="zero" cx="{origin[0]:.1f}" cy="{origin[1]:.1f}" r="3"/>'
-    for k, name in enumerate(names):
+    for k, name in enumerate("XYZ"):
         end = origin + 34.0 * view[:2, k] * (1.0, -1.0)
         text = origin + 43.0 * view[:2, k] * (1.0, -1.0)
         yield f'<path class="axis" d="M{origin[0]:.1f} {origin[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"/>'
-        yield f'<text x="{text[0]:.1f}" y="{text[1] + 4:.1f}">{escape(name)}</text>'
+        yield f'<text x="{text[0]:.1f}" y="{text[1] + 4:.1f}">{name}</text>'

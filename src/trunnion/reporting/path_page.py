@@ -11,7 +11,7 @@ from importlib.resources import files
 from typing import Final
 
 from trunnion.reporting.html_plots import column_element, script_json
-from trunnion.reporting.html_text import escape, source_hash
+from trunnion.reporting.html_text import page_head, source_hash
 from trunnion.reporting.path_series import PathSeries
 
 _ASSETS: Final = files("trunnion.reporting")
@@ -31,17 +31,7 @@ def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) 
         "tolerance": tolerance,
         "operations": [{"name": path.name, "details": path.details, "points": len(path.points)} for path in paths],
     }
-    yield f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<title>{escape(title)}</title>
-<style>{style}</style>
-</head>
-<body>
+    yield f"""{page_head(title, style, policy)}<body>
 <canvas id="space"></canvas>
 <canvas id="marks"></canvas>
 <aside>

@@ -141,7 +141,7 @@ def _plots(verification: Verification) -> Iterator[Plot]:
     # The slides alone cannot move the tip faster than all of them together at rapid, along the diagonal.
     diagonal = math.hypot(*(machine.axes[k].rapid or np.inf for k in machine.linear))
     limits = (round(diagonal),) if math.isfinite(diagonal) else ()
-    curves = Curve("feed", "tip", limits, "slides at rapid"), Curve("programmed", "programmed")
+    curves = Curve("feed", "tip", limits, "linear axes at rapid"), Curve("programmed", "programmed")
     yield Plot("Tip feed", "mm/min", curves, step=True)
 
 
@@ -157,7 +157,7 @@ def _position_plot(verification: Verification, k: int) -> Plot:
 
 
 def _centred_limits(verification: Verification, k: int) -> tuple[float, ...]:
-    """Limits of a slide at their true distance, with the motion in the middle."""
+    """Limits of a linear axis at their true distance, with the motion in the middle."""
     axis = verification.machine.axes[k]
     values = verification.run.joints[travel_rows(verification.run, axis), k]
     if not np.isfinite(axis.high - axis.low) or not len(values) or not np.isfinite(values).all():

@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
-from trunnion.reporting.html_text import escape, format_number, source_hash
+from trunnion.reporting.html_text import escape, format_number, page_head, source_hash
 from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
 from trunnion.reporting.text import clean
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
@@ -33,17 +33,8 @@ def render_simulation_page(content: SimulationContent) -> Iterator[bytes]:
     facts = "".join(
         f"<div><dt>{escape(name)}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in content.facts
     )
-    yield f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<title>{escape(content.title)}: simulation {"passed" if content.passed else "FAILED"}</title>
-<style>{style}</style>
-</head>
-<body>
+    title = f"{content.title}: simulation {'passed' if content.passed else 'FAILED'}"
+    yield f"""{page_head(title, style, policy)}<body>
 <main>
 <header>
 <div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span><div><strong>{word}</strong>

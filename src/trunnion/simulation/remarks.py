@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.errors import Problem, Severity, merge_repeated
+from trunnion.errors import Problem, Severity, merge_repeated, warning
 from trunnion.machines import Machine
 from trunnion.machines.inverse import slide_positions
 from trunnion.messages import Wording
@@ -46,7 +46,7 @@ def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
         low, high = float(joints[:, k].min()), float(joints[:, k].max())
         beyond = max(axis.low - low, high - axis.high)
         if beyond > 0.0:
-            yield Problem(
+            yield warning(
                 "stock",
                 0,
                 Wording(
@@ -59,7 +59,6 @@ def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
                     low_2=axis.low,
                     high_2=axis.high,
                 ),
-                severity=Severity.WARNING,
             )
 
 
@@ -71,9 +70,7 @@ def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> li
     file, line = file_of_row(run, row), int(run.line[row])
     if str(number) in names:
         return [Problem(file, line, Wording("SIM160", "tool_cuts_length", name=name, number=number))]
-    return [
-        Problem(file, line, Wording("SIM161", "tool_cuts_length", name=name, number=number), severity=Severity.WARNING)
-    ]
+    return [warning(file, line, Wording("SIM161", "tool_cuts_length", name=name, number=number))]
 
 
 def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Problem]:
@@ -87,12 +84,7 @@ def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Proble
         shape = shapes.get(name)
         if kind == SIZES[0]:
             if shape is None or not shape.length:
-                yield Problem(
-                    file,
-                    event.line,
-                    Wording("SIM161", "tool_def_gives", name=name, value=value),
-                    severity=Severity.WARNING,
-                )
+                yield warning(file, event.line, Wording("SIM161", "tool_def_gives", name=name, value=value))
             elif abs(shape.length - value) > _SAME:
                 yield Problem(
                     file, event.line, Wording("SIM163", "tool_def_gives", name=name, value=value, length=shape.length)
@@ -109,12 +101,7 @@ def _edges(run: Run) -> Iterator[Problem]:
     """Cutting edges (Sinumerik: D2) whose offsets nobody knows."""
     for edge in np.unique(run.edge[run.edge > 1]).tolist():
         row = int(np.flatnonzero(run.edge == edge)[0])
-        yield Problem(
-            file_of_row(run, row),
-            int(run.line[row]),
-            Wording("SIM161", "works_edge_d", edge=edge),
-            severity=Severity.WARNING,
-        )
+        yield warning(file_of_row(run, row), int(run.line[row]), Wording("SIM161", "works_edge_d", edge=edge))
 
 
 def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Problem]:
@@ -166,14 +153,10 @@ def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
 
 def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """Return what was taken for granted, and what is not simulated."""
-    found = [
-        Problem(f"tool {name}", 0, remark, severity=Severity.WARNING)
-        for name, shape in shapes.items()
-        for remark in shape.remarks
-    ]
+    found = [warning(f"tool {name}", 0, remark) for name, shape in shapes.items() for remark in shape.remarks]
     for run in runs:
         found += merge_repeated(
-            Problem(each.file, each.line, each.wording, severity=Severity.WARNING)
+            warning(each.file, each.line, each.wording)
             for each in run.diagnostics
             if each.severity is Severity.WARNING and not is_told_of_length(run, each.line, each.wording)
         )
@@ -182,24 +165,18 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
         if len(rows):
             row = int(rows.min())
             found.append(
-                Problem(
-                    file_of_row(run, row),
-                    int(run.line[row]),
-                    Wording("SIM147", "radius_compensation_programmed"),
-                    severity=Severity.WARNING,
-                )
+                warning(file_of_row(run, row), int(run.line[row]), Wording("SIM147", "radius_compensation_programmed"))
             )
         found += _unjudged(run)
         is_placed = run.machine.workpiece_zero is not None and run.machine.tool_length is not None
         if not is_placed and bool(run.state.machine_frame.values.any()):
             found.append(
-                Problem(
+                warning(
                     run.files[0],
                     0,
                     Wording("SIM145", "machine_positions_taken")
                     if run.machine.workpiece_zero is None
                     else Wording("SIM145", "machine_positions_taken_retracts"),
-                    severity=Severity.WARNING,
                 )
             )
     return found
@@ -221,12 +198,7 @@ def _unjudged(run: Run) -> list[Problem]:
         row = int(np.setdiff1d(tips.unjudged, tips.lost_feeds)[0])
         count = len(tips.unjudged) - len(tips.lost_feeds)
         found.append(
-            Problem(
-                file_of_row(run, row),
-                int(run.line[row]),
-                Wording("SIM146", "motion_before_all", count=count),
-                severity=Severity.WARNING,
-            )
+            warning(file_of_row(run, row), int(run.line[row]), Wording("SIM146", "motion_before_all", count=count))
         )
     return found
 

@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.simulation.collisions import Body, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.cutting.shares import JoinedShares, Share
@@ -89,12 +89,7 @@ class SetupSteps:
             if not pose.keeps_rays:
                 self._slack += cell
                 remarks.append(
-                    Problem(
-                        "stock",
-                        0,
-                        Wording("SIM134", "turned_through_surface", cell=0.5 * cell, cell_2=cell),
-                        severity=Severity.WARNING,
-                    )
+                    warning("stock", 0, Wording("SIM134", "turned_through_surface", cell=0.5 * cell, cell_2=cell))
                 )
         self._part = own.part or self._part
         result = self._simulated(own, self._model(shape, self._part), self._part, remarks)
@@ -160,17 +155,14 @@ class SetupSteps:
         remarks += part_remarks(model, found.lacking, self._slack, is_later=self._left is not None)
         if found.leaks:
             remarks.append(
-                Problem(
+                warning(
                     "part",
                     0,
                     Wording("SIM214", "rays_pass_hole", leaks=found.leaks, ray_count=found.stock.lattice.ray_count),
-                    severity=Severity.WARNING,
                 )
             )
         if found.start_volume - found.stock.volume <= 0.0:
-            remarks.append(
-                Problem(runs[0].files[0], 0, Wording("SIM133", "takes_nothing_from"), severity=Severity.WARNING)
-            )
+            remarks.append(warning(runs[0].files[0], 0, Wording("SIM133", "takes_nothing_from")))
         self._watcher.problems(of_setup(remarks[told:], name))
         if options.stops_at_first:
             programs = _until_stop(programs, found)
@@ -236,9 +228,7 @@ def _bodies(
     if machine.workpiece_zero is not None and _lengths_known(program):
         bodies += machine_bodies(machine, of_machine.append)
     elif number == 0 and machine.bodies:
-        remarks.append(
-            Problem(program.run.files[0], 0, Wording("SIM310", "bodies_machine_not"), severity=Severity.WARNING)
-        )
+        remarks.append(warning(program.run.files[0], 0, Wording("SIM310", "bodies_machine_not")))
     return bodies
 
 

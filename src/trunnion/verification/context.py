@@ -36,6 +36,7 @@ class ExpectedValues:
     max_inverse_time_feed  largest inverse-time F of the control: no block need be quicker; None: no limit
     smoothing              widest tolerance for the control's own smoothing that the settings ask for, mm
     rigid_tap              M code before threads that are cut without a compensating chuck; None: the control has none
+    coolant                M number of each kind of coolant, as the control's definition states it
     tool_deltas            what the program may add to a tool, mm, by word (DL, DR)
     axis_tolerance         how far the tool axis may be off between points of a cut where ``span`` does not say it
     max_feed               largest F per minute of the control: no block need be faster; None: no limit
@@ -60,6 +61,7 @@ class ExpectedValues:
     max_feed: float | None = None
     smoothing: float | None = None
     rigid_tap: int | None = None
+    coolant: Mapping[str, int] = field(default_factory=dict)
     tool_deltas: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     axis_tolerance: AxisTolerance = field(default_factory=AxisTolerance)
     blocks_in_compensation: int = 1

@@ -1,6 +1,7 @@
 """A verification as lines of text for a terminal."""
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 import numpy as np
 
@@ -8,6 +9,9 @@ from trunnion.messages import phrase
 from trunnion.model.toolpath import Kind
 from trunnion.verification.results import Check, Place, State, Verification, moving_seconds
 from trunnion.wording import format_duration
+
+#: Places that are told of each check.
+_MOST_PLACES: Final = 5
 
 
 def check_lines(verification: Verification) -> Iterator[str]:
@@ -37,7 +41,7 @@ def stand_lines(asked: Sequence[Check]) -> Iterator[str]:
         yield f"{', '.join(on_them)}: {phrase('stands_on', values=tuple(values))}"
 
 
-def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:
+def place_lines(verification: Verification, *, failed_only: bool = False) -> Iterator[str]:
     """Yield the worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``.
 
     A line says where those of checks that passed begin.
@@ -49,7 +53,7 @@ def place_lines(verification: Verification, *, failed_only: bool = False, most: 
         if check.passed and check.places and not tells_passed:
             tells_passed = True
             yield "passed; the worst places:"
-        for place in check.places[:most]:
+        for place in check.places[:_MOST_PLACES]:
             yield f"{place_line(verification.program, place)} [{check.key}]"
 
 

@@ -209,6 +209,6 @@ def test_what_has_no_place_counts_from_the_workpiece_zero(
         start = found.run.joints[-1, found.machine.column(name)] - (10.0 if name == "X" else 3.0) if is_placed else 0.0
         assert (extremes.low, extremes.high) == pytest.approx((start + low, start + high), abs=1e-9)
     lines = b"".join(listing(found.run, "P", [], slides=True)).decode().splitlines()
-    assert "; SX SY SZ: slides, mm, counted from the workpiece zero" in lines
+    assert "; SX SY SZ: linear axes, mm, counted from the workpiece zero" in lines
     bottom = next(words for words in map(str.split, lines) if words[-1] == "line")
     assert bottom[-7:-4] == ["0.0000", "0.0000", "-40.0000"]

@@ -18,7 +18,7 @@ import numpy as np
 from trunnion.cl.writers.checks import is_detected_as_utf8, joined, problems_of
 from trunnion.cl.writers.lengths import INCH, in_unit
 from trunnion.cl.writers.points import PointForm, axis_texts, encode_lines, number_text, write_points
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import (
     Arcs,
@@ -289,7 +289,7 @@ class ClWriter(ABC):
 
     def remark(self, line: int, wording: Wording) -> None:
         """Note what is lost."""
-        self.remarks.append(Problem(self.source.file, line, wording, severity=Severity.WARNING))
+        self.remarks.append(warning(self.source.file, line, wording))
 
 
 def _written_events(operation: Operation) -> tuple[Event, ...]:

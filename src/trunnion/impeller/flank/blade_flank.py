@@ -32,6 +32,9 @@ _LOW: Final = 0.75
 _POSES: Final = 161
 _PLACES: Final = 41
 
+#: Poses of the pass that is linked to others.
+_OF_PASS: Final = 401
+
 #: Part of the overcut's limit that a fit is given, and how far from the hub it stays, mm.
 _KEPT: Final = 0.95
 _OFF_HUB: Final = 0.002
@@ -57,7 +60,7 @@ class BladeFlank:
     hub: float
     neighbour: float
 
-    def as_pass(self, count: int = 401) -> tuple[Pass, Floats]:
+    def as_pass(self) -> tuple[Pass, Floats]:
         """Return the pass of the ball at the cutter's end, and the tool's axes (n, 3), for ``paths.linking``.
 
         Normals point from the blade to the cutter: across the axis and the way.
@@ -68,12 +71,12 @@ class BladeFlank:
             raise InputError(
                 Problem("flank milling", 0, Wording("IMP326", "cutter_does_not", neighbour=-self.neighbour))
             )
-        at = np.linspace(0.0, 1.0, count)
+        at = np.linspace(0.0, 1.0, _OF_PASS)
         centre, axis = self.cut.path.poses(at)
         way = np.gradient(centre, axis=0)
         normal = np.cross(way, axis) * self.side
         normal /= np.linalg.norm(normal, axis=1)[:, None]
-        return Pass(centre, normal, np.column_stack((at, np.zeros(count)))), axis
+        return Pass(centre, normal, np.column_stack((at, np.zeros(len(at))))), axis
 
     def minutes(self, feed: float) -> float:
         """How long the pass takes at a feed of the ball's centre, mm/min, without leads."""

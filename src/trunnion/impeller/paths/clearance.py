@@ -53,11 +53,8 @@ class Obstacles:
     threads: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(_THREADS))
 
 
-def obstacles_of(impeller: Impeller, clamping: Floats | None = None) -> Obstacles:
-    """Return the bodies of a finished impeller: blades, splitters, and the hub within its stock.
-
-    clamping  outline (m, 2), radius and height, of what stands below the part about Z; None: nothing does
-    """
+def obstacles_of(impeller: Impeller) -> Obstacles:
+    """Return the bodies of a finished impeller: blades, splitters, and the hub within its stock."""
     trees: list[Cells] = []
     number: dict[int, int] = {}
     body, turn, names = [], [], []
@@ -69,13 +66,11 @@ def obstacles_of(impeller: Impeller, clamping: Floats | None = None) -> Obstacle
         turn.append(angle)
         each = 1 if impeller.splitter is None else 2
         names.append(f"{'blade' if k % each == 0 else 'splitter'} {k // each + 1}")
-    outlines = [("the hub", _hub_outline(impeller))] + ([] if clamping is None else [("the clamping", clamping)])
-    for name, outline in outlines:
-        for line in _smooth(outline):
-            body.append(len(trees))
-            trees.append(_turned_cells(line))
-            turn.append(0.0)
-            names.append(name)
+    for line in _smooth(_hub_outline(impeller)):
+        body.append(len(trees))
+        trees.append(_turned_cells(line))
+        turn.append(0.0)
+        names.append("the hub")
     cells, children, roots = joined(trees)
     return Obstacles(
         BodyData(cells, children, roots[body], np.column_stack((np.cos(turn), np.sin(turn)))), tuple(names)

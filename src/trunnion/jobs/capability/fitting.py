@@ -27,7 +27,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine, shipped_machines
 from trunnion.machines.loading import is_example, machine_library
 from trunnion.machines.machine import Vector
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
 from trunnion.results import Figure
@@ -39,11 +39,15 @@ _OF_ALL: Final = ("tool_length", "turns")
 #: Codes of a name that is no machine, and of a file that is missing.
 _NOT_THERE: Final = ("DEF110", "FIL110")
 
-#: How reasons begin that a tool without a known length leaves open.
-_LENGTH: Final = "the tool counts as 0 mm long"
+#: The phrase of a reason that a tool without a known length leaves open.
+_LENGTH: Final = "give_its_length"
 
 #: Problems of a machine that are told.
 _MOST: Final = 3
+
+
+def _sentences(why: Iterable[Wording]) -> tuple[str, ...]:
+    return tuple(map(str, why))
 
 
 class FitStatus(StrEnum):
@@ -69,7 +73,7 @@ class MachineFit:
 
     key        of the definition, or as it was named where that cannot be loaded
     status     whether it can run it
-    reasons    why not, or what is left open, in sentences
+    why        why not, or what is left open; ``reasons`` are the sentences
     seconds    time of the proven program; None: there is none, or its time is not known
     margins    of the linear axes at the place that was found, and of the rotary axes at feed
     missing    how far the linear axes are from reaching it at the best place, mm; None where that is not the reason
@@ -80,13 +84,18 @@ class MachineFit:
 
     key: Annotated[str, Figure("machine", take=lambda key: Path(key).as_posix() if key.endswith(".toml") else key)]
     status: FitStatus
-    reasons: tuple[str, ...] = ()
+    why: Annotated[tuple[Wording, ...], Figure("reasons", take=_sentences)] = ()
     seconds: Annotated[float | None, Figure(decimals=3)] = None
     margins: Annotated[tuple[AxisMargin, ...], Figure(after="missing_mm")] = ()
     missing: Annotated[float | None, Figure(unit="mm", decimals=6, after="turn_deg")] = None
     zero_mm: Vector | None = None
     turn_deg: float | None = None
     not_measured: tuple[str, ...] = ()
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why not, or what is left open, in sentences."""
+        return _sentences(self.why)
 
     @property
     @Figure(after="status")
@@ -161,7 +170,7 @@ def fit(
         for each in asked:
             found.append(_fit(each, toolpaths, tool_length, stated))
             advance(1)
-    if tool_length is None and any(_LENGTH in reason for each in found for reason in each.reasons):
+    if tool_length is None and any(reason.variant == _LENGTH for each in found for reason in each.why):
         observer.problems(
             (argument_problem("tool_length", Wording("PLC210", "fits_depend_on_length"), severity=Severity.WARNING),)
         )
@@ -185,9 +194,9 @@ def _asked(machines: str | Iterable[MachineLike]) -> list[MachineLike]:
     elif isinstance(machines, Iterable) and not isinstance(machines, bytes):
         asked = list(machines)
     else:
-        raise wrong_argument("machines", machines, "give all, or names or files of machines")
+        raise wrong_argument("machines", machines, phrase("give_machines"))
     if not asked or not all(isinstance(each, str | os.PathLike | Machine) for each in asked):
-        raise wrong_argument("machines", machines, "give all, or names or files of machines")
+        raise wrong_argument("machines", machines, phrase("give_machines"))
     return asked
 
 
@@ -290,45 +299,46 @@ def _not_measured(posted: PostResult) -> tuple[str, ...]:
     return () if posted.standing is None else posted.standing.not_measured
 
 
-def _open_reasons(machine: Machine) -> tuple[str, ...]:
+def _open_reasons(machine: Machine) -> tuple[Wording, ...]:
     names = [machine.names[k] for k in machine.linear if not machine.axes[k].has_limits]
-    limits = (f"no limits of {' and '.join(names)} are stated, so only the other axes are judged",) if names else ()
+    limits = (phrase("no_limits_stated", axes=tuple(names)),) if names else ()
     return limits if len(names) == len(machine.linear) else (*limits, *_length_reasons(machine))
 
 
-def _length_reasons(machine: Machine) -> tuple[str, ...]:
-    return tuple(f"{problem.what}; give its length" for problem in unknown_length(machine))
+def _length_reasons(machine: Machine) -> tuple[Wording, ...]:
+    return tuple(phrase("give_its_length", problem=problem.wording) for problem in unknown_length(machine))
 
 
 def _beyond(asked: MachineLike, machine: Machine, found: Placement) -> MachineFit:
     """Return a machine whose axes do not reach it at any place."""
     tried = _turns_tried(found)
     if found.best is None:
-        obstacles = tuple(dict.fromkeys(turn.obstacle for turn in found.turns if turn.obstacle))
+        obstacles = tuple(phrase("said", text=turn.obstacle) for turn in found.turns if turn.obstacle)
         return MachineFit(machine.key, FitStatus.NOT, (*obstacles[:1], tried))
     beyond = [each for each in found.best.axes if each.margin_mm < 0.0]
     reasons = (*map(_travel_reason, beyond), tried, *_length_reasons(machine))
     missing = -found.best.margin_mm
     too_small = any(_needed(each) > _travel(each) for each in beyond)
     if not too_small and (assumed := _assumed_places(asked, machine)):
-        reasons = (f"{assumed}: with the places of the machine it may fit", *reasons)
+        reasons = (phrase("may_fit_with_places", assumed=assumed), *reasons)
         return MachineFit(machine.key, FitStatus.OPEN, reasons, missing=missing)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes)
     return MachineFit(machine.key, FitStatus.NOT, reasons, None, margins, missing, found.zero_mm, found.turn_deg)
 
 
-def _assumed_places(asked: MachineLike, machine: Machine) -> str:
-    """Why it is not known where the axes of a machine lie; empty if its definition states it."""
+def _assumed_places(asked: MachineLike, machine: Machine) -> Wording | None:
+    """Why it is not known where the axes of a machine lie; None if its definition states it."""
     if isinstance(asked, Machine):
         return assumed_places(machine, None)
     return assumed_places(machine, load_table(os.fspath(asked), machine_library(), kind="machine"))
 
 
-def _turns_tried(found: Placement) -> str:
+def _turns_tried(found: Placement) -> Wording:
     """At which turns of the part it was tried, with the cure."""
     turns = [turn.turn_deg for turn in found.turns]
-    named = f"{turns[0]:g} degrees" if len(turns) == 1 else f"{len(turns)} angles from {min(turns):g} to {max(turns):g}"
-    return f"the part was tried turned about Z by {named}: give other turns, or tilt it in its set-up"
+    if len(turns) == 1:
+        return phrase("tried_at_turn", turn=turns[0])
+    return phrase("tried_at_turns", count=len(turns), least=min(turns), most=max(turns))
 
 
 def _needed(use: AxisUse) -> float:
@@ -339,18 +349,15 @@ def _travel(use: AxisUse) -> float:
     return use.high.limit_mm - use.low.limit_mm
 
 
-def _travel_reason(use: AxisUse) -> str:
+def _travel_reason(use: AxisUse) -> Wording:
     """Why the travel of a linear axis is too small, with the lines."""
     travel, needed = _travel(use), _needed(use)
     if needed > travel:
-        return (
-            f"the travel of {use.axis}, {travel:g} mm, is {needed - travel:.3f} mm too small for what it goes from"
-            f" {use.low.file}:{use.low.line} to {use.high.file}:{use.high.line}"
-        )
+        ends = {"low": f"{use.low.file}:{use.low.line}", "high": f"{use.high.file}:{use.high.line}"}
+        return phrase("travel_too_small", axis=use.axis, travel=travel, lacking=needed - travel, **ends)
     end = use.low if use.low.limit_mm - use.least_mm > use.greatest_mm - use.high.limit_mm else use.high
-    return (
-        f"{use.axis} goes {-use.margin_mm:.3f} mm beyond its limit {end.limit_mm:g} at {end.file}:{end.line},"
-        " even where the part sits best"
+    return phrase(
+        "beyond_limit_at_best", axis=use.axis, beyond=-use.margin_mm, limit=end.limit_mm, at=f"{end.file}:{end.line}"
     )
 
 
@@ -374,7 +381,7 @@ def _seconds(posted: PostResult) -> float | None:
     return float(seconds.sum()) if known.any() else None
 
 
-def _reasons(error: TrunnionError) -> tuple[str, ...]:
+def _reasons(error: TrunnionError) -> tuple[Wording, ...]:
     """Return what was wrong, in sentences; errors before warnings, and not what only sums them up."""
     errors = [each for each in error.problems if each.severity is Severity.ERROR and each.code != "CTL940"]
-    return tuple(str(each) for each in (errors or list(error.problems))[:_MOST])
+    return tuple(phrase("said", text=str(each)) for each in (errors or list(error.problems))[:_MOST])

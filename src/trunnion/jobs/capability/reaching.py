@@ -20,6 +20,7 @@ from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
+from trunnion.messages import phrase
 from trunnion.simulation.meshes import load_mesh
 
 _STEPS: Final = (1.0, 45.0)
@@ -106,7 +107,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
 def _number(name: str, value: object, least: float, most: float) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and least <= value <= most:
         return float(value)
-    raise wrong_argument(name, value, f"give a number of degrees from {least:g} to {most:g}")
+    raise wrong_argument(name, value, phrase("give_degrees_from_to", least=least, most=most))
 
 
 def _of_tilts(machine: Machine, step: float, observer: Observer) -> tuple[TiltReach, ...]:

@@ -15,7 +15,7 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_r
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 
 #: The most that they may be off: derivatives tell small errors only.
@@ -107,7 +107,7 @@ def _check_amount(name: str, value: object) -> None:
     """Refuse how far numbers are off unless it is a small amount."""
     if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value <= _MOST[name]:
         return
-    raise wrong_argument(name, value, f"give a number above 0, and at most {_MOST[name]:g}")
+    raise wrong_argument(name, value, phrase("give_positive_at_most", most=_MOST[name]))
 
 
 def _remarks(run: Run) -> list[Problem]:
@@ -134,7 +134,7 @@ def _zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> d
     pose = _stated_pose(machine, zero_at)
     if pose is not None and np.isnan(joints_at_zero(machine, pose)).any():
         text = ",".join(f"{name}={value:g}" for name, value in pose.items())
-        raise wrong_argument("zero_at", text, "give another pose: the slides cannot reach the zero in this one")
+        raise wrong_argument("zero_at", text, phrase("give_other_pose"))
     return pose
 
 
@@ -145,7 +145,8 @@ def _stated_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) ->
         return None
     if zero_at == "home":
         return home
-    cure = f"give home, none, or angles such as {','.join(f'{name}=0' for name in names)}"
+    example = ",".join(f"{name}=0" for name in names)
+    cure = phrase("give_pose", example=example)
     if isinstance(zero_at, str):
         parts = [part.partition("=") for part in zero_at.split(",")]
         given: Mapping[str, object] = {name.strip(): value for name, _, value in parts}
@@ -155,9 +156,8 @@ def _stated_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) ->
         raise wrong_argument("zero_at", zero_at, cure)
     for name in given:
         if name not in names:
-            raise wrong_argument(
-                "zero_at", str(zero_at), f"{name or 'no name'} is no rotary axis of the machine; {cure}"
-            )
+            remedy = phrase("no_rotary_axis", name=name, example=example) if name else cure
+            raise wrong_argument("zero_at", str(zero_at), remedy)
     try:
         pose = home | {name: float(str(value)) for name, value in given.items()}
     except ValueError:
@@ -167,6 +167,6 @@ def _stated_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) ->
     for name, value in pose.items():
         axis = machine.axis(name)
         if not axis.low <= value <= axis.high:
-            limits = f"{name} goes from {axis.low:g} to {axis.high:g} degrees"
-            raise wrong_argument("zero_at", str(zero_at), f"{limits}; give an angle within them")
+            remedy = phrase("give_angle_within", name=name, low=axis.low, high=axis.high)
+            raise wrong_argument("zero_at", str(zero_at), remedy)
     return pose

@@ -9,7 +9,7 @@ from trunnion import conversion, readers
 from trunnion.controls import Control
 from trunnion.conversion import Conversion
 from trunnion.conversion.program_events import COMPENSATION_FINDINGS, COMPENSATION_WORDS
-from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.errors import InputError, Problem, RefusedError, Severity, warning
 from trunnion.jobs.inputs.settings import control_setting_faults
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.post_job import PostJob
@@ -69,9 +69,7 @@ class ProgramConverter:
 
     def warn_of_one_program(self, files: int) -> None:
         """Warn that a program with subprograms becomes one without."""
-        self.report(
-            [Problem(self._file, 0, Wording("CNV162", "becomes_one_program", files=files), severity=Severity.WARNING)]
-        )
+        self.report([warning(self._file, 0, Wording("CNV162", "becomes_one_program", files=files))])
 
     def warn_of_new_offset(self, run: Run, job: PostJob) -> None:
         """Warn where the old program cuts without a work offset of its own, and the new one selects one."""
@@ -82,11 +80,10 @@ class ProgramConverter:
         row = int(rows[0])
         self.report(
             [
-                Problem(
+                warning(
                     run.files[int(run.file[row])],
                     int(run.line[row]),
                     Wording("CNV144", "selects_offset_of_its_own", offset=offset),
-                    severity=Severity.WARNING,
                 )
             ]
         )
@@ -108,7 +105,7 @@ class ProgramConverter:
         for key in sorted(lost):
             self.report(
                 [
-                    Problem(
+                    warning(
                         self._file,
                         0,
                         Wording(
@@ -118,7 +115,6 @@ class ProgramConverter:
                             value=repr(stated[key]),
                             target=target.name,
                         ),
-                        severity=Severity.WARNING,
                     )
                 ]
             )
@@ -176,7 +172,7 @@ class ProgramConverter:
             return
         self.report(
             [
-                Problem(
+                warning(
                     self._file,
                     0,
                     Wording(
@@ -187,7 +183,6 @@ class ProgramConverter:
                         target=target,
                         remedy=remedy,
                     ),
-                    severity=Severity.WARNING,
                 )
             ]
         )

@@ -23,7 +23,7 @@ _BATCH: Final = job(
     ),
     Option(
         "summary", "--summary",
-        FileOut("FILE", (".sqlite", ".parquet"), "a summary is a database or a table"),
+        FileOut("FILE", (".sqlite", ".parquet"), phrase("summary_is_table")),
         "a table of all files with their figures: .sqlite or .parquet",
     ),
     Option(

@@ -65,7 +65,7 @@ _CURVE: Final = job(
     ),
     JSON,
     Option(
-        "picture", "--picture", FileOut("FILE", (".svg",), "curves are drawn as SVG"),
+        "picture", "--picture", FileOut("FILE", (".svg",), phrase("curves_are_svg")),
         "curves with their curvature combs (.svg)", own=True,
     ),
     run="curve:run",

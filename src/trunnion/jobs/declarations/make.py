@@ -55,7 +55,7 @@ _POST: Final = job(
     SHEET,
     Option("listing", "--listing", FileOut(), "every motion as text: X Y Z, rotary axes, S, F", key="listing"),
     Option(
-        "manifest", "--manifest", FileOut("FILE", (".json",), "a manifest is data"),
+        "manifest", "--manifest", FileOut("FILE", (".json",), phrase("manifest_is_data")),
         "checksums of all files (.json), beside the program", key="manifest",
     ),
     Option("watch", "--watch", Switch(), "post again whenever a file that is read changes", own=True),
@@ -122,7 +122,7 @@ _PLACE: Final = job(
     Option("setup", "--setup", Text("NAME"), "the set-up of a project with several", own=True),
     Option(
         "goal", "--goal", Choice(GOALS, "GOAL"),
-        "what the best place is best for: margin to the limits, travel of rotary axes or slides, time, fewest blocks"
+        "what the best place is best for: margin to the limits, travel of rotary or linear axes, time, fewest blocks"
         " whose feed the axes cannot reach (overspeed), or bodies farthest apart (collisions)",
         default="margin",
     ),
@@ -160,7 +160,7 @@ _PLACE: Final = job(
     ),
     JSON,
     Option(
-        "plot", "--plot", FileOut("FILE.svg", (".svg",), "places are drawn as SVG"),
+        "plot", "--plot", FileOut("FILE.svg", (".svg",), phrase("places_are_svg")),
         "the margin over the table and over the turns", own=True,
     ),
     Option(

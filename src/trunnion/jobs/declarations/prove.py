@@ -182,7 +182,7 @@ _REACH: Final = job(
     Option("step", "--step", _NUMBER, "degrees between tilts, and between azimuths", default=5.0),
     JSON,
     Option(
-        "plot", "--plot", FileOut("FILE", (".svg",), "reach is drawn as SVG"),
+        "plot", "--plot", FileOut("FILE", (".svg",), phrase("reach_is_svg")),
         "tool axes on the sphere, and volumes over the tilt (.svg)", own=True,
     ),
     run="reach:run",
@@ -239,7 +239,7 @@ _SENSITIVITY: Final = job(
     ),
     JSON,
     Option(
-        "report", "--report", FileOut("FILE", (".html",), "this report is a page"),
+        "report", "--report", FileOut("FILE", (".html",), phrase("report_is_page")),
         "the table, and errors over the program, as a page (.html)", own=True,
     ),
     run="sensitivity:run",

@@ -30,7 +30,7 @@ _INFO: Final = job(
     READING,
     JSON,
     Option(
-        "plot", "--plot", FileOut("FILE", (".html",), "the path is drawn on a page"),
+        "plot", "--plot", FileOut("FILE", (".html",), phrase("path_is_page")),
         "the path by operation in space, as a page (.html)", own=True,
     ),
     run="info:info",
@@ -63,7 +63,7 @@ _VIEW: Final = job(
     CUTTING,
     SETUP,
     OUTPUT.but(
-        kind=FileOut("FILE.html", (".html",), "the view is a page"),
+        kind=FileOut("FILE.html", (".html",), phrase("view_is_page")),
         help="write a page that works offline, and serve nothing",
     ),
     Option(
@@ -111,7 +111,7 @@ _TWIN: Final = job(
     ),
     Option("no_mtconnect", "--no-mtconnect", Switch(), "serve OPC UA alone", own=True),
     Option(
-        "device_xml", "--device-xml", FileOut("FILE.xml", (".xml",), "a device model is XML"),
+        "device_xml", "--device-xml", FileOut("FILE.xml", (".xml",), phrase("device_model_is_xml")),
         "write the devices of an MTConnect agent, and end", own=True,
     ),
     Option("users", "--users", FileIn(), "file of users; by default that in your folder for data"),
@@ -134,7 +134,7 @@ _RECORD: Final = job(
     "record", "record what a machine, or a twin, shows by OPC UA",
     Option("address", "", Text("ADDRESS"), "of the machine's OPC UA server: opc.tcp://HOST:PORT/…"),
     Option(
-        "output", "--output", FileOut("FILE", (".csv", ".parquet"), "a recording is CSV or Parquet"),
+        "output", "--output", FileOut("FILE", (".csv", ".parquet"), phrase("recording_is_table")),
         "recording (.csv or .parquet); never written over", required=True,
     ),
     Option("seconds", "--seconds", seconds(1e9, "N"), "how long; without it until Ctrl-C"),

@@ -14,6 +14,7 @@ from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.value_marks import ASSUMED, MARKS
 from trunnion.machines import Axis, Machine
 from trunnion.machines.loading import machine_library
+from trunnion.messages import Wording, phrase
 
 #: Keys of axes that no two machines of a type share for certain, and what they are.
 _MEASURED: Final = {
@@ -43,16 +44,16 @@ def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
     return (*assumed, *_inherited(own), *_left_open(machine), *_marked(own, MARKS, "Still to enter"))
 
 
-def assumed_places(machine: Machine, table: Table | None) -> str:
-    """Why it is not known where axes lie in their travel; empty if the definition states it.
+def assumed_places(machine: Machine, table: Table | None) -> Wording | None:
+    """Why it is not known where axes lie in their travel; None if the definition states it.
 
     Parameters as for ``assumptions``.
     """
     if not machine.spindle_point_is_stated:
-        return "the definition does not state the gauge point, and with it where the rotary axes lie in the travel"
+        return phrase("gauge_point_not_stated")
     marked = [] if table is None else marked_in(table.content, ASSUMED)
     names = [each.name for each in marked if each.name.endswith(_PLACES)]
-    return f"the definition assumes {', '.join(names)}" if names else ""
+    return phrase("places_assumed", names=tuple(names)) if names else None
 
 
 def _marked(table: Table, mark: re.Pattern[str], what: str) -> Iterator[str]:
@@ -98,8 +99,8 @@ def _left_open(machine: Machine) -> Iterator[str]:
     """Yield what the definition does not state, and what that means."""
     if machine.workpiece_zero is None:
         yield (
-            "Workpiece zero: not stated, and taken for the origin. Slides are checked for whether the program fits "
-            "their travel anywhere; programs without TCP want setting zero=X,Y,Z."
+            "Workpiece zero: not stated, and taken for the origin. Linear axes are checked for whether the program "
+            "fits their travel anywhere; programs without TCP want setting zero=X,Y,Z."
         )
     yield "Tool lengths: not known, for no definition has them. Programs without TCP want setting tool_length=MM."
     if not machine.spindle_point_is_stated:

@@ -28,7 +28,7 @@ from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, Sp
 _FEEDS: Final = {
     "inverse_time": "inverse time (G93)",
     "all_axes": "the path of all axes, a degree as a millimetre",
-    "slides": "the path of the slides",
+    "slides": "the path of the linear axes",
 }
 
 

@@ -7,6 +7,7 @@ from trunnion.jobs.describe.cl_files import ClDescription
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
+from trunnion.messages import phrase
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import Frame
 from trunnion.reporting.path_page import render_path_page
@@ -34,7 +35,7 @@ def write_plot(description: ClDescription, plot: FilePath) -> None:
     together are drawn as their numbers say.
     """
     if not isinstance(description, ClDescription):
-        raise wrong_argument("description", description, "give the result of trunnion.describe_cl")
+        raise wrong_argument("description", description, phrase("give_description"))
     names = [file.file for file in description.files]
     inputs = list(map(file_on_disk, names))
     place = declared_output("info", "plot", plot)

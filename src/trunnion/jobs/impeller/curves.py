@@ -17,6 +17,7 @@ from trunnion.jobs.arguments import taken
 from trunnion.jobs.inputs.arguments import check_choice, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
+from trunnion.messages import phrase
 from trunnion.reporting.curve_picture import curve_picture
 
 EndLike: TypeAlias = str | Natural | Tangent
@@ -142,7 +143,7 @@ def write_curve_picture(fits: Sequence[CurveFit], picture: FilePath, *, inputs: 
 def _as_table(points: ArrayLike) -> PointTable:
     array = _numbers("points", points, 2)
     if array.shape[1] != 3:
-        raise wrong_argument("points", array.shape, "give an array of the shape (n, 3)")
+        raise wrong_argument("points", array.shape, phrase("give_points"))
     return PointTable("points", "", array, range(1, len(array) + 1))
 
 
@@ -150,13 +151,13 @@ def _numbers(name: str, values: ArrayLike, dimensions: int) -> Floats:
     try:
         array = np.array(values, float)
     except (TypeError, ValueError):
-        raise wrong_argument(name, values, "give numbers") from None
+        raise wrong_argument(name, values, phrase("give_numbers")) from None
     if array.ndim != dimensions or not np.isfinite(array).all():
-        raise wrong_argument(name, values, f"give finite numbers in {dimensions} dimensions")
+        raise wrong_argument(name, values, phrase("give_finite", dimensions=dimensions))
     return array
 
 
 def _positive(name: str, value: object) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value) and value > 0.0:
         return float(value)
-    raise wrong_argument(name, value, "give a number above 0")
+    raise wrong_argument(name, value, phrase("give_positive"))

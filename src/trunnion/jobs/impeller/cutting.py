@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem, warning
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
 from trunnion.impeller.material import material_before, order_problems, side_problems
@@ -42,7 +42,7 @@ from trunnion.jobs.simulate.simulating import simulate
 from trunnion.machines import Machine
 from trunnion.machines.inverse import inverse
 from trunnion.machines.spindle_range import spindle_speed_fault
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Operation, Tool, Toolpath
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.simulation.meshes import picture
@@ -202,7 +202,7 @@ def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
     if not known:
         raise InputError(argument_problem("impeller", Wording("IMP310", "no_operations")))
     if isinstance(names, str) or not all(isinstance(name, str) for name in names):
-        raise wrong_argument("operations", names, "give a list of names")
+        raise wrong_argument("operations", names, phrase("give_names"))
     if unknown := [name for name in names if name not in known]:
         raise InputError(
             [
@@ -305,7 +305,7 @@ def _steps(
 def _shared(file: str, paths: StepPaths) -> Problem:
     """Return the warning about a step that keeps only a share of its clearances."""
     cutter, shank, holder, _ = paths.step.clearance
-    return Problem(
+    return warning(
         file,
         paths.step.line,
         Wording(
@@ -317,7 +317,6 @@ def _shared(file: str, paths: StepPaths) -> Problem:
             shank=shank,
             holder=holder,
         ),
-        severity=Severity.WARNING,
     )
 
 
@@ -331,11 +330,8 @@ def _one_layer(file: str, paths: StepPaths) -> Iterator[Problem]:
         and step.step_down > paths.radius
         and not any(one.layer for one in passes)
     ):
-        yield Problem(
-            file,
-            step.line,
-            Wording("IMP331", "whole_depth_in_one_layer", step=step.name, step_down=step.step_down),
-            severity=Severity.WARNING,
+        yield warning(
+            file, step.line, Wording("IMP331", "whole_depth_in_one_layer", step=step.name, step_down=step.step_down)
         )
 
 

@@ -11,7 +11,7 @@ from trunnion.impeller.model import ImpellerModel, impeller_model
 from trunnion.impeller.solid.making import ImpellerSolid, impeller_solid
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.meshes import STEP_ENDINGS
 
 
@@ -121,4 +121,4 @@ def _loaded(impeller: Impeller | FilePath) -> Impeller:
 def _checked(tolerance: object) -> float:
     if isinstance(tolerance, int | float) and math.isfinite(tolerance) and 1e-4 <= tolerance <= 1.0:
         return float(tolerance)
-    raise wrong_argument("tolerance", tolerance, "give a number from 0.0001 to 1")
+    raise wrong_argument("tolerance", tolerance, phrase("give_fine_tolerance"))

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep
 from trunnion.machines import Machine
 from trunnion.messages import Wording
@@ -32,4 +32,4 @@ def winding_problems(file: str, step: MachiningStep, motions: Sequence[Motion], 
         wording = Wording("IMP334", "turns_back_home", step=step.name, tilt=step.tilt, turns=wound)
     else:
         return
-    yield Problem(file, step.line, wording, severity=Severity.WARNING)
+    yield warning(file, step.line, wording)

@@ -7,22 +7,25 @@ from typing import BinaryIO, TypeGuard, TypeVar
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.observer import Observer
-from trunnion.messages import foreign
+from trunnion.messages import Wording, phrase
 
 _Choice = TypeVar("_Choice", bound=str)
 
 
-def wrong_argument(name: str, value: object, cure: str) -> InputError:
-    """Return the error for an argument of a type or value that cannot be used."""
-    shown = repr(value) if isinstance(value, str | int | float | bytes | tuple | None) else f"a {type(value).__name__}"
-    return InputError(argument_problem(name, foreign(f"is {shown}", cure, "ARG140")))
+def wrong_argument(name: str, value: object, remedy: Wording) -> InputError:
+    """Return the error for an argument of a type or value that cannot be used; the phrase says what to give."""
+    if isinstance(value, str | int | float | bytes | tuple | None):
+        wording = Wording("ARG140", "unusable", value=repr(value), remedy=remedy)
+    else:
+        wording = Wording("ARG140", "unusable_type", type=type(value).__name__, remedy=remedy)
+    return InputError(argument_problem(name, wording))
 
 
 def check_path(name: str, value: object) -> Path:
     """Return a path; errors name the argument."""
     if isinstance(value, str | os.PathLike) and isinstance(text := os.fspath(value), str) and text and "\0" not in text:
         return Path(text)
-    raise wrong_argument(name, value, "give the path of a file")
+    raise wrong_argument(name, value, phrase("give_path"))
 
 
 def is_stream(value: object) -> TypeGuard[BinaryIO]:
@@ -33,7 +36,7 @@ def is_stream(value: object) -> TypeGuard[BinaryIO]:
 def check_paths(name: str, values: object) -> list[Path]:
     """Paths in a list; a text alone is none, for its letters would be taken for paths."""
     if isinstance(values, str | bytes | os.PathLike) or not isinstance(values, Iterable):
-        raise wrong_argument(name, values, "give a list of paths")
+        raise wrong_argument(name, values, phrase("give_paths"))
     return [check_path(name, value) for value in values]
 
 
@@ -42,7 +45,7 @@ def check_choice(name: str, value: object, choices: Sequence[_Choice]) -> _Choic
     for choice in choices:
         if value == choice:
             return choice
-    raise wrong_argument(name, value, f"give {' or '.join(map(repr, choices))}")
+    raise wrong_argument(name, value, phrase("give_one_of", choices=tuple(map(repr, choices))))
 
 
 def check_whole(name: str, value: object, least: int) -> int:
@@ -50,13 +53,13 @@ def check_whole(name: str, value: object, least: int) -> int:
     text = str(value) if isinstance(value, str | int) and not isinstance(value, bool) else ""
     if text.isascii() and text.isdecimal() and int(text) >= least:
         return int(text)
-    raise wrong_argument(name, value, f"give a whole number of at least {least}")
+    raise wrong_argument(name, value, phrase("give_whole", least=least))
 
 
 def check_observer(value: object) -> None:
     """Refuse what is no ``Observer``."""
     if not isinstance(value, Observer):
-        raise wrong_argument("observer", value, "give a trunnion.Observer, or leave it out")
+        raise wrong_argument("observer", value, phrase("give_observer"))
 
 
 def checked_angles(turn: object, tilt: object) -> tuple[float, float]:
@@ -68,6 +71,6 @@ def checked_angles(turn: object, tilt: object) -> tuple[float, float]:
     for name, value in (("turn", turn), ("tilt", tilt)):
         value = 0.0 if value is None else value
         if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360.0:
-            raise wrong_argument(name, value, "give degrees, -360 to 360")
+            raise wrong_argument(name, value, phrase("give_degrees"))
         found.append(round(float(value), 3) + 0.0)
     return found[0], found[1]

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 from trunnion.errors import Problem
 from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.messages import phrase
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.tools.choice import ClTool, choose_tools, tools_of_toolpaths
@@ -26,7 +27,7 @@ def listed(name: str, values: Any, record: type) -> list[Any]:
         return [values]
     found = list(values) if isinstance(values, Iterable) else [None]
     if not all(isinstance(value, single) for value in found):
-        raise wrong_argument(name, values, f"give a text, a path, a {record.__name__}, or a list of them")
+        raise wrong_argument(name, values, phrase("give_bodies", type=record.__name__))
     return found
 
 

@@ -26,7 +26,7 @@ from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.inputs.settings import number_setting
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 
@@ -115,7 +115,7 @@ def _read(cl: object, how: ClReading, observer: Observer, argument: str) -> list
     if how.dialect is not None:
         check_choice("dialect", how.dialect, tuple(DIALECTS))
     if within is not None and not _is_spline_tolerance(within):
-        raise wrong_argument("spline_tolerance", within, "give a number from 0.0001 to 1")
+        raise wrong_argument("spline_tolerance", within, phrase("give_fine_tolerance"))
     return read_watched(path, observer.progress, how)
 
 
@@ -275,7 +275,7 @@ def read_toolpaths(
     if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl):
         cl = [cl]
     if isinstance(cl, bytes | Mapping) or not isinstance(cl, Iterable):
-        raise wrong_argument("cl", cl, "give CL files: a path, a Toolpath, or a list of them")
+        raise wrong_argument("cl", cl, phrase("give_cl"))
     check_observer(observer)
     return [
         toolpath

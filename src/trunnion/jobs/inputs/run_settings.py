@@ -107,21 +107,22 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         example="0.002",
     ),
     "zero": RunSetting(
-        "Position of the workpiece zero on the machine, mm. With it, and tool_length for slides along the tool, every "
-        "slide is checked against its limits; without it only whether the program fits into the travel somewhere.",
+        "Position of the workpiece zero on the machine, mm. With it, and tool_length for linear axes along the "
+        "tool, every linear axis is checked against its limits; without it only whether the program fits into the "
+        "travel somewhere.",
         "the definition's workpiece.zero_mm",
         form="X,Y,Z",
         example="0,0,120.5",
     ),
     "tcp": _choice(
-        "With off the program holds positions of slides and rotary axes instead of the tip, with points inserted.",
+        "With off the program holds positions of linear and rotary axes instead of the tip, with points inserted.",
         "on",
         "off",
         default="on where the control has TCP",
     ),
     "tool_length": RunSetting(
-        "Length from the spindle's gauge point to the tip. Slide limits are checked with it; without TCP it is "
-        "required on machines whose head turns the tool.",
+        "Length from the spindle's gauge point to the tip. Limits of linear axes are checked with it; without TCP it "
+        "is required on machines whose head turns the tool.",
         bounds=(0.0, 1e4),
         form="MM",
         example="120.5",
@@ -148,7 +149,7 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         default="as the control's definition says",
     ),
     "listing": _choice(
-        "What the listing has besides the tip and both rotary axes: nothing, or the positions of the slides.",
+        "What the listing has besides the tip and both rotary axes: nothing, or the positions of the linear axes.",
         "tip",
         "slides",
     ),

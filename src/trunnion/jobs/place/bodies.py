@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem, warning
 from trunnion.jobs.inputs.bodies import MeshLike, fixture_meshes, known_tools, read_mesh
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.place.inputs import PlacedInput
@@ -129,11 +129,8 @@ def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> 
                 raise
             first = error.problems[0]
             problems.append(
-                Problem(
-                    first.file,
-                    first.line,
-                    Wording("PLC280", "tool_not_kept_apart", tool=called, reason=first.wording),
-                    severity=Severity.WARNING,
+                warning(
+                    first.file, first.line, Wording("PLC280", "tool_not_kept_apart", tool=called, reason=first.wording)
                 )
             )
     return found

@@ -21,7 +21,7 @@ from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.planning import plan
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamped_toolpaths import stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
 from trunnion.model.rotations import about_x
@@ -80,7 +80,7 @@ def read_input(
     if isinstance(files, str | os.PathLike | Toolpath) or is_stream(files):
         files = [files]
     if isinstance(files, bytes | Mapping) or not isinstance(files, Iterable):
-        raise wrong_argument("files", files, "give CL files or NC programs: a path, or a list of them")
+        raise wrong_argument("files", files, phrase("give_cl_or_nc"))
     given = cast("list[ToolpathLike]", list(files))
     subprograms, hooks = check_paths("subprograms", stated["subprograms"]), check_paths("hooks", stated["hooks"])
     if not given:

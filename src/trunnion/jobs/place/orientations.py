@@ -8,7 +8,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.arguments import wrong_argument
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.placing.best_turn import Grid
 
 #: Orientations are at most as many.
@@ -31,7 +31,7 @@ def orientations(turns: float | Sequence[float] | None, tilts: float | Sequence[
     tilt_angles, refines_tilts = _tilts(tilts)
     if turns is None:
         turns = _TURN_STEP if len(tilt_angles) == 1 else _TURN_STEP_OF_TILTS
-    cure = f"give degrees between them, {_LEAST_STEP:g} to 360, or a list of turns"
+    cure = phrase("give_turns", least=_LEAST_STEP)
     turn_angles, refines_turns = _angles("turns", turns, cure, 0.0, 360.0)
     count = len(turn_angles) * len(tilt_angles)
     if count > _MOST:
@@ -42,7 +42,7 @@ def orientations(turns: float | Sequence[float] | None, tilts: float | Sequence[
 def _tilts(tilts: float | Sequence[float]) -> tuple[Floats, bool]:
     if isinstance(tilts, Sequence) and not isinstance(tilts, str) and not len(tilts):
         return np.zeros(1), False
-    cure = f"give degrees between them, {_LEAST_STEP:g} to 90, or a list of tilts from -90 to 90"
+    cure = phrase("give_tilts", least=_LEAST_STEP)
     found, refines = _angles("tilts", tilts, cure, 0.0, _GREATEST_TILT)
     if refines:
         found = found[found > 0.0]
@@ -52,7 +52,7 @@ def _tilts(tilts: float | Sequence[float]) -> tuple[Floats, bool]:
     return found, refines
 
 
-def _angles(name: str, given: float | Sequence[float], cure: str, first: float, most: float) -> tuple[Floats, bool]:
+def _angles(name: str, given: float | Sequence[float], cure: Wording, first: float, most: float) -> tuple[Floats, bool]:
     """Angles, and whether they are those of a step, which is refined; degrees in whole thousandths."""
     if isinstance(given, bool):
         raise wrong_argument(name, given, cure)

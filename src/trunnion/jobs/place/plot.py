@@ -6,6 +6,7 @@ from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
+from trunnion.messages import phrase
 from trunnion.placing.placement import Placement
 from trunnion.reporting.placing_picture import placing_picture
 
@@ -28,6 +29,6 @@ def write_placing_plot(found: Placement, plot: FilePath, *, inputs: Iterable[Fil
         When the name ends otherwise, the file cannot be written, or no turn is within reach of the rotary axes.
     """
     if not isinstance(found, Placement) or found.best is None:
-        raise wrong_argument("found", found, "give a placement with a best place")
+        raise wrong_argument("found", found, phrase("give_placement"))
     with atomic_file(declared_output("place", "plot", plot), inputs=inputs) as sink:
         sink.write(placing_picture(found).encode())

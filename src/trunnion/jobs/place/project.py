@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem, warning
 from trunnion.jobs.inputs.arguments import checked_angles
 from trunnion.jobs.inputs.bodies import MeshLike, read_mesh
 from trunnion.jobs.inputs.reading import FilePath
@@ -50,14 +50,7 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
     settings = dict(setup.settings)
     angles, problems = checked_angles(*setup.angles), list[Problem]()
     if Clamping(*angles).is_turned and settings.pop("zero", None) is not None:
-        problems.append(
-            Problem(
-                str(project),
-                0,
-                Wording("PLC330", "zero_of_turned_part", clamping=Clamping(*angles)),
-                severity=Severity.WARNING,
-            )
-        )
+        problems.append(warning(str(project), 0, Wording("PLC330", "zero_of_turned_part", clamping=Clamping(*angles))))
     bodies = _bodies(loaded.simulation, loaded.posted.index(setup), problems)
     return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems), bodies)
 

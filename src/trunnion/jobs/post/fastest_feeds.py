@@ -15,7 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.words import NumberFormat
-from trunnion.errors import InputError, Problem, Severity, setting_problem
+from trunnion.errors import InputError, Problem, setting_problem, warning
 from trunnion.jobs.post.expected_values import expectation
 from trunnion.machines import Machine
 from trunnion.messages import Wording
@@ -159,14 +159,7 @@ def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Proble
         count, greatest = count + len(share), max(greatest, float(share.max(initial=1.0)))
     if not count:
         return []
-    return [
-        Problem(
-            toolpaths[0].file,
-            0,
-            Wording("PLN435", "faster_than_cl_file", count=count, greatest=greatest),
-            severity=Severity.WARNING,
-        )
-    ]
+    return [warning(toolpaths[0].file, 0, Wording("PLN435", "faster_than_cl_file", count=count, greatest=greatest))]
 
 
 def unlimited_axes(machine: Machine) -> list[Problem]:
@@ -174,8 +167,4 @@ def unlimited_axes(machine: Machine) -> list[Problem]:
     names = [axis.name for axis in machine.axes if axis.acceleration is None]
     if not names:
         return []
-    return [
-        Problem(
-            machine.key, 0, Wording("PLN425", "accelerations_not_stated", axes=tuple(names)), severity=Severity.WARNING
-        )
-    ]
+    return [warning(machine.key, 0, Wording("PLN425", "accelerations_not_stated", axes=tuple(names)))]

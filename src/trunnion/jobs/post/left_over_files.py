@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.files import OutputPlace
 from trunnion.jobs.result_output import Target
 from trunnion.messages import Wording
@@ -28,15 +28,12 @@ def left_over(target: Target, papers: Iterable[OutputPlace]) -> list[Problem]:
         wording = Wording("FIL280", "files_left_over", files=names)
     else:
         wording = Wording("FIL280", "file_left_over", file=names[0])
-    return [Problem(target.name, 0, wording, severity=Severity.WARNING)]
+    return [warning(target.name, 0, wording)]
 
 
 def kept_files(target: Target) -> list[Problem]:
     """Return a warning for each program that was edited since it was written, and that is kept under another name."""
-    return [
-        Problem(place.name, 0, Wording("FIL250", "kept", name=kept.path.name), severity=Severity.WARNING)
-        for place, kept in target.files.kept
-    ]
+    return [warning(place.name, 0, Wording("FIL250", "kept", name=kept.path.name)) for place, kept in target.files.kept]
 
 
 def first_names(files: Sequence[Path], folder: Path | None) -> tuple[tuple[str, ...], int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion import planning, readers
 from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
-from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
+from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated, warning
 from trunnion.files.places import file_identity, file_on_disk
 from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
@@ -127,7 +127,7 @@ def _with_repeated(toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
         whole = tuple((operation.name, len(operation.moves)) for operation in toolpath.operations)
         same = (file_identity(file), of_archive, whole)  # parts of a file are posted one after the other
         if same in known:
-            remark = Problem(toolpath.file, 0, Wording("CL190", "named_twice"), severity=Severity.WARNING)
+            remark = warning(toolpath.file, 0, Wording("CL190", "named_twice"))
             found.append(replace(toolpath, remarks=(*toolpath.remarks, remark)))
             continue
         if Path(file).is_file():
@@ -161,12 +161,7 @@ def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]
     """Warnings of settings for one operation by a name that several have."""
     names = [name for _, name in cut]
     return [
-        Problem(
-            file,
-            0,
-            Wording("ARG270", "operations_of_one_name", count=names.count(name), operation=name),
-            severity=Severity.WARNING,
-        )
+        warning(file, 0, Wording("ARG270", "operations_of_one_name", count=names.count(name), operation=name))
         for name, file in {name: file for file, name in reversed(cut) if name in own}.items()
         if names.count(name) > 1
     ]

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, warning
 from trunnion.jobs.post.expected_values import Expectation
 from trunnion.jobs.post.forced_program import Untold, write_forced
 from trunnion.jobs.post.machining_times import operation_times
@@ -96,4 +96,4 @@ def _nothing_checked(posting: Posting) -> Problem:
         if without
         else Wording("CTL930", "nothing_checked")
     )
-    return Problem(posting.target.name, 0, wording, severity=Severity.WARNING)
+    return warning(posting.target.name, 0, wording)

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.files import EarlierJob, OutputGroup, resolve_output
 from trunnion.jobs.post.left_over_files import first_names
 from trunnion.jobs.project.project import PostedSetup, Project
@@ -52,7 +52,7 @@ def left_over_setups(
                 wording = Wording("PRJ155", "files_left_over", files=names, owner=owner)
             else:
                 wording = Wording("PRJ155", "file_left_over", file=names[0], owner=owner)
-            found.append(Problem(str(project.path), 0, wording, severity=Severity.WARNING))
+            found.append(warning(str(project.path), 0, wording))
     return found
 
 

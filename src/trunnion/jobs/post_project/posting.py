@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.definitions.extends import is_within
-from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.errors import InputError, Problem, RefusedError, Severity, warning
 from trunnion.files import OutputGroup, check_outputs, output_group, resolve_output
 from trunnion.jobs.inputs.arguments import check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath
@@ -134,10 +134,7 @@ def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, obs
 
 def _running_hooks(project: Project) -> list[Problem]:
     """Warnings of the code that a project has run: it may come from anyone."""
-    return [
-        Problem(file, 0, Wording("HOK150", "runs_hooks", project=project.path.name), severity=Severity.WARNING)
-        for file in project.hooks
-    ]
+    return [warning(file, 0, Wording("HOK150", "runs_hooks", project=project.path.name)) for file in project.hooks]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -203,5 +200,5 @@ def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]], use
             continue
         for file in programs_of_operations(setup.output):
             if resolve_output(file).path not in known:
-                found.append(Problem(str(file), 0, Wording("PRJ150", "operation_gone"), severity=Severity.WARNING))
+                found.append(warning(str(file), 0, Wording("PRJ150", "operation_gone")))
     return found

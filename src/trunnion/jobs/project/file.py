@@ -110,7 +110,7 @@ class _Reader:
         simulated[-1] = replace(simulated[-1], until=whole.pop("until"))
         posted = tuple(each.posted for each in setups)
         if self._purpose.is_posted and not any(posted) and not table.problems:
-            table.add_problem("", "posts nothing: no set-up has an output", 'write output = "NAME.mpf" beside its cl')
+            table.add_problem("", Wording("DEF330", "posts_nothing"))
         table.report_unread_keys()
         simulation = SimulationInput(setups=simulated, places=places_of(table), **whole)
         return Project(self._purpose.path, simulation, posted, checks, hooks, strict, files=tuple(root.files()))
@@ -121,13 +121,13 @@ class _Reader:
         found = {each.name: self._stated.value(table, each) for each in OF_PROJECT if each.name != "stock"}
         found["stock"] = self._stock(table, is_needed=is_simulated and "stock" not in self._purpose.elsewhere)
         if found["until"] is not None and self._purpose.is_posted and is_simulated:
-            table.add_problem("until", "ends the simulation early, and whole programs are posted", "leave it out")
+            table.add_problem("until", Wording("DEF330", "ends_early"))
         return found
 
     def _stock(self, table: Table, *, is_needed: bool) -> str:
         stock = table.text("stock") if is_needed else table.text("stock", "")
         if "stock" in table and stock == "" and not table.problems:
-            table.add_problem("stock", 'is ""', "state a box, a cylinder or a mesh")
+            table.add_problem("stock", Wording("DEF330", "no_stock"))
         elif stock and is_mesh(stock):
             return self._stated.paths.file(table, "stock", stock)
         elif stock and "stock" not in self._purpose.elsewhere:
@@ -151,13 +151,13 @@ def _tables(table: Table) -> list[Table]:
     """Return the tables of set-ups; none where the project is one set-up, or there are too many."""
     told, own = len(table.problems), table.tables("setup")
     if "setup" in table and not own and len(table.problems) == told:
-        table.add_problem("setup", "is []", f"write tables [[{table.key_path('setup')}]], or leave it out")
+        table.add_problem("setup", Wording("DEF330", "no_setups", key=table.key_path("setup")))
     if len(own) > _MOST_SETUPS:
-        table.add_problem("setup", f"has {len(own)} tables", f"write at most {_MOST_SETUPS}")
+        table.add_problem("setup", Wording("DEF330", "too_many_setups", count=len(own), most=_MOST_SETUPS))
         return []
     if own:
         for key in (key for key in OF_ONE_PROGRAM if key in table):
-            table.add_problem(key, "stands beside set-ups", f"write it in each [[{table.key_path('setup')}]]")
+            table.add_problem(key, Wording("DEF330", "beside_setups", key=table.key_path("setup")))
         table.mark_read(*OF_ONE_PROGRAM)
     return own
 
@@ -166,9 +166,9 @@ def _check_names(tables: Sequence[Table], names: Sequence[str]) -> None:
     """Note set-ups that cannot be told apart, and a pose that would be that of nothing."""
     for k, (each, name) in enumerate(zip(tables, names, strict=False)):
         if name in names[:k]:
-            each.add_problem("name", f'is "{name}" twice', "tell set-ups apart")
+            each.add_problem("name", Wording("DEF330", "setup_name_twice", name=name))
     if tables and "pose" in tables[0]:
-        tables[0].add_problem("pose", "of the first set-up", "state the stock in the coordinates of this set-up")
+        tables[0].add_problem("pose", Wording("DEF330", "pose_of_first"))
 
 
 @contextmanager

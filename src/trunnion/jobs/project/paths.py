@@ -15,9 +15,6 @@ from trunnion.messages import Wording
 _MOST_FILES: Final = 1000
 _MOST_NAMES: Final = 10_000
 
-#: The cure of a name that leads elsewhere.
-_WITHIN: Final = "write the path of a file in the folder of the project or below it"
-
 
 class ProjectPaths:
     """Turns names in a project into paths; mistakes become problems of the tables."""
@@ -29,9 +26,9 @@ class ProjectPaths:
     def files(self, table: Table, key: str, *, required: bool = False) -> tuple[str, ...]:
         names = table.texts(key) if required else table.texts(key, ())
         if required and key in table and not names:
-            table.add_problem(key, "is []", 'write ["one.mpf"]')
+            table.add_problem(key, Wording("DEF330", "no_programs"))
         if len(names) > _MOST_FILES:
-            table.add_problem(key, f"names {len(names)} files", f"name at most {_MOST_FILES}")
+            table.add_problem(key, Wording("DEF330", "too_many_files", count=len(names), most=_MOST_FILES))
             return ()
         return tuple(self.file(table, key, name) for name in names)
 
@@ -43,14 +40,14 @@ class ProjectPaths:
         name = table.text(key, "")
         if not name:
             if key in table and table.text(key, None) is not None:
-                table.add_problem(key, 'is ""', "name a file in the folder of the project or below it")
+                table.add_problem(key, Wording("DEF330", "no_output"))
             return None
         told = len(table.problems)
         location = self._located(table, key, name)
         if len(table.problems) > told:
             return location
         if name.endswith("/") or _answer(Path.is_dir, location):
-            table.add_problem(key, f'"{name[:100]}" is a folder', "name a file in it")
+            table.add_problem(key, Wording("DEF330", "output_is_folder", name=name[:100]))
         elif not _answer(Path.is_dir, location.parent):
             table.add_problem(key, Wording("FIL220", "no_such_folder_for", name=name[:100]))
         elif fault := name_fault(PurePosixPath(name)) or name_fault(self._behind_links(location)):
@@ -65,12 +62,12 @@ class ProjectPaths:
         """Return the path of a file that is read; it lies beside the project or below."""
         if not name:
             if key in table:
-                table.add_problem(key, 'names ""', _WITHIN)
+                table.add_problem(key, Wording("DEF330", "names_nothing"))
             return ""
         told = len(table.problems)
         location = self._located(table, key, name)
         if len(table.problems) == told and not is_file(location):
-            table.add_problem(key, f'names "{name}", and there is no such file', _WITHIN)
+            table.add_problem(key, Wording("DEF330", "names_no_file", name=name))
         return str(location)
 
     def _located(self, table: Table, key: str, name: str) -> Path:
@@ -87,7 +84,7 @@ class ProjectPaths:
         location = self._folder / pure
         outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name) or len(name) > 1000
         if outside or not is_within(location, self._folder):
-            table.add_problem(key, f'"{name[:100]}" leads out of the folder of the project', _WITHIN)
+            table.add_problem(key, Wording("DEF330", "leads_out_of_project", name=name[:100]))
             return self._folder / "outside"
         return location
 

@@ -10,6 +10,7 @@ from trunnion.errors import InputError, Problem, key_subject
 from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
 from trunnion.jobs.project.keys import SETTINGS
 from trunnion.jobs.project.project import PostedSetup
+from trunnion.messages import Wording
 
 #: Settings that a table may have.
 _MOST_SETTINGS: Final = 500
@@ -26,11 +27,11 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
     own.names()  # the control chooses them: each is known or told below
     stated = own.to_dict()
     if len(stated) > _MOST_SETTINGS:
-        table.add_problem("settings", f"has {len(stated)} keys", f"no control has more than {_MOST_SETTINGS}")
+        table.add_problem("settings", Wording("DEF330", "too_many_settings", count=len(stated), most=_MOST_SETTINGS))
         stated = {}
     for name, value in stated.items():
         if key := _OWN_KEYS.get(name):
-            own.add_problem(name, f"is said by the key {key}", f"write {key} beside the table of settings")
+            own.add_problem(name, Wording("DEF330", "setting_has_key", key=key))
             continue
         try:
             as_texts({name: value})  # type: ignore[dict-item]  # of any type: that is what is judged
@@ -44,7 +45,7 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
     own.mark_read(*own.keys())
     for name, key in ((each.setting, each.key) for each in SETTINGS if each.key in table):
         if name in found:
-            own.add_problem(name, f"is said by the key {key} too", "write one of them")
+            own.add_problem(name, Wording("DEF330", "setting_and_key", key=key))
         value = table.to_dict()[key]
         if isinstance(value, str | float | int | list):  # anything else is a mistake that is told already
             found[name], places[name] = value, (*table.location(key), table.key_path(key))

@@ -20,6 +20,7 @@ from trunnion.jobs.project.project import Division, PostedSetup
 from trunnion.jobs.project.settings import read_settings
 from trunnion.jobs.project.stated_values import StatedValues
 from trunnion.jobs.result_output import NO_PAPERS, PAPERS, PaperFiles, paper_files
+from trunnion.messages import Wording
 from trunnion.options.option import Option
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.text import parse_tool
@@ -94,7 +95,7 @@ class SetupReader:
         stated = self._with_post(table, self._judged(table, values, own), shared)
         pose = self._pose(table) if "pose" in table else None
         if not values["machine"] and not self._is_elsewhere("machine") and "machine" not in table:
-            table.add_problem("machine", "is missing", "name the machine, here or for all set-ups")
+            table.add_problem("machine", Wording("DEF330", "no_machine"))
         found = self._setup(table, stated, name, pose)
         table.report_unread_keys()
         return found
@@ -153,9 +154,9 @@ class SetupReader:
         """Return the programs of a set-up in which nothing is posted; given elsewhere they need not be there."""
         for key in ("released", *PAPERS):
             if key in table:
-                table.add_problem(key, "belongs to a program that is posted", "write output, too, or leave it out")
+                table.add_problem(key, Wording("DEF330", "of_posted_program"))
         if self._purpose.is_posted and "programs" not in table and (stated.values["cl"] or "cl" in table):
-            table.add_problem("output", "is missing", 'name the program that is posted: output = "NAME.mpf"')
+            table.add_problem("output", Wording("DEF330", "output_missing"))
             return ()
         if self._is_elsewhere("nc"):
             table.texts("programs", ())
@@ -165,24 +166,22 @@ class SetupReader:
     def _check_post(self, table: Table, stated: StatedSetup, output: Path, papers: PaperFiles) -> None:
         """Note what does not go together where a program is posted."""
         if "programs" in table:
-            table.add_problem("programs", "stands beside output", "write programs that exist, or one that is posted")
+            table.add_problem("programs", Wording("DEF330", "beside_output"))
             table.mark_read("programs")
         if not stated.values["cl"] and "cl" not in table:
-            table.add_problem("cl", "is missing", 'name the CL files that are posted: cl = ["one.cls"]')
+            table.add_problem("cl", Wording("DEF330", "cl_missing"))
         for name in papers.by_name() if stated.division is Division.OPERATIONS else ():
-            what = f"is one {PAPERS[name]}, and every operation has a program of its own"
-            table.add_problem(name, what, "leave it out")
+            table.add_problem(name, Wording("DEF330", "one_paper_of_operations", paper=PAPERS[name]))
         if not self._purpose.is_posted and not self._is_elsewhere("nc"):
             self._check_is_there(table, output, stated.division)
 
     def _check_is_there(self, table: Table, output: Path, division: Division) -> None:
         """Note where programs that a project posts cannot be simulated as they lie there."""
         if division is not Division.ONE:
-            what = "becomes several files, whose names are known only while it is posted"
-            table.add_problem("output", what, 'write simulate = "refuse" in [checks], and post the project')
+            table.add_problem("output", Wording("DEF330", "becomes_several_files"))
         elif not is_file(output):
-            cure = f"post it first: trunnion post {self._purpose.path.name}"
-            table.add_problem("output", f'names "{table.text("output")}", and there is no such file yet', cure)
+            names = {"name": table.text("output"), "project": self._purpose.path.name}
+            table.add_problem("output", Wording("DEF330", "not_posted_yet", **names))
 
     def _papers(self, table: Table, output: Path | None) -> PaperFiles:
         """Return what is written about a program beside it."""
@@ -194,9 +193,8 @@ class SetupReader:
             try:
                 paper_files(**{**dict.fromkeys(PAPERS), name: file}, output=output)
             except InputError as error:
-                table.add_problem(
-                    name, f"names {error.problems[0].file}: {error.problems[0].what}", error.problems[0].cure
-                )
+                first = error.problems[0]
+                table.add_problem(name, first.wording.within("names_file", file=first.file))
         return PaperFiles(**named)
 
     def _pose(self, table: Table) -> Pose:

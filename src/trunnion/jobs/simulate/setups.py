@@ -23,7 +23,7 @@ from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamped_toolpaths import toolpaths_clamped
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
@@ -55,7 +55,7 @@ def prepare_setup(
     fixtures = fixture_meshes(given.fixtures, remarks, deviation)
     programs: list[FilePath | Run] = listed("nc", given.programs, Run)
     if not programs:
-        raise wrong_argument("nc", given.programs, "give an NC program")
+        raise wrong_argument("nc", given.programs, phrase("give_nc"))
     others, rapid_feed = check_paths("subprograms", given.subprograms), rapid_feed_of(machine)
     runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
     _check_programs(runs, machine)

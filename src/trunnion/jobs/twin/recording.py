@@ -13,7 +13,7 @@ from trunnion.jobs.inputs.arguments import check_observer, check_path, wrong_arg
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.result_output import declared_output
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.recording import Recording
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.twin.recording.files import check_is_new
@@ -62,7 +62,7 @@ def record(
     place = declared_output("record", "output", output)
     check_is_new(place)
     if seconds is not None and not 0.0 < _number("seconds", seconds) < math.inf:
-        raise wrong_argument("seconds", seconds, "give a number above 0, or None: until Ctrl-C")
+        raise wrong_argument("seconds", seconds, phrase("give_seconds_or_none"))
     if place.path.suffix.lower() == ".parquet":
         import_extra("pyarrow.parquet", "twin")
     feed = machine_feed(address, observer=observer, **found)
@@ -80,7 +80,7 @@ def machine_feed(address: str, *, observer: Observer = SILENT, **given: Unpack[L
     found = taken(LiveArguments, "record", given)
     rate, user, secure = found["rate"], found["user"], found["secure"]
     if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
-        raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
+        raise wrong_argument("rate", rate, phrase("give_rate"))
     if user and not secure:
         raise InputError(argument_problem("user", Wording("TWN210", "user_without_encryption")))
     listed = load_nodes(check_path("nodes", found["nodes"]))
@@ -97,7 +97,7 @@ def check_address(address: object) -> None:
 
     Raises ``InputError`` if it is none.
     """
-    cure = "write opc.tcp://HOST:PORT/…, as the server names it"
+    cure = phrase("write_address")
     try:
         parts = urlsplit(address) if isinstance(address, str) else None
         usable = parts is not None and parts.scheme == "opc.tcp" and bool(parts.hostname) and (parts.port or 1) > 0
@@ -135,4 +135,4 @@ def _folder() -> Path:
 def _number(name: str, value: object) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
-    raise wrong_argument(name, value, "give a number")
+    raise wrong_argument(name, value, phrase("give_number"))

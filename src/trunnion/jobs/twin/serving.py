@@ -19,7 +19,7 @@ from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.result_output import check_output_name
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run
@@ -84,9 +84,9 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
     found = taken(TwinArguments, "twin", given)
     speed, rate, host, adapter_port = found["speed"], found["rate"], found["host"], found["adapter_port"]
     if speed is not None and not SLOWEST <= _number("speed", speed) <= FASTEST:
-        raise wrong_argument("speed", speed, "give a number from 0.1 to 1000, or None: as fast as clients can follow")
+        raise wrong_argument("speed", speed, phrase("give_speed"))
     if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
-        raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
+        raise wrong_argument("rate", rate, phrase("give_rate"))
     security = None if is_loopback(host) else _security(found["users"])
     with ExitStack() as closing:
         served = closing.enter_context(listen("OPC UA", host, found["port"], "port"))
@@ -124,7 +124,7 @@ def write_device_xml(
 
     Raises ``RefusedError`` when the program has errors.
     """
-    place = check_output_name("output", output, (".xml",), "a device model is XML")
+    place = check_output_name("output", output, (".xml",), phrase("device_model_is_xml"))
     program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
     read = [*program.run.files, *machine_files(machine, program.run.machine)]
     with atomic_file(place, inputs=read) as sink:
@@ -207,4 +207,4 @@ def _security(users: FilePath | None) -> "Security":
 def _number(name: str, value: object) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
-    raise wrong_argument(name, value, "give a number")
+    raise wrong_argument(name, value, phrase("give_number"))

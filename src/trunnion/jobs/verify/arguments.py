@@ -9,7 +9,7 @@ from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
 from trunnion.jobs.inputs.hooked import no_cl_files
 from trunnion.jobs.inputs.settings import check_tolerance
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: How far the tip may be off its CL point, mm.
 DEFAULT_TOLERANCE: Final = 0.001
@@ -64,5 +64,5 @@ def _tool(tool: object) -> str:
     """Return the tool that is called in place of the CL file's, as a run names it; empty for none."""
     text = str(tool).strip('"') if isinstance(tool, str | int) and not isinstance(tool, bool) else None
     if text is None or tool_number(text) == 0 or text.startswith("-"):
-        raise wrong_argument("tool", tool, "give the number of a tool, such as 5, or its name")
+        raise wrong_argument("tool", tool, phrase("give_tool"))
     return text

@@ -37,6 +37,7 @@ def expected_values(
         by_operation={name: _operation_settings(own, machine) for name, own in own_settings.items()},
         rapid_feed=rapid_feed,
         below_rapid_feed=slower,
+        coolant=control.coolant if control else {},
         rigid_tap=m_code(settings.get("rigid_tap", "")),
         blocks_in_compensation=control.blocks_in_compensation if control else 1,
         stops_in_compensation=control.stops_in_compensation if control else False,

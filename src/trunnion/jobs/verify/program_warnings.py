@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from trunnion.controls import Control
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, warning
 from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic, Run
 
@@ -47,15 +47,10 @@ def _is_told(noted: Diagnostic, code: str, stated: frozenset[str]) -> bool:
 def _of_kind(run: Run, code: str, noted: Sequence[Diagnostic]) -> list[Problem]:
     """Return the first warnings of a kind one by one, and the others together."""
     told = [
-        Problem(
-            each.file or run.files[0],
-            each.line,
-            Wording(code, "noted", noted=each.wording),
-            severity=Severity.WARNING,
-        )
+        warning(each.file or run.files[0], each.line, Wording(code, "noted", noted=each.wording))
         for each in noted[:_MOST_TOLD]
     ]
     if more := len(noted) - len(told):
         line = noted[_MOST_TOLD].line
-        told.append(Problem(run.files[0], line, Wording(code, "more_noted", count=more), severity=Severity.WARNING))
+        told.append(warning(run.files[0], line, Wording(code, "more_noted", count=more)))
     return told

@@ -12,7 +12,7 @@ from trunnion.jobs.inputs.input_files import verified_files
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import check_report_name
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
 
@@ -56,7 +56,7 @@ def write_report(
     from trunnion.jobs.simulate.result import SimulationResult
 
     if not isinstance(result, SimulationResult):
-        raise wrong_argument("result", result, "give the result of trunnion.verify, trunnion.post or trunnion.simulate")
+        raise wrong_argument("result", result, phrase("give_result"))
     write_simulation_report(result, file)
 
 

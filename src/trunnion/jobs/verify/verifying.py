@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Unpack
 
 from trunnion import readers, verification
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
 from trunnion.jobs.arguments import VerifyArguments, taken
@@ -143,4 +143,4 @@ def _without_motion(run: Run) -> list[Problem]:
     """Return a warning of a program that moves nothing."""
     if len(run) or run.errors:
         return []
-    return [Problem(run.files[0], 0, Wording("NC185", "nothing_moves"), severity=Severity.WARNING)]
+    return [warning(run.files[0], 0, Wording("NC185", "nothing_moves"))]

@@ -14,7 +14,7 @@ from trunnion.cl import is_cl_file
 from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
 from trunnion.encoding import decode
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.jobs.arguments import PostArguments
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, is_stream
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
@@ -104,9 +104,7 @@ def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Pro
     stated = stated_clamping(toolpaths) if is_cl_file(file) else stated_place(file).clamping
     if stated is None or stated.is_as_drawn:
         return []
-    return [
-        Problem(str(file), 0, Wording("PAG116", "bodies_clamped_otherwise", clamping=stated), severity=Severity.WARNING)
-    ]
+    return [warning(str(file), 0, Wording("PAG116", "bodies_clamped_otherwise", clamping=stated))]
 
 
 def _posted(files: Sequence[Path], machine: Machine, stated: PostArguments, observer: Observer) -> ViewedProgram:

@@ -46,19 +46,18 @@ class PoseBodies:
         )
 
 
-def pose_bodies(machine: Machine, rotary: Floats, tool_length: float | None = None) -> PoseBodies:
+def pose_bodies(machine: Machine, rotary: Floats) -> PoseBodies:
     """Return the bodies that the tips of rotary positions fill.
 
-    machine      its slides have finite limits
-    rotary       (k, 2) float64, deg: in the order of ``machine.rotary``
-    tool_length  from the gauge point to the tip, mm; None: that of ``machine.tool_length``
+    machine  its slides have finite limits
+    rotary   (k, 2) float64, deg: in the order of ``machine.rotary``
     """
     count, slides = len(rotary), list(machine.linear)
     joints = np.zeros((4, count, 5))
     joints[:, :, list(machine.rotary)] = rotary
     for k, slide in enumerate(slides):
         joints[k + 1, :, slide] = _FAR
-    tips = forward(machine, joints.reshape(-1, 5), tool_length)[0].reshape(4, count, 3)
+    tips = forward(machine, joints.reshape(-1, 5))[0].reshape(4, count, 3)
     origin, ways = tips[0], np.moveaxis(tips[1:] - tips[0], 0, 1) / _FAR  # (k, slide, 3)
     limits = machine.limits[slides]
     size = np.abs(np.linalg.det(ways))

@@ -181,6 +181,10 @@ class BlockWriter:
         empty, unforced = np.zeros((0, len(texts)), np.int64), np.zeros(len(texts), np.int64)
         self._write(empty, unforced, no_words, _Lines(before, before[:-1], texts))
 
+    def write_words(self, words: Mapping[str, int]) -> None:
+        """Write one block of words, as counts; none if all of them are active."""
+        self.write_table({word: np.array([count], np.int64) for word, count in words.items()})
+
     def write_table(
         self,
         columns: Mapping[str, Ints],

@@ -19,9 +19,11 @@ from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, P
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import CHUNK, BlockWriter
 from trunnion.output.blocks.feeds import FEED_WORDS, FeedWords
+from trunnion.output.blocks.first_leg import FirstLegs
 from trunnion.output.blocks.line_texts import LineTexts
 from trunnion.output.blocks.orientation import OrientationWords
 from trunnion.output.blocks.surface_normals import add_vector_lines, contact_rows
+from trunnion.output.coordinates.approach_leg import ApproachLegs
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
 
@@ -91,6 +93,7 @@ class MotionBlockWriter:
         self._length_register = 0
         self._words_to_repeat: dict[str, int] = {}
         self._texts = LineTexts(program)
+        self.legs = FirstLegs(ApproachLegs(program), self.writer)
 
     # Motions
 
@@ -172,7 +175,7 @@ class MotionBlockWriter:
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""
-        self.writer.write_table({word: np.array([count], np.int64) for word, count in words.items()})
+        self.writer.write_words(words)
 
     def write_event(self, event: WordEvent) -> None:
         """Write the words of an event as a block of its own."""
@@ -265,9 +268,10 @@ class MotionBlockWriter:
             table.force("X", np.ones(stop - start, np.bool_))
         other_end = self._add_arcs(table, motion, rows)
         if start == 0:
+            first_words = self.first_block_words(motion)
             if rapid[0] and self.xy_before_z:
-                self.write_block({word: count for word, count in table.words_of_row(0).items() if word != "Z"})
-            table.set_words(0, self.first_block_words(motion))
+                first_words = self.legs.write(motion, moves.tip[0], table.words_of_row(0), first_words)
+            table.set_words(0, first_words)
         for event in joining_events:
             table.set_words(event.row - start, self.event_words(event))
         self._repeat_words(table)

@@ -95,10 +95,11 @@ class _Holes:
     ) -> None:
         """Go to the retract height over the first hole of a motion: in one block, or to X and Y first."""
         blocks = self._blocks
-        block = {**self._rapid, **position}
+        block, first_words = {**self._rapid, **position}, blocks.first_block_words(self._motion)
         if blocks.xy_before_z:
-            blocks.write_block(block)
-        block |= {"Z": self._writer.to_count("X", retract), **blocks.first_block_words(self._motion)}
+            point = np.array([*self._motion.operation.moves.tip[0, :2], retract])
+            first_words = blocks.legs.write(self._motion, point, block, first_words)
+        block |= {"Z": self._writer.to_count("X", retract), **first_words}
         for event in joining_events:
             block |= blocks.event_words(event)
         blocks.write_block(block)

@@ -5,11 +5,23 @@ from typing import TypeGuard
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.controls.inches import literal_length
-from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
-from trunnion.errors import Problem, Severity
+from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, RADIUS_NUMBER_WORD
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
-from trunnion.model.motion import Motion
-from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, Insert, LoadTool, SelectTool
+from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.toolpath import (
+    BlockSkip,
+    Coolant,
+    CutterComp,
+    Dwell,
+    Event,
+    GoHome,
+    Insert,
+    Kind,
+    LoadTool,
+    SelectTool,
+    SpindleOn,
+)
 from trunnion.output.program import Program
 
 
@@ -18,7 +30,7 @@ def event_problems(
 ) -> list[Problem]:
     """Return what is wrong with an event.
 
-    rpm        the spindle speed; None while it is stopped
+    rpm        the spindle speed before it; None while it is stopped
     registers  numbers of the tools that the motion loads, and of the registers that LOAD/TOOL names
     """
     control, location = program.control, (program.file_of(motion.operation), event.line)
@@ -40,16 +52,12 @@ def event_problems(
                 *location, Wording("CTL230", "cutcom_names_register", register=event.register, control=control.name)
             )
         ]
+    if isinstance(event, SpindleOn) and _stops_in_cut(program, motion, event, rpm):
+        return [warning(*location, Wording("CTL470", "new_speed_in_cut", rpm=event.rpm, before=rpm))]
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
         return [Problem(*location, Wording("CTL430", "gohome_before_operation"))]
     if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
-        return [
-            Problem(
-                *location,
-                Wording("CTL440", "select_tool_not", number=event.number, control=control.name),
-                severity=Severity.WARNING,
-            )
-        ]
+        return [warning(*location, Wording("CTL440", "select_tool_not", number=event.number, control=control.name))]
     if isinstance(event, Insert) and control.unit != 1.0 and not event.template:
         literal = literal_length(control, event.text)
         if literal:
@@ -64,6 +72,14 @@ def event_problems(
             )
         ]
     return []
+
+
+def _stops_in_cut(program: Program, motion: Motion, event: SpindleOn, rpm: float | None) -> bool:
+    """Whether TCP is switched off and on for a new speed right behind a cut, with the tool where the cut ends."""
+    with_tcp = motion.mode is MachiningMode.TCP and NEW_SPEED_WITH_TCP in program.control.templates
+    moves = motion.operation.moves
+    behind_cut = 0 < event.row < len(moves) and int(moves.kind[event.row - 1]) != Kind.RAPID
+    return with_tcp and behind_cut and rpm not in (None, event.rpm)
 
 
 def _compensates_by_register(event: Event) -> TypeGuard[CutterComp]:
@@ -88,11 +104,10 @@ def block_skip_problems(program: Program) -> list[Problem]:
             continue
         if k + 1 == len(motions) or motions[k + 1].starts_operation:
             problems.append(
-                Problem(
+                warning(
                     program.file_of(motion.operation),
                     skip.line,
                     Wording("CTL460", "opskip_ends_operation", operation=motion.operation.name),
-                    severity=Severity.WARNING,
                 )
             )
             skip = None

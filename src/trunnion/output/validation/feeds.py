@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.controls.words import NumberFormat
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, warning
 from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Moves
@@ -49,14 +49,7 @@ def rapid_feed_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     lower = float(rapid_feed) - number_format.digit
     file, line = program.file_of(motion.operation), int(moves.line[rows[0]])
-    return [
-        Problem(
-            file,
-            line,
-            Wording("CTL315", "lines_mm_min", rapid_feed=float(rapid_feed), lower=lower),
-            severity=Severity.WARNING,
-        )
-    ]
+    return [warning(file, line, Wording("CTL315", "lines_mm_min", rapid_feed=float(rapid_feed), lower=lower))]
 
 
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation, SpindleOff, SpindleOn
@@ -40,11 +40,10 @@ def spindle_problems(program: Program, operation: Operation, turns: bool | None)
         break
     if turns is None and not any(isinstance(event, SpindleOn) for event in switches):
         return [
-            Problem(
+            warning(
                 program.file_of(operation),
                 operation.line,
                 Wording("CTL520", "operation_no_spindle", operation=operation.name),
-                severity=Severity.WARNING,
             )
         ]
     return []
@@ -61,11 +60,10 @@ def other_speed_problems(program: Program, operation: Operation, before: str, nu
     if not (before and loads and number not in (0, loads[0].number) and len(cuts)) or (speeds and speeds[0] <= cuts[0]):
         return []
     return [
-        Problem(
+        warning(
             program.file_of(operation),
             loads[0].line,
             Wording("CTL520", "operation_loads_tool", operation=operation.name, number=loads[0].number, before=before),
-            severity=Severity.WARNING,
         )
     ]
 
@@ -80,11 +78,10 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
     stays = not loaded and name == in_spindle
     if not loaded and name and not stays:
         problems.append(
-            Problem(
+            warning(
                 program.file_of(operation),
                 operation.line,
                 Wording("CTL140", "operation_no_load", operation=operation.name),
-                severity=Severity.WARNING,
             )
         )
     if name and (not (loaded or stays) or program.effective_setting("tool_call", operation) == "name"):
@@ -137,11 +134,10 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     fallback = program.effective_setting("fallback_tolerance", operation)
     return [
-        Problem(
+        warning(
             program.file_of(operation),
             operation.line,
             Wording("CTL530", "operation_no_intol", operation=operation.name, fallback=fallback),
-            severity=Severity.WARNING,
         )
     ]
 

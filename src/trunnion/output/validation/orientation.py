@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind
@@ -20,11 +20,10 @@ def tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
     what = "for the tool's vector here the control could choose another rotary position than the planned one: operation"
     what = f"{what} {motion.operation.name} is written with rotary positions"
     return [
-        Problem(
+        warning(
             program.file_of(motion.operation),
             int(motion.operation.moves.line[row]),
             Wording("CTL560", "tool_s_vector", operation=motion.operation.name),
-            severity=Severity.WARNING,
         )
     ]
 
@@ -53,10 +52,9 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
         problems.append(Problem(program.file_of(operation), line, Wording("CTL610", "point_between_cl")))
     elif missing.any():
         problems.append(
-            Problem(
+            warning(
                 *location,
                 Wording("CTL620", "operation_no_contact", name=name, sum=int(missing.sum()), count=len(moves)),
-                severity=Severity.WARNING,
             )
         )
     return problems

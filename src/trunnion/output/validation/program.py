@@ -45,9 +45,9 @@ def check_program(program: Program) -> list[Problem]:
                 stands_at = -1
             elif isinstance(event, Stop) and not event.optional:
                 stands_at = event.row
-            rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
             turning = None if event.row == stands_at else rpm
             problems += event_problems(program, motion, event, turning, registers)
+            rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
         problems += _motion_problems(program, motion)
         rejected = program.control.family.validate_operation(operation, turns is not None)
         problems += [Problem(program.file_of(operation), line, why.wording) for line, why in rejected]

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import suppress
 
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Insert, Message, Operation, Stop
 from trunnion.output.program import Program
@@ -18,7 +18,7 @@ def text_problems(program: Program) -> list[Problem]:
         written = spelled(text, encoding)
         if written != text and text not in found:
             wording = _transliterated(program, kind, text, written)
-            found[text] = Problem(file, line, wording, severity=Severity.WARNING)
+            found[text] = warning(file, line, wording)
     return [*found.values(), *_called(program), *_inserted(program)]
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from trunnion.controls.setting_rules import tool_number
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import LoadTool, Operation, Tool
 from trunnion.output.program import Program
@@ -58,7 +58,7 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
             )
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
         if not uses_length_numbers and loads and register not in (0, loads[-1].number):
-            problems.append(_lost_register(program, operation, loads[-1]))
+            problems += _lost_register(program, operation, loads[-1])
         before = known.setdefault(call, [])
         if operation.tool in (other.tool for other in before):
             continue
@@ -67,16 +67,17 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
     return problems
 
 
-def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Problem:
-    """Return a warning of a register for the length, which the control does not take."""
-    return Problem(
-        program.file_of(operation),
-        load.line,
-        Wording(
-            "CTL715", "length_is_that_of_tool", tool=load.number, register=load.adjust, control=program.control.name
-        ),
-        severity=Severity.WARNING,
+def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Iterator[Problem]:
+    """Yield a warning of a register for the length that the control does not take, nor the operation as its edge."""
+    edge, said = program.effective_setting("edge", operation), {"tool": load.number, "register": load.adjust}
+    if edge == str(load.adjust):
+        return
+    wording = (
+        Wording("CTL715", "length_is_that_of_edge", control=program.control.name, edge=edge, **said)
+        if edge
+        else Wording("CTL715", "length_is_that_of_tool", control=program.control.name, **said)
     )
+    yield warning(program.file_of(operation), load.line, wording)
 
 
 def _conflict(call: str, before: Sequence[Operation], operation: Operation, file: str) -> Iterator[Problem]:
@@ -100,7 +101,7 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
     name = operation.tool.name
     named = next((other for other in before if other.tool.name and other.tool.name != name), None)
     if name and named is not None and all(other.tool.name != name for other in before):
-        yield Problem(
+        yield warning(
             file,
             operation.line,
             Wording(
@@ -112,7 +113,6 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
                 name=name,
                 operation=operation.name,
             ),
-            severity=Severity.WARNING,
         )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.controls.words import NumberFormat
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, Severity, warning
 from trunnion.machines import Mount
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
@@ -82,10 +82,8 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
     if above.any():
         location = program.file_of(operation), int(moves.line[cuts[np.argmax(above)]])
         problems.append(
-            Problem(
-                *location,
-                Wording("CTL340", "block_so_short", sum=int(above.sum()), greatest=number_format.greatest),
-                severity=Severity.WARNING,
+            warning(
+                *location, Wording("CTL340", "block_so_short", sum=int(above.sum()), greatest=number_format.greatest)
             )
         )
     problems += _rounding_problems(program, motion, cuts, value, rule, number_format)

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording, phrase
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Decision, DecisionTopic, PoleStrategy
@@ -110,5 +110,5 @@ def _problems(prepared: PreparedOperation, poses: PlannedPoses, leaned: LeanedMo
     problems = []
     for region in unsolved[:_NAMED]:
         wording = Wording("PLN410", "no_lean", angle=angle, axis=name, line=line[region.end - 1], cure=cure)
-        problems.append(Problem(prepared.file, int(line[region.first]), wording, severity=Severity.WARNING))
+        problems.append(warning(prepared.file, int(line[region.first]), wording))
     return problems

@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definitions.extends import is_within
-from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.errors import InputError, Problem, unusable_file, warning
 from trunnion.machines import BodyBox, BodyCylinder, BodyFile, Machine, MachineBody
 from trunnion.machines.links import SPINDLE, WORKPIECE
 from trunnion.messages import Wording
@@ -93,14 +93,7 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
     if problems:
         raise InputError(problems)
     if found and warn is not None and not machine.spindle_point_is_stated:
-        warn(
-            Problem(
-                machine.files[0] if machine.files else machine.key,
-                0,
-                Wording("SIM310", "no_spindle_gauge"),
-                severity=Severity.WARNING,
-            )
-        )
+        warn(warning(machine.files[0] if machine.files else machine.key, 0, Wording("SIM310", "no_spindle_gauge")))
     return tuple(found)
 
 

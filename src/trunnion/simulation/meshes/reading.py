@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
-from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.errors import InputError, Problem, Severity, unusable_file, warning
 from trunnion.messages import Wording
 from trunnion.simulation.meshes.findings import LARGEST_EXTENT, SMALLEST_EXTENT, MeshFindings, judge_mesh
 from trunnion.simulation.meshes.step import STEP_ENDINGS, read_step
@@ -239,7 +239,7 @@ def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, guessed: b
             Problem(label, 0, Wording("SIM214", "not_one_piece", turned=findings.turned), severity=severity)
         )
     if findings.inside_out:
-        problems.append(Problem(label, 0, Wording("SIM214", "inside_out_facets"), severity=Severity.WARNING))
+        problems.append(warning(label, 0, Wording("SIM214", "inside_out_facets")))
     low, high = mesh.bounds
     extent = float((high - low).max())
     if extent < SMALLEST_EXTENT:
@@ -253,7 +253,5 @@ def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, guessed: b
             )
         )
     elif extent > LARGEST_EXTENT:
-        problems.append(
-            Problem(label, 0, Wording("SIM213", "m_large", extent=extent / 1000.0), severity=Severity.WARNING)
-        )
+        problems.append(warning(label, 0, Wording("SIM213", "m_large", extent=extent / 1000.0)))
     return problems

@@ -9,7 +9,7 @@ import time
 from collections.abc import AsyncGenerator, Callable
 from typing import Final
 
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, warning
 from trunnion.messages import Wording
 from trunnion.twin.recording.client import FAILURES, Access, Connection, connect
 from trunnion.twin.recording.nodes import NodeList
@@ -148,7 +148,7 @@ class MachineFeed:
             delay = min(2.0 * delay, _LAST_TRY)
 
     def _warn(self, wording: Wording) -> None:
-        self._tell(Problem(self._access.address, 0, wording, severity=Severity.WARNING))
+        self._tell(warning(self._access.address, 0, wording))
 
 
 def _reason(error: BaseException) -> str:

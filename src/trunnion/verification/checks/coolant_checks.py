@@ -1,52 +1,66 @@
-"""The coolant of a program against COOLNT in the CL files, as far as its words belong to the control."""
+"""The coolant of a program against COOLNT in the CL files, as far as the control or its definition knows the words."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.model.run import Run, RunEvent
+from trunnion.messages import phrase
+from trunnion.model.run import EventValue, Run, RunEvent
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.states import all_coolants, coolant_states
 from trunnion.verification.results import Check, Place
 
-#: Coolant words of the CL file as they show in a run; the others are M words of the machine builder, whose meaning is
-#: not known.
+#: Coolant words of the CL file as they show in a run; the others are M words of the machine builder, whose meaning only
+#: a definition knows.
 _COOLANT: Final = {"OFF": "off", "ON": "flood", "FLOOD": "flood", "TAP": "flood", "MIST": "mist", "THRU": "through"}
 
-#: Coolant for which most controls have no word of their own.
-_OF_BUILDER: Final = ("mist", "through")
+#: Coolant for which every control has a word of its own.
+_OWN: Final = ("off", "flood")
 
 
 def is_builder_coolant(word: str) -> bool:
     """Whether only the machine builder may have a word for coolant that a CL file asks for."""
-    return _COOLANT.get(word) in (None, *_OF_BUILDER)
+    return _COOLANT.get(word) not in _OWN
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _CoolantWords:
     """Coolant words of a program, and rows before which words of the machine builder stand.
 
+    names    of the kinds of coolant that the CL file asks for
     rows     (k,) int64, the rows before which ``changes`` stand
     changes  row, state and event of each
     builder  (m,) int64
     stays_off  (m,) int64, the rows before which a word switches off, and no word of the builder stands behind it there
     """
 
+    names: Mapping[str, str]
     rows: Ints
     changes: list[tuple[int, str, RunEvent]]
     builder: Ints
     stays_off: Ints
 
     @staticmethod
-    def of(run: Run) -> "_CoolantWords":
-        changes = [(event.before_row, str(event.value), event) for event in run.events if event.kind == "coolant"]
-        builder = np.array([event.before_row for event in run.events if event.kind == "m"], np.int64)
-        last = {event.before_row: event for event in run.events if event.kind in ("coolant", "m")}
-        stays_off = np.array([row for row, event in last.items() if event.value == "off"], np.int64)
-        return _CoolantWords(np.array([row for row, _, _ in changes], np.int64), changes, builder, stays_off)
+    def of(run: Run, defined: Mapping[str, int]) -> "_CoolantWords":
+        """Return the words of a run; ``defined`` has the M number that the control's definition states for a kind."""
+        named = {number: _COOLANT.get(kind, kind.lower()) for kind, number in reversed([*defined.items()])}
+        names = {**_COOLANT, **{kind: named[number] for kind, number in defined.items()}}
+        changes, builder, last = list[tuple[int, str, RunEvent]](), list[int](), dict[int, str]()
+        for event in run.events:
+            if event.kind not in ("coolant", "m"):
+                continue
+            name = str(event.value) if event.kind == "coolant" else _name_of(event.value, named)
+            last[event.before_row] = name
+            if name:
+                changes.append((event.before_row, name, event))
+            else:
+                builder.append(event.before_row)
+        stays_off = np.array([row for row, name in last.items() if name == "off"], np.int64)
+        rows = np.array([row for row, _, _ in changes], np.int64)
+        return _CoolantWords(names, rows, changes, np.array(builder, np.int64), stays_off)
 
     def has_builder_word(self, after: int, row: int) -> bool:
         """Whether the machine builder has a word between the row ``after`` and another."""
@@ -73,9 +87,15 @@ class _CoolantWords:
         return "off" in [*before, *(state for _, state, _ in self.changes[max(first - 1, 0) : end])]
 
 
+def _name_of(number: EventValue, named: Mapping[int, str]) -> str:
+    """Return the coolant that an M word of the builder switches, as the definition states it; empty: it states none."""
+    return named.get(int(number), "") if isinstance(number, float) else ""
+
+
 def check_coolant(context: ComparedContext) -> Check:
     """Coolant at every CL point."""
-    run, matching, words = context.run, context.matching, _CoolantWords.of(context.run)
+    run, matching, defined = context.run, context.matching, context.settings.coolant
+    words = _CoolantWords.of(run, defined)
     places: list[Place] = []
     asked: set[str] = set()
     unread: set[str] = set()
@@ -84,12 +104,13 @@ def check_coolant(context: ComparedContext) -> Check:
         first, end = matching.pair_range(state.first, state.end)
         if first == end:
             continue
-        wanted = _COOLANT.get(state.value)
+        wanted = words.names.get(state.value)
         row, last = matching.nc[first], matching.nc[end - 1]
         after = matching.nc[first - 1] if first else -1
         by_builder = words.has_builder_word(after, row)
-        unknown = by_builder or bool(unread) or wanted == "through"
-        if wanted is None or (wanted in _OF_BUILDER and words.at(row) != wanted and unknown):
+        unknown = by_builder or bool(unread) or (wanted == "through" and state.value not in defined)
+        of_builder = wanted not in _OWN and words.at(row) != wanted
+        if wanted is None or (of_builder and unknown):
             unread.add(state.value)
             if not by_builder and (state.value != before or words.has_own_word(after, row)):
                 text = (
@@ -109,13 +130,14 @@ def check_coolant(context: ComparedContext) -> Check:
             elif fault is not None:
                 places.append(context.place(min(fault.row, len(run) - 1), 0.0, fault.text))
         before = state.value
-    anywhere = {_COOLANT.get(word) for word in all_coolants(context.expected)}
+    anywhere = {words.names.get(word) for word in all_coolants(context.expected)}
     for _, name, event in words.changes:
         if not unread and None not in anywhere and name not in asked | anywhere | {"off"}:
             places.append(context.place_of_event(event, 0.0, f"coolant {name}, which the CL file never asks for"))
-    good = ", ".join(sorted(asked | {word.lower() + " (not read)" for word in unread}))
     places.sort(key=lambda place: place.nc_line)
-    return check_from_places("coolant", "coolant as the CL file says", places, good)
+    found = check_from_places("coolant", "coolant as the CL file says", places, ", ".join(sorted(asked)))
+    missing = () if places else tuple(phrase("coolant_unread", kind=kind) for kind in sorted(unread))
+    return replace(found, missing=missing)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -64,7 +64,7 @@ def _axis_words(machine: Machine) -> list[int]:
 
 
 def check_home(context: Context) -> Check:
-    """Motions in the machine frame: at rapid, back along one slide first, and to the machine's home positions.
+    """Motions in the machine frame: at rapid, back along one linear axis first, and to the machine's home positions.
 
     A program that never goes to the home of the machine's definition has positions of its own, which are not checked.
     """
@@ -74,7 +74,7 @@ def check_home(context: Context) -> Check:
     if not (motions.at_home & motions.named).any():
         return _check_other_positions(context)
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
-    good = "slides and rotary axes at home before, after and at every tool change"
+    good = "linear and rotary axes at home before, after and at every tool change"
     return check_from_places("home", _TITLE, places, good)
 
 
@@ -92,12 +92,12 @@ def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
         not_retracted = k == 0 or row != motions.rows[k - 1] + 1
         moves = bool((np.abs(motions.joints[k] - motions.before[k]) > HOME_TOLERANCE).any())
         if not_retracted and len(axes) > 1 and (moves or row == 0):
-            text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one slide"
+            text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one linear axis"
             yield context.place(row, 0.0, text)
 
 
 def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator[Place]:
-    """Yield the last motion before each tool change and end of program for which the slides are not at home."""
+    """Yield the last motion before each tool change and end of program for which the linear axes are not at home."""
     run, slides = context.run, list(context.run.machine.linear)
     for event in run.events:
         if event.kind not in ("tool_change", "end") or not 0 < event.before_row <= len(run):
@@ -107,12 +107,12 @@ def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator
         was_home = k >= 0 and motions.at_home[k, slides].all()
         if not (was_home and _slides_stay_home(run, int(motions.rows[k]) + 1, row + 1)):
             what = "changes the tool" if event.kind == "tool_change" else "ends"
-            text = f"{what} in line {event.line} while the slides are not at home; this is the last motion before"
+            text = f"{what} in line {event.line} while the linear axes are not at home; this is the last motion before"
             yield context.place(row, 0.0, text)
 
 
 def _slides_stay_home(run: Run, first: int, end: int) -> bool:
-    """Whether rows ``first`` to ``end`` only turn rotary axes, and the slides stay at home."""
+    """Whether rows ``first`` to ``end`` only turn rotary axes, and the linear axes stay at home."""
     if (run.programmed[first:end] & int(_SLIDE_WORDS)).any():
         return False
     slides = list(run.machine.linear)

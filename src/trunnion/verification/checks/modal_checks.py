@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.approach_faults import approaches_through_part
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
 from trunnion.verification.checks.low_rapids import low_rapids
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
@@ -36,6 +37,7 @@ def check_modal_state(context: Context) -> Check:
     places += _tcp_left_on(context)
     places += _turned_under_tcp(context)
     places += low_rapids(context)
+    places += approaches_through_part(context)
     places += wide_tolerances(context)
     places += _without_units(context)
     places += _cuts_from_unknown_places(context)

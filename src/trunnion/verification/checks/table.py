@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Final, TypeVar
 
-from trunnion.arrays import Floats
-from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
+from trunnion.definitions.marked_values import MarkedValue
+from trunnion.machines.unmeasured import POSITIONS, ValueKind, kind_of, unmeasured_values
 from trunnion.messages import phrase
 from trunnion.model.run_samples import joint_samples
 from trunnion.verification.basis import ACCELERATION, RAPID, SPINDLE, TOOL_LENGTH, TRAVEL, ZERO, Basis, missing_of
@@ -92,11 +92,11 @@ class CheckEntry:
     kinds: tuple[ValueKind, ...] = ()
     title: str = ""
 
-    def checks(self, seen: Measured, joints: Floats) -> Iterator[Check]:
-        """Make the check, as far as what it needs is there; ``joints`` are some of the program."""
+    def checks(self, seen: Measured, unmeasured: Iterable[MarkedValue]) -> Iterator[Check]:
+        """Make the check, as far as what it needs is there; ``unmeasured`` values matter to the program."""
         if isinstance(seen, self.needs):
-            machine = seen.context.run.machine
-            missing, values = missing_of(self.bases, machine), unmeasured_values(machine, self.kinds, joints)
+            missing = missing_of(self.bases, seen.context.run.machine)
+            values = [value for value in unmeasured if kind_of(value) in self.kinds]
             for check in self.run(seen):
                 answer = replace(check, missing=(*missing, *check.missing))
                 # What was not answered stands on nothing.
@@ -165,5 +165,6 @@ CHECKS: Final = (
 
 def all_checks(seen: Measured) -> tuple[Check, ...]:
     """Every check; those that need more than is known are not checked."""
-    joints = joint_samples(seen.context.run)
-    return tuple(check for entry in CHECKS for check in entry.checks(seen, joints))
+    run = seen.context.run
+    unmeasured = unmeasured_values(run.machine, tuple(ValueKind), joint_samples(run))
+    return tuple(check for entry in CHECKS for check in entry.checks(seen, unmeasured))

@@ -9,11 +9,15 @@ additional points on the path of the other. Motions in the machine frame count i
 """
 
 from collections.abc import Callable
+from typing import Final
 
 from trunnion.model.run import Run
 from trunnion.verification.comparison.comparer import Comparer
 from trunnion.verification.comparison.nominal_runs import missing_values, with_nominal_values
 from trunnion.verification.comparison.result import Alignment, Comparison
+
+#: How far tips, mm, and tool axes, degrees, may be apart where two programs are shown side by side.
+_TOLERANCE: Final = 0.001
 
 
 def compare(
@@ -47,9 +51,6 @@ def _elsewhere(one: Run, two: Run, compared: Callable[[Run, Run], Comparison]) -
     return found.with_words(f"; with {stated}, as nobody has stated them")
 
 
-def align(one: Run, two: Run, tolerance: float = 0.001) -> Alignment:
-    """Follow two runs together, and return which of their rows go to the same points, and where they differ.
-
-    tolerance  how far tips, mm, and tool axes, degrees, may be apart
-    """
-    return Comparer(one, two, tolerance, tolerance, False).follow()
+def align(one: Run, two: Run) -> Alignment:
+    """Follow two runs together, and return which of their rows go to the same points, and where they differ."""
+    return Comparer(one, two, _TOLERANCE, _TOLERANCE, False).follow()

@@ -8,6 +8,7 @@ known. Otherwise the same number means another place: what a run says of the sli
 proves no retract, and says of no motion that nothing moves.
 """
 
+from collections.abc import Iterator
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -60,16 +61,14 @@ class MachinePositions:
             found[:, column] = rows < ends[np.searchsorted(begins, rows, "right") - 1]
         return found
 
-    def left_at_machine(self, rows: Ints) -> Flags:
-        """Which axes stand after rows where a block in machine coordinates has put them, (k, 5) bool.
+    def left_at_machine(self) -> Iterator[tuple[int, int]]:
+        """Yield spans of rows, first and end, after which a slide stands where machine coordinates have put it.
 
-        None if their positions are those of the workpiece too.
+        There are none if these are those of the workpiece too.
         """
-        found = np.zeros((len(rows), self._width), np.bool_)
-        for column, (begins, ends) in self._spans.items():
-            last = np.searchsorted(begins, rows, "right") - 1
-            found[:, column] = (last > 0) & (rows < ends[last])
-        return found
+        for begins, ends in self._spans.values():
+            before_next = np.minimum(ends[1:], [*begins[2:], ends[-1]])  # spans do not overlap: there may be many
+            yield from zip(begins[1:].tolist(), before_next.tolist(), strict=True)
 
     def crossed(self, rows: Ints) -> Flags:
         """Which rows move a slide between the two kinds of coordinates: nobody knows how far, (k,) bool."""

@@ -23,6 +23,11 @@ ROTARY_WORDS = ProgrammedWord.FIRST | ProgrammedWord.SECOND
 _STRAIGHT = 1e-6
 _SAME_AXIS = 1e-9
 
+#: A linear axis has arrived within this, mm: positions in a plane are rounded. Another one is as near to home as
+#: this, mm, or on its way: the tool may be longer or shorter than the one that the program was posted for.
+_ARRIVED = 0.01
+_FROM_HOME = 200.0
+
 #: Rows that are searched at first.
 _FEW = 64
 
@@ -100,6 +105,9 @@ def comes_from_home(run: Run, row: int) -> bool:
 def approach_rows(run: Run) -> Ints:
     """Rows that are the first leg of an approach: X and Y at rapid, with Z alone in the next block, or down in a cycle.
 
+    Where a head tilts the tool in a plane, it is a leg of linear axes (``is_leg_of_axes``).
+
+
     The tool was retracted before, comes from a machine position, or is where the operator has left it: a program may
     begin so. How high it is then is not known where the machine's travel is not known.
     """
@@ -112,10 +120,29 @@ def approach_rows(run: Run) -> Ints:
         if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):
             continue
         across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[row : row + 2])
-        comes_down = along == int(ProgrammedWord.Z) or bool(names_no_axis(run.programmed[row + 1 : row + 2])[0])
-        if not across & ~int(ProgrammedWord.X | ProgrammedWord.Y) and comes_down:
+        by_cycle = bool(names_no_axis(run.programmed[row + 1 : row + 2])[0])
+        comes_down = along == int(ProgrammedWord.Z) or by_cycle
+        x_and_y = not across & ~int(ProgrammedWord.X | ProgrammedWord.Y)
+        if (x_and_y and comes_down) or is_leg_of_axes(run, row):
             found.append(row)
     return np.array(found, np.int64)
+
+
+def is_leg_of_axes(run: Run, row: int) -> bool:
+    """Whether a motion in a plane of a tilted head brings some linear axes to where the next one needs them.
+
+    The others stay near home, or go on to where the next one leads. That is known with zero and tool length.
+    """
+    machine, columns = run.machine, list(run.machine.linear)
+    if machine.workpiece_zero is None or machine.tool_length is None or run.state.plane[row] < 0:
+        return False
+    if not machine.has_rotary_head:
+        return False
+    joints = run.positions(np.array([row - 1, row, row + 1])).joints[:, columns]
+    begin, end, following = joints
+    way, rest = end - begin, following - end
+    arrives, stays = np.abs(rest) <= _ARRIVED, (np.abs(way) <= _FROM_HOME) | (way * rest >= 0.0)
+    return bool((arrives | stays).all() and arrives.any() and not arrives.all())
 
 
 def _rows_that_follow(run: Run, starts: Iterable[int]) -> Iterator[int]:

@@ -16,24 +16,32 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, names_no_axis
 
+#: Rows that are searched at first for the next Z; later ever more.
+_FEW = 64
+
 
 def cuts_from_unknown_places(run: Run) -> Ints:
     """Return the cuts whose start is not known, and which leave out the slide that is not."""
-    cuts = np.flatnonzero((run.kind != Kind.RAPID) & ((run.programmed & int(POSITION_WORDS)) != 0))
-    cuts = cuts[~run.state.machine_frame.at(cuts)] if len(cuts) else cuts
-    if not len(cuts):
-        return np.zeros(0, np.int64)
-    unknown = MachinePositions.of(run).left_at_machine(cuts).any(axis=1)
+    unknown = np.zeros(len(run), np.bool_)
+    for first, end in MachinePositions.of(run).left_at_machine():
+        unknown[first:end] = True
     for event in run.events:
         row = event.before_row
         if event.kind != "retract" or (row < len(run) and run.state.machine_frame[row]):
             continue  # a retract whose way is known is a motion in machine coordinates
-        unknown |= (cuts >= row) & (cuts < _next_with_z(run, row))
-    return np.asarray(cuts[unknown], np.int64)
+        unknown[row : _next_with_z(run, row)] = True
+    rows = np.flatnonzero(unknown)  # few of a million
+    cuts = rows[(run.kind[rows] != Kind.RAPID) & ((run.programmed[rows] & int(POSITION_WORDS)) != 0)]
+    return np.asarray(cuts[~run.state.machine_frame.at(cuts)] if len(cuts) else cuts, np.int64)
 
 
 def _next_with_z(run: Run, first: int) -> int:
     """Return the first row that says Z; n if there is none. In a plane and under TCP another word leaves it there."""
-    programmed = run.programmed[first:]
-    says = ((programmed & int(ProgrammedWord.Z)) != 0) | names_no_axis(programmed)
-    return first + int(np.argmax(says)) if says.any() else len(run)
+    size = _FEW
+    while first < len(run):
+        programmed = run.programmed[first : first + size]
+        says = ((programmed & int(ProgrammedWord.Z)) != 0) | names_no_axis(programmed)
+        if says.any():
+            return first + int(np.argmax(says))
+        first, size = first + size, 4 * size
+    return len(run)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
+import trunnion
 from tests.support.examples import examples
 from tests.support.fanuc import CONTROL, FANUC, MACHINES, SLOW, body, machine, posted, proven, read
 from tests.support.fidia import CYCLES, END, HEIGHTS, START, circles, holes_in
@@ -382,3 +383,15 @@ def test_block_numbers_begin_anew_and_nothing_else_has_any(folder: Path) -> None
     numbers = [int(line[1:].split(" ")[0]) for line in text.splitlines() if line.startswith("N")]
     assert (max(numbers), min(numbers)) == (99990, 10)
     assert numbers.count(10) == 2
+
+
+def test_a_program_number_has_four_digits_unless_a_definition_says_more(tmp_path: Path) -> None:
+    part, own = tmp_path / "part.cls", tmp_path / "own.toml"
+    part.write_text(HEAD + END, encoding="utf-8")
+    with pytest.raises(InputError, match="at most 9999"):
+        trunnion.post(part, machine="matsuura_mx330", settings={"program": "12345"})
+    rule = 'program = { kind = "whole", at_least = 1, at_most = 99999999 }'
+    own.write_text(f'schema = 1\nextends = "matsuura_mx330"\nname = "Own"\n[control.setting_rules]\n{rule}\n')
+    text = trunnion.post(part, machine=own, settings={"program": "12345"}).text
+    assert text is not None
+    assert "O12345" in text

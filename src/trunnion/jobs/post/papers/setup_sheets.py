@@ -272,7 +272,7 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     if machine.workpiece_zero is None:
         yield "Travel: nobody said where the workpiece zero is, so the proof only knows that the motion fits somewhere."
     else:
-        yield "The workpiece zero is where the sheet says: the limits of the slides were proven for it."
+        yield "The workpiece zero is where the sheet says: the limits of the linear axes were proven for it."
     if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions):
         yield "Without TCP the program holds for this zero and this tool length alone: measure both before each part."
     yield "Tools: the right one in each pocket, its length and radius measured and entered, its edge sharp, no run-out."

@@ -55,15 +55,15 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
 }
 SETTING_MEANINGS: Mapping[str, str] = {
     "plane": "The command for a tilted plane: PLANE SPATIAL, PLANE VECTOR, or cycle 19.",
-    "plane_move": "What the rotary axes do when a plane comes on: turn positions them, move does so while the slides "
-    "hold the tip, stay leaves them where they are.",
+    "plane_move": "What the rotary axes do when a plane comes on: turn positions them, move does so while the linear "
+    "axes hold the tip, stay leaves them where they are.",
     "plane_solution": "The word that selects one of a plane's two rotary positions: SEQ, or SYM on controls that have "
     "it (unconfirmed).",
     "tcpm": "The command for TCP: M128, or FUNCTION TCPM.",
     "rotary_feed": "What F counts without TCP while rotary axes turn: degrees as millimetres, or with M116 the path "
     "of the tip, which works for rotary tables only.",
-    "retract": "How the tool leaves the part after a tilted or simultaneous operation: home along the slide, or by "
-    "M140 along its own axis first.",
+    "retract": "How the tool leaves the part after a tilted or simultaneous operation: home along the linear axis, or "
+    "by M140 along its own axis first.",
     "orientation": "How the tool axis is programmed with TCP: angles writes rotary positions, vector writes LN blocks "
     "with TX TY TZ.",
     "normals": "With contact, LN blocks state the surface normal NX NY NZ, from the contact points of the CL file.",
