@@ -62,7 +62,9 @@ def test_a_change_reaches_the_tests_that_import_it_and_belong_to_a_package_that_
     assert reached(f"docs/{unnamed}.md") == set()
 
 
-def test_slow_tests_run_with_a_change_of_themselves_only() -> None:
+def test_slow_tests_run_with_a_change_of_themselves_or_their_namesake_only() -> None:
     slow, quick = "tests.matrix.test_matrix", "tests.cl.test_errors"
     assert set(files_of([slow, quick], [])) - set(files_of([], [])) == {"tests/cl/test_errors.py"}
     assert "tests/matrix/test_matrix.py" in files_of([slow], ["tests/matrix/test_matrix.py"])
+    assert "tests/cli/test_place.py" in files_of(["tests.cli.test_place"], ["src/trunnion/cli/place.py"])
+    assert "tests/cli/test_place.py" not in files_of(["tests.cli.test_place"], ["src/trunnion/cli/post.py"])

@@ -84,7 +84,7 @@ def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
     assert whole_files(tmp_path / "out") == tree(tmp_path / "loop")
 
 
-@pytest.mark.parametrize("place", ["folder", "file"])
+@pytest.mark.parametrize("place", [pytest.param("folder", marks=pytest.mark.nightly), "file"])
 def test_shares_are_neither_lost_nor_doubled_although_a_worker_and_the_scheduler_die(
     cluster: Cluster, tmp_path: Path, place: str
 ) -> None:

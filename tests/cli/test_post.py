@@ -219,7 +219,7 @@ def test_a_folder_must_be_there(tmp_path: Path, capfd: pytest.CaptureFixture[str
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has no signals that a process can handle")
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", ["SIGTERM", pytest.param("SIGHUP", marks=pytest.mark.nightly)])
 def test_a_command_that_is_ended_leaves_nothing_half_written(name: str, tmp_path: Path) -> None:
     """It is stopped where the hidden folder of its program is there: this one plans for ever."""
     arguments = ["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]

@@ -46,8 +46,10 @@ def test_a_motion_that_an_expression_chooses_is_reported(tmp_path: Path, capfd: 
     ("base", "text"),
     [
         ("yl569", "G0 Z300"), ("yl569", _IF.format(";G0 X100")), ("yl569", _IF.format("M8 S1000")),
-        ("yl569", _IF.format("MSG(\"GO\")")), ("yl569", "{% if operation.coolant == \"ON\" %}\n;\n{% endif %}\nG0 Z300"),
-        ("dmu65", _IF.format("* - X1")), ("matsuura_mx330", _IF.format("(G0 X1.)")), ("matsuura_mx330", _IF.format("M98 P100")),
+        ("yl569", _IF.format("MSG(\"GO\")")),
+        ("yl569", "{% if operation.coolant == \"ON\" %}\n;\n{% endif %}\nG0 Z300"),
+        ("dmu65", _IF.format("* - X1")), ("matsuura_mx330", _IF.format("(G0 X1.)")),
+        ("matsuura_mx330", _IF.format("M98 P100")),
     ],
 )  # fmt: skip
 def test_what_is_in_every_program_or_moves_nothing_is_none(

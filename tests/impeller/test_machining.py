@@ -92,6 +92,7 @@ def gaps(impeller: Impeller, points: Floats) -> Floats:
     return found
 
 
+@pytest.mark.nightly  # of posted programs, test_impeller_cutting says it in each run
 def test_no_pose_of_any_path_cuts_into_the_part(impeller: Impeller) -> None:
     made = list(step_paths(impeller, up_to_tilt))
     assert [one.step.kind for one in made] == [kind for kind, *_ in COARSE]

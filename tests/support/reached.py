@@ -98,10 +98,17 @@ def package_of(test: str, graph: grimp.ImportGraph) -> str | None:
 
 
 def files_of(modules: Iterable[str], changed: Collection[str]) -> list[str]:
-    """Their files but the slow ones that are as before; with tests of the whole, which cost little."""
+    """Their files but slow ones, unless they changed or are the namesake of what did; with tests of the whole."""
     whole = {path.relative_to(ROOT).as_posix() for path in TESTS.glob("test_*.py")}
     files = whole | {f"{module.replace('.', '/')}.py" for module in modules}
-    return sorted(file for file in files if file in changed or not is_slow(TESTS.parent / file))
+    kept = {*changed, *map(namesake, changed)}
+    return sorted(file for file in files if file in kept or not is_slow(ROOT / file))
+
+
+def namesake(file: str) -> str:
+    """The file of tests that a source has for itself alone, whether it is there or not."""
+    path = PurePosixPath(file)
+    return str(PurePosixPath("tests", *path.parts[2:-1], f"test_{path.name}"))
 
 
 def main() -> None:

@@ -3,8 +3,10 @@
 import asyncio
 import socket
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from typing import Any
 
+import pytest
 from asyncua import Node, ua
 
 from tests.support.twins import HUB_ROUGH
@@ -74,3 +76,24 @@ def test_all_that_types_ask_for_is_there_and_nothing_stands_for_others() -> None
     assert found == []
     assert programs == [HUB_ROUGH.name]
     assert sum(historized) == 3
+
+
+@pytest.mark.parametrize("begun", [b"", b"HELF\x40\x00\x00\x00half"])
+def test_a_message_that_stays_half_open_ends_its_connection(begun: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("trunnion.twin.opcua.transport._PATIENCE", 0.2)
+
+    async def asked() -> bytes:
+        with socket.create_server(("127.0.0.1", 0)) as listening:
+            server = TwinServer(twin_program(HUB_ROUGH, machine="yl569"), Nobody(), listening, "127.0.0.1", None)
+            await server.prepare(1.0)
+            await server.start()
+            reader, writer = await asyncio.open_connection(*listening.getsockname()[:2])
+            writer.write(begun)
+            with suppress(ConnectionResetError):
+                found = await asyncio.wait_for(reader.read(1), 120)
+                await server.stop()
+                return found
+            await server.stop()
+            return b""
+
+    assert asyncio.run(asked()) == b""

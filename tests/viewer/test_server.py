@@ -9,6 +9,7 @@ import urllib.request
 import zipfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -26,7 +27,7 @@ from trunnion.jobs.view.viewing import prepare_view
 from trunnion.simulation.replay import Replay
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.server import view_application
-from trunnion.viewer.serving import Access, listen
+from trunnion.viewer.serving import Access, impatient_protocol, listen
 
 PROGRAM = GOLDEN / "yl569" / "3_blade_finish.expected.mpf"
 
@@ -285,3 +286,25 @@ def test_a_port_that_is_taken_is_told(port: int) -> None:
         listen("127.0.0.1", port)
     with pytest.raises(InputError, match="choose a port from 1 to 65535"):
         listen("127.0.0.1", 70_000)
+
+
+@pytest.mark.parametrize("half", [b"", b"GET / HTTP/1.1\r\nHost: local"])
+def test_a_request_that_stays_half_open_is_ended(
+    half: bytes, content: ViewContent, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("trunnion.viewer.serving._PATIENCE", 0.2)
+    listening = listen("127.0.0.1", 0)
+    config = uvicorn.Config(view_application(content, Access(NAMES)), http=impatient_protocol(), log_level="critical")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
+    thread.start()
+    port = listening.getsockname()[1]
+    with socket.create_connection(("127.0.0.1", port), timeout=120) as connection:
+        connection.sendall(half)
+        with suppress(ConnectionResetError):
+            assert connection.recv(1) == b""
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/data/text/0", timeout=120) as answer:
+        assert answer.read() == PROGRAM.read_bytes()
+    server.should_exit = True
+    thread.join()
+    listening.close()

@@ -158,7 +158,7 @@ def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Ba
             raise InputError(argument_problem(next(iter(stated)), Wording("ARG130", "file_jobs_states", path=path)))
         return load_batch(path)
     if "action" not in stated:
-        raise InputError(argument_problem("action", Wording("ARG130", "missing_or_say")))
+        raise InputError(argument_problem("action", Wording("ARG130", "missing_action")))
     check_choice("action", stated["action"], tuple(Action))
     action, patterns = Action(stated.pop("action")), stated.pop("files", ())
     inside = results if results is not None and "://" not in str(results) else None
@@ -197,16 +197,16 @@ def _team(
         if workers is not None and not 1 <= workers <= _MOST_WORKERS:
             raise InputError(
                 argument_problem(
-                    "workers", Wording("ARG140", "is_or_give_number", workers=workers, most_workers=_MOST_WORKERS)
+                    "workers", Wording("ARG140", "no_number_of_workers", workers=workers, most_workers=_MOST_WORKERS)
                 )
             )
         if timeout is not None and not timeout > 0.0:
-            raise InputError(argument_problem("timeout", Wording("ARG140", "is_or_give_seconds", timeout=timeout)))
+            raise InputError(argument_problem("timeout", Wording("ARG140", "no_timeout", timeout=timeout)))
         return lambda _: local_workers(workers, timeout)
     for name, local in (("workers", workers), ("timeout", timeout)):
         if local is not None:
             raise InputError(argument_problem(name, Wording("ARG130", "processes_computer_workers")))
     if wait is not None and not wait > 0.0:
-        raise InputError(argument_problem("wait", Wording("ARG140", "is_or_give", wait=wait)))
+        raise InputError(argument_problem("wait", Wording("ARG140", "no_wait", wait=wait)))
     dask = Scheduler(scheduler, tls or Tls(), wait=wait)
     return lambda store: lambda _: DaskWorkers(dask, work, writing=store.worker_url, observer=observer)

@@ -209,10 +209,10 @@ def judged(
             machines[name] = _loaded(str(value), name)
             said[name] = _add_machine(str(value), machines[name], folder, shared)
     if action is not Action.CONVERT and "machine" not in machines:
-        raise InputError(argument_problem("machine", Wording("ARG130", "missing_or_name")))
+        raise InputError(argument_problem("machine", Wording("ARG130", "missing_machine_of_programs")))
     if action is Action.SIMULATE:
         if not said.get("stock"):
-            raise InputError(argument_problem("stock", Wording("ARG130", "missing_or_state")))
+            raise InputError(argument_problem("stock", Wording("ARG130", "missing_stock")))
         check_simulation(said)
     for name in (each.name for each in BODIES if isinstance(each.kind, FileIn)):
         if value := said.get(name):

@@ -279,7 +279,7 @@ def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> 
         table.add_problem("files", Wording("DEF330", "patterns", count=len(patterns), most_patterns=_MOST_PATTERNS))
         return []
     if table.to_dict().get("files") == []:
-        table.add_problem("files", Wording("DEF330", "is_or_write_cls"))
+        table.add_problem("files", Wording("DEF330", "no_patterns"))
     found = set[str]()
     for pattern in patterns:
         if fault := pattern_fault(pattern):
@@ -293,7 +293,7 @@ def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> 
             elif matches(path.name, pattern):
                 wording = Wording("BAT120", "matches_no_file", pattern=pattern[:100], path=path.name)
             else:
-                wording = Wording("BAT120", "matches_no_file_or_look", pattern=pattern[:100])
+                wording = Wording("BAT120", "matches_nothing", pattern=pattern[:100])
             table.add_problem("files", wording)
         found.update(matched)
     return sorted(found)

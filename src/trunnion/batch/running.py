@@ -265,7 +265,7 @@ def _read(folder: Path, name: str, file: str) -> bytes:
             Problem(
                 file,
                 0,
-                Wording("FIL120", "cannot_read_2", strerror=error.strerror or error)
+                Wording("FIL120", "archive_unreadable", strerror=error.strerror or error)
                 if name == file
                 else Wording("FIL120", "goes_cannot_read", name=name, strerror=error.strerror or error),
             )

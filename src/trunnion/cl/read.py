@@ -132,9 +132,7 @@ def read_source(
             file.read(survey.bom_bytes)
             scanner.read(file, chunk, survey.bom_bytes, progress)
     except OSError as error:
-        raise diagnostics.fatal(
-            0, Wording("FIL120", "cannot_read_or_give", strerror=error.strerror or error)
-        ) from error
+        raise diagnostics.fatal(0, Wording("FIL120", "file_unreadable", strerror=error.strerror or error)) from error
     interpreter.finish(scanner.rows, survey.complete, scanner.line - 1)
     unit = interpreter.unit(units)
     if unit != 1.0:

@@ -126,7 +126,7 @@ def cl_sources(file: Path | BinaryIO) -> list[ClSource]:
                 head, size = packed.read(1024), packed.seek(0, io.SEEK_END)
         except OSError as error:
             raise InputError(
-                Problem(name, 0, Wording("FIL120", "cannot_read_or_give", strerror=error.strerror or error))
+                Problem(name, 0, Wording("FIL120", "file_unreadable", strerror=error.strerror or error))
             ) from error
     else:
         name = "stdin"
@@ -187,7 +187,7 @@ def _refuse_archive(name: str, head: bytes, nested: str) -> None:
                     if head[_TAR] == b"ustar"
                     else Wording(
                         "FIL150",
-                        "not_read_or_unpack",
+                        "archive_of_other_kind",
                         others=next((kind for begin, kind in _OTHERS.items() if head.startswith(begin)), ""),
                     )
                 ),
@@ -310,7 +310,7 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
             spool.write(piece)
     except OSError as error:
         raise InputError(
-            Problem(name, 0, Wording("FIL120", "cannot_read_2", strerror=error.strerror or error))
+            Problem(name, 0, Wording("FIL120", "archive_unreadable", strerror=error.strerror or error))
         ) from error
     return spool
 

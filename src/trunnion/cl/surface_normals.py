@@ -52,7 +52,7 @@ def with_normals(toolpath: Toolpath) -> Toolpath:
             contact = contact_points(source, line) * toolpath.unit
     except OSError as error:
         raise InputError(
-            Problem(toolpath.file, 0, Wording("FIL120", "cannot_read_or_leave", strerror=error.strerror or error))
+            Problem(toolpath.file, 0, Wording("FIL120", "input_gone", strerror=error.strerror or error))
         ) from error
     operations, remarks = [], list(toolpath.remarks)
     begin = 0

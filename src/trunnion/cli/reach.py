@@ -90,7 +90,7 @@ def _ranges(tilts: list[float], step: float) -> str:
 
 
 def _not_judged(found: Reach) -> str:
-    """Return what is not known of slides, in words, with what to give; empty where all are judged."""
+    """Return what is not known of linear axes, in words, with what to give; empty where all are judged."""
     slides, machine = found.unjudged_axes, found.machine
     if not slides:
         return ""

@@ -44,7 +44,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
     for finding in found.findings:
         shown[finding.kind] = shown.get(finding.kind, 0) + 1
         if shown[finding.kind] <= _MOST:
-            yield _line(finding, f" to line {finding.last_line}" if finding.last_line != finding.line else "")
+            yield _line(finding)
     for kind, count in shown.items():
         if count > _MOST:
             yield f"and {count - _MOST} more: {kind}"
@@ -73,9 +73,10 @@ def _of_setup(name: str) -> str:
     return f"{name}: " if name else ""
 
 
-def _line(each: SimulationFinding | NearMiss, end: str = "") -> str:
+def _line(each: SimulationFinding | NearMiss) -> str:
     block = f" N{each.block}" if each.block >= 0 else ""
-    return f"{_of_setup(each.setup)}{each.file}:{each.line}:{block} {each}{end}"
+    said = ", ".join(filter(None, (str(each), each.stretch)))
+    return f"{_of_setup(each.setup)}{each.file}:{each.line}:{block} {said}"
 
 
 def _excess_line(what: str, excess: Excess) -> str:

@@ -180,7 +180,7 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
 def _read_extension(table: Table) -> str:
     extension = table.text("extension")
     if not re.fullmatch(r"\.[\w.+-]*\w", extension):
-        table.add_problem("extension", Wording("DEF330", "is_or_write_point", extension=repr(extension)))
+        table.add_problem("extension", Wording("DEF330", "no_extension", extension=repr(extension)))
     return extension
 
 

@@ -318,7 +318,7 @@ def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
                 0,
                 Wording("DEF140", "folder_not", with_article=_with_article(kind), kind=kind)
                 if has_shipped
-                else Wording("DEF140", "folder_not_or_give", with_article=_with_article(kind)),
+                else Wording("DEF140", "definition_is_folder", with_article=_with_article(kind)),
             )
         )
     if is_file:

@@ -85,10 +85,10 @@ def _finding(each: SimulationFinding | NearMiss) -> str:
         what, size = each.kind, each.depth
         cl = f"{Path(each.cl_file).name}:{each.cl_line}" if each.cl_file else ""
     number = f" N{each.block}" if each.block >= 0 else ""
-    last = f" to {each.last_line}" if each.last_line > each.line else ""
+    stretch = f"<br><small>{each.stretch}</small>" if each.stretch else ""
     return (
         f"<tr><td class=n>{size:.3f}</td><th scope=row>{escape(what)}</th><td>{_text(', '.join(each.between))}</td>"
-        f"<td>{_place(each)}{number}{last}</td><td>{_text(cl)}</td>"
+        f"<td>{_place(each)}{number}{stretch}</td><td>{_text(cl)}</td>"
         f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{position(each.place)}</td></tr>"
     )
 

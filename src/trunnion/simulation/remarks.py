@@ -13,13 +13,14 @@ from trunnion.machines.inverse import slide_positions
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.stated_tips import StatedTips
+from trunnion.model.tool_additions import SIZES
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.findings import file_of_row
 from trunnion.simulation.simulator import CuttingModel
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
-from trunnion.simulation.tool_deltas import SIZES, is_told_of_length
+from trunnion.simulation.tool_deltas import is_told_of_length
 from trunnion.simulation.tools.profile import ToolShape, cutting_width
 from trunnion.wording import position
 

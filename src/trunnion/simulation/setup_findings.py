@@ -33,7 +33,8 @@ class SimulationFinding:
     file      program
     line      of its worst block in it, from 1
     block     N number of that block, -1 where it has none
-    last_line, last_block  of the last block of the run of blocks that do it
+    first_line, first_block  of the first block of the run of blocks that do it: where the machine would stop
+    last_line, last_block  of the last one
     cl_line   line of the CL file that the block comes from; 0 where it is not known
     cl_file   that file
     seconds   when, from the beginning of the program
@@ -57,6 +58,13 @@ class SimulationFinding:
     cl_file: Annotated[str, Figure(none="", after="cl_line")] = ""
     setup: OptionalText = ""
     row: Annotated[int, NOT_DATA] = -1
+    first_line: Annotated[int, Figure(after="block")] = 0
+    first_block: Annotated[int, Figure(none=-1, after="first_line")] = -1
+
+    @property
+    def stretch(self) -> str:
+        """Which blocks do it besides the worst one; empty where there are none."""
+        return _stretch(self)
 
     def __str__(self) -> str:
         """Return what does what, how deep and where."""
@@ -78,6 +86,13 @@ class NearMiss:
     place: tuple[float, float, float]
     setup: OptionalText = ""
     row: Annotated[int, NOT_DATA] = -1
+    first_line: Annotated[int, Figure(after="block")] = 0
+    first_block: Annotated[int, Figure(none=-1, after="first_line")] = -1
+
+    @property
+    def stretch(self) -> str:
+        """Which blocks do it besides the nearest one; empty where there are none."""
+        return _stretch(self)
 
     def __str__(self) -> str:
         """Return what comes near what, how near and where."""
@@ -240,23 +255,31 @@ def _at_fraction(seconds: Floats, row: int, fraction: float) -> float:
 
 
 def _finding(verified: Verification, finding: Finding, seconds: float) -> SimulationFinding:
-    run, row, last = verified.run, finding.worst, finding.rows[1]
+    run, row, (first, last) = verified.run, finding.worst, finding.rows
     x, y, z = finding.place
     cl_line = int(verified.cl_line[row]) if len(verified.cl_line) else 0
     cl_file = next((each.cl_file for each in verified.operations if each.first <= row < each.end), "")
     return SimulationFinding(
         str(finding.what), finding.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]),
         int(run.line[last]), int(run.block_number[last]), cl_line, seconds, finding.depth, (x, y, z),
-        cl_file if cl_line else "", row=row,
+        cl_file if cl_line else "", row=row, first_line=int(run.line[first]), first_block=int(run.block_number[first]),
     )  # fmt: skip
 
 
 def _near(run: Run, each: Finding, seconds: float) -> NearMiss:
-    row, last = each.worst, each.rows[1]
+    row, (first, last) = each.worst, each.rows
     return NearMiss(
         each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
-        int(run.block_number[last]), seconds, each.depth, each.place, row=row,
+        int(run.block_number[last]), seconds, each.depth, each.place, row=row, first_line=int(run.line[first]),
+        first_block=int(run.block_number[first]),
     )  # fmt: skip
+
+
+def _stretch(each: SimulationFinding | NearMiss) -> str:
+    if each.first_line == each.line == each.last_line:
+        return ""
+    first = f"N{each.first_block} (line {each.first_line})" if each.first_block >= 0 else f"line {each.first_line}"
+    return f"from {first} to line {each.last_line}"
 
 
 def _air(run: Run, one: OperationCut, lengths: Any) -> Iterable[AirCut]:

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machines import Machine, forward
 from trunnion.model.run import Run
 from trunnion.timing.axis_pieces import MOST_PIECES, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
@@ -22,6 +23,10 @@ from trunnion.timing.planner import Phases, plan
 from trunnion.timing.row_feeds import FeedRow, RowFeeds
 from trunnion.timing.schedule import Schedule, TimedEvent
 from trunnion.timing.spindle import SpindleSpeeds
+
+#: What ``FeedRow.COUNTS`` says where F counts degrees, and the straight pieces that stand for the way of the tip then.
+_DEGREES: Final = 2.0
+_STEPS: Final = 64
 
 _ALL_LENGTHS: Final[Mapping[int, float]] = {}
 
@@ -36,7 +41,7 @@ class MachineState:
     joints    (k, 5)        axis values as displayed, with all turns; mm or deg, machine order
     velocity  (k, 5)        mm/s or deg/s
     row       (k,)  int64   row that is run, or was run last; -1 before the first
-    feed      (k,)          speed along the path as F counts it, mm/min; deg/min where F counts degrees
+    feed      (k,)          speed along the path as F counts it, mm/min; that of the tip where F counts degrees
     tip_feed  (k,)          speed of the tip at the workpiece, mm/min
     rpm       (k,)          speed of the spindle, rev/min; negative counter-clockwise (M4)
     told_rpm  (k,)          speed that the spindle has been told
@@ -81,6 +86,7 @@ class TimedRun:
     begins    (n,)    seconds at which each row begins to move
     ends      (n,)    seconds at which its target is reached; dwells after it come later
     rates     (n,)    speed along the path that the program asks for, mm/min or deg/min; infinite for rapids
+    in_mm     (n,)    mm that the tip goes for each degree where F counts degrees, else 1
     duration          seconds of the whole program, with dwells, tool changes and spindle ramps at its end
     waits     (w, 2)  seconds at which the axes begin and end to wait
     events            in order
@@ -90,6 +96,7 @@ class TimedRun:
     begins: Floats
     ends: Floats
     rates: Floats
+    in_mm: Floats
     duration: float
     waits: Floats
     events: tuple[TimedEvent, ...]
@@ -117,6 +124,7 @@ class TimedRun:
             if moves.any():
                 found = _moving(motion, phase[moves], times[moves])
                 joints[moves], velocity[moves], row[moves], feed[moves], tip_feed[moves] = found
+                feed[moves] *= self.in_mm[row[moves]]
         return MachineState(joints, velocity, row, feed, tip_feed, *self._spindle.at(times, after))
 
     def passed(self, since: Floats, until: Floats) -> tuple[Floats, Floats]:
@@ -165,10 +173,11 @@ def time_run(run: Run, lengths: Mapping[int, float] = _ALL_LENGTHS, *, limits: A
     dynamics = AxisDynamics.of(run.machine) if limits is None else limits
     n, schedule = len(run), Schedule(run, dynamics)
     builder, joints, piece_rows = PathBuilder(run, schedule.stops), [run.start[None]], [np.zeros(0, np.int64)]
-    tip_share, rates = [np.zeros(0)], [np.zeros(0)]
+    tip_share, rates, in_mm = [np.zeros(0)], [np.zeros(0)], [np.zeros(0)]
     feeds = RowFeeds(run)
     for part in axis_pieces(run, lengths, most=MOST_PIECES):
-        of_rows = feeds.part(part.first, part.end, run.chunk(part.first, part.end))
+        positions = run.chunk(part.first, part.end)
+        of_rows = feeds.part(part.first, part.end, positions)
         counts = np.bincount(part.row - part.first, minlength=part.end - part.first)
         builder.add(part.first, of_rows, np.diff(part.joints, axis=0), counts, part.done - part.begin)
         joints.append(part.joints[1:])
@@ -177,6 +186,7 @@ def time_run(run: Run, lengths: Mapping[int, float] = _ALL_LENGTHS, *, limits: A
             length = of_rows[FeedRow.LENGTH]
             rates.append(of_rows[FeedRow.RATE])
             tip_share.append(np.where(length > 0.0, of_rows[FeedRow.TRAVEL] / length, 0.0))
+        in_mm.append(_mm_of_degrees(run.machine, positions.joints, of_rows))
     path = builder.result()
     _, phases = plan(path, dynamics)
     row = np.concatenate(piece_rows)
@@ -203,9 +213,25 @@ def time_run(run: Run, lengths: Mapping[int, float] = _ALL_LENGTHS, *, limits: A
     stood = np.concatenate(([0.0], row_ends))
     waits = np.column_stack((stood, stood + scheduled.waits))[scheduled.waits > 0.0]
     return TimedRun(
-        run, row_begins, row_ends, np.concatenate(rates), scheduled.duration, waits, scheduled.events, motion,
-        motion.joints[whole], scheduled.spindle,
+        run, row_begins, row_ends, np.concatenate(rates), np.concatenate(in_mm), scheduled.duration, waits,
+        scheduled.events, motion, motion.joints[whole], scheduled.spindle,
     )  # fmt: skip
+
+
+def _mm_of_degrees(machine: Machine, joints: Floats, feeds: Floats) -> Floats:
+    """Return what the tip goes for each degree that F counts, mm, and 1 where it counts mm, (k,).
+
+    joints  (k + 1, 5) before the first row and after each
+    feeds   (4, k) of ``RowFeeds``
+    """
+    found = np.ones(feeds.shape[1])
+    rows = np.flatnonzero((feeds[FeedRow.COUNTS] == _DEGREES) & (feeds[FeedRow.LENGTH] > 0.0))
+    if len(rows):
+        share = np.linspace(0.0, 1.0, _STEPS + 1)[None, :, None]
+        within = joints[rows, None] + share * (joints[rows + 1] - joints[rows])[:, None]
+        tip = forward(machine, within.reshape(-1, within.shape[2]))[0].reshape(len(rows), _STEPS + 1, 3)
+        found[rows] = np.linalg.norm(np.diff(tip, axis=1), axis=2).sum(axis=1) / feeds[FeedRow.LENGTH, rows]
+    return found
 
 
 def _row_ends(n: int, row: Ints, moved: Floats) -> Floats:

@@ -44,7 +44,7 @@ class BlockState:
     number       N number, empty where the block has none
     g, m         numbers of the functions in force, as far as they have numbers
     tool         as the program calls it; empty before the first
-    feed         programmed speed along the path, mm/min (deg/min where F counts degrees); 0 before the first
+    feed         programmed speed along the path, mm/min (of the tip where F counts degrees); 0 before the first
     tcp          tool centre point control is on
     """
 
@@ -140,10 +140,13 @@ class Blocks:
         )
 
     def _feed(self, row: int) -> float:
-        """Return the programmed speed along the path; of a rapid, that of its F word, if this says one by itself."""
+        """Return the programmed speed along the path; of a rapid, that of its F word, if this says one by itself.
+
+        Clients are told mm a minute: where F counts degrees, it is what the tip goes then.
+        """
         rate, state = float(self._timed.rates[row]), self._run.state
         if math.isfinite(rate):
-            return rate
+            return rate * float(self._timed.in_mm[row])
         feed, mode = float(state.feed[row]), int(state.feed_mode[row])
         if math.isnan(feed) or mode == _INVERSE_TIME:
             return 0.0

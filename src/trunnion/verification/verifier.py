@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Lines
 from trunnion.model.recording import Recording
 from trunnion.model.run import Run
+from trunnion.model.tool_additions import with_added_lengths
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification.checks.table import Compared, Measured, all_checks
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
@@ -19,7 +20,7 @@ from trunnion.verification.deviations.point_deviations import PointDeviations
 from trunnion.verification.deviations.reached_rows import with_feeds_of_program, worthwhile_feeds
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import Tolerances
-from trunnion.verification.kinematics.axis_motion import AxisMotionAnalyzer
+from trunnion.verification.kinematics.axis_motion import AxisMotion, AxisMotionAnalyzer
 from trunnion.verification.kinematics.positioning_moves import oriented_by_vector
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
 from trunnion.verification.matching.hole_matching import match_holes
@@ -56,6 +57,7 @@ def verify(
         seen: Measured = _compare_all(_expected_path(run, toolpaths, tolerances, settings), run, settings, analyzer)
     else:
         seen = _measure_alone(run, settings, analyzer)
+    seen = replace(seen, motion=_with_added_lengths(run, seen.motion))
     context, motion = seen.context, seen.motion
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
@@ -115,6 +117,21 @@ def with_recording(verification: Verification, recording: Recording, tolerance: 
     compared = compare_recording(verification.run, recording, tolerance)
     check = check_recorded(Context(verification.run, ExpectedValues()), compared)
     return replace(verification, checks=(*verification.checks, check), recorded=compared)
+
+
+def _with_added_lengths(run: Run, motion: AxisMotion) -> AxisMotion:
+    """Return the motion with the extremes of the axes as the tool really goes, where the program makes it longer."""
+    longer = with_added_lengths(run)
+    if longer is run:
+        return motion
+    analyzer = AxisMotionAnalyzer(longer, 0, times=False)
+    for first, end, positions in longer.chunks():
+        analyzer.add(first, end, positions)
+    found = analyzer.result()
+    return replace(
+        motion, extremes=found.extremes, extreme_rows=found.extreme_rows, within_lines=found.within_lines,
+        unknown=found.unknown,
+    )  # fmt: skip
 
 
 def _measure_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> Measured:

@@ -30,6 +30,9 @@ _REASONS: Final = {
     errno.EADDRNOTAVAIL: "it is no address of this computer",
 }  # fmt: skip
 
+#: Seconds in which the head of a request is whole.
+_PATIENCE: Final = 10.0
+
 #: Headers of every answer.
 HEADERS: Final = {
     "X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store",
@@ -120,6 +123,47 @@ def listen(host: str, port: int) -> socket.socket:
     raise InputError(Problem("the page", 0, wording))
 
 
+def impatient_protocol() -> type:
+    """Return HTTP that ends a connection whose request is not whole in time: half-open ones stay for ever otherwise."""
+    h11 = import_extra("h11", "view")
+    base: Any = import_extra("uvicorn.protocols.http.h11_impl", "view").H11Protocol
+
+    class ImpatientProtocol(base):  # type: ignore[misc]
+        """Waits for the head of a request, but not longer than ``_PATIENCE``."""
+
+        _waiting: Any = None
+
+        def connection_made(self, transport: Any) -> None:
+            super().connection_made(transport)
+            self._wait()
+
+        def data_received(self, data: bytes) -> None:
+            super().data_received(data)
+            if self.conn.their_state is not h11.IDLE:
+                self._wait_no_more()
+            elif self._waiting is None:
+                self._wait()
+
+        def on_response_complete(self) -> None:
+            """Leave the next request to ``timeout_keep_alive``."""
+            super().on_response_complete()
+            self._wait_no_more()
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            self._wait_no_more()
+            super().connection_lost(exc)
+
+        def _wait(self) -> None:
+            self._waiting = self.loop.call_later(_PATIENCE, self.transport.abort)
+
+        def _wait_no_more(self) -> None:
+            if self._waiting is not None:
+                self._waiting.cancel()
+                self._waiting = None
+
+    return ImpatientProtocol
+
+
 def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callable[[str], None]) -> None:
     """Serve an application until the process is ended by Ctrl-C.
 
@@ -135,7 +179,9 @@ def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callab
     token = "" if address.is_loopback else secrets.token_urlsafe(16)
     own = f"[{host}]" if ":" in host else host
     application = make(Access((*_LOOPBACK_NAMES, own), token, port))
-    config = uvicorn.Config(application, log_level="warning", access_log=False, timeout_graceful_shutdown=1)
+    config = uvicorn.Config(
+        application, http=impatient_protocol(), log_level="warning", access_log=False, timeout_graceful_shutdown=1
+    )
     reached = socket.gethostname() if address.is_unspecified else own
     ready(f"http://{reached}:{port}/" + (f"?token={token}" if token else ""))
     try:

@@ -111,6 +111,7 @@ def test_in_a_wedge_axes_turn_where_they_must() -> None:
     assert found.turning < 1.5 * turned / 40.0
 
 
+@pytest.mark.nightly  # a tool too short for the published impeller is refused with the same words
 def test_a_holder_that_meets_the_plates_is_named() -> None:
     with pytest.raises(InputError, match=r"holder and plate \d do not clear each other at .* mm are missing") as caught:
         choose_axes(floor(1.0), necked(4.0, 25.0, 30.0), slot(6.0, 60.0), Wanted(tilt=60.0))
@@ -218,7 +219,7 @@ def room(impeller: Impeller, family: PassFamily, found: ToolAxes, tool: ToolShap
 
 @pytest.mark.parametrize(
     ("rows_of", "diameter", "most"),
-    [(beside_the_blade, 4.0, 1.5), (on_the_hub, 6.0, 0.5)],
+    [pytest.param(beside_the_blade, 4.0, 1.5, marks=pytest.mark.nightly), (on_the_hub, 6.0, 0.5)],
 )
 def test_fields_on_the_published_impeller_are_clear_and_smooth(
     published: tuple[Impeller, Obstacles], rows_of: object, diameter: float, most: float

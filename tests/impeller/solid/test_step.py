@@ -102,7 +102,7 @@ def test_the_published_impeller_is_one_solid_of_exact_surfaces(tmp_path: Path) -
 def test_the_same_order_gives_the_same_bytes(tmp_path: Path) -> None:
     changes = (("number = 6", "number = 2"), ("fillet_mm = 2.0", "fillet_mm = 1.0"))
     impeller = trunnion.load_impeller(changed(tmp_path, "impeller", *changes))
-    body, angles = impeller_body(impeller, Density(33, 5, 5, 4))
+    body, angles = impeller_body(impeller, FEW_POINTS)
     order = Order(body, impeller.definition.stock, making._free_angle(angles), "PART")
     one, other = making._asked(order), making._asked(order)
     assert isinstance(one, Made)
@@ -110,6 +110,34 @@ def test_the_same_order_gives_the_same_bytes(tmp_path: Path) -> None:
     assert one.step == other.step
 
 
+#: Points of patches, of which there are few.
+FEW_POINTS = Density(33, 5, 5, 4)
+
+
+@pytest.fixture(scope="module")
+def published() -> Impeller:
+    return trunnion.load_impeller(EXAMPLES / "impeller.toml")
+
+
+@pytest.fixture
+def with_few_points(monkeypatch: pytest.MonkeyPatch, kept: dict[str, Any]) -> None:
+    """The published impeller has one body of few points, and one mesh, which are made once."""
+
+    def once(name: str) -> None:
+        make = getattr(making, name)
+        monkeypatch.setattr(making, name, lambda *given: kept.get(name) or kept.setdefault(name, make(*given)))
+
+    monkeypatch.setattr(making, "_DENSITIES", (FEW_POINTS,))
+    once("impeller_body")
+    once("impeller_model")
+
+
+@pytest.fixture(scope="module")
+def kept() -> dict[str, Any]:
+    return {}
+
+
+@pytest.mark.usefixtures("with_few_points")
 @pytest.mark.parametrize(
     ("answer", "what"),
     [
@@ -122,7 +150,6 @@ def test_what_is_no_such_solid_leaves_no_file(
     answer: Made | Refusal, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(making, "_asked", lambda _order: answer)
-    monkeypatch.setattr(making, "_DENSITIES", (Density(33, 5, 5, 4),))
     file = tmp_path / "part.stp"
     file.write_text("older", "utf-8")
     with pytest.raises(trunnion.InputError, match=what):
@@ -130,6 +157,7 @@ def test_what_is_no_such_solid_leaves_no_file(
     assert file.read_text("utf-8") == "older"
 
 
+@pytest.mark.usefixtures("with_few_points")
 @pytest.mark.parametrize(
     ("child", "what"),
     [
@@ -138,12 +166,13 @@ def test_what_is_no_such_solid_leaves_no_file(
         ("import time\ntime.sleep(60)", "Open CASCADE makes no solid of IMPELLER within 0.5 s"),
     ],
 )  # fmt: skip
-def test_a_kernel_that_fails_is_told(child: str, what: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_kernel_that_fails_is_told(
+    child: str, what: str, published: Impeller, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(making, "_CHILD", child)
     monkeypatch.setattr(making, "_LONGEST", 0.5 if "sleep" in child else 60.0)
-    monkeypatch.setattr(making, "_DENSITIES", (Density(33, 5, 5, 4),))
     with pytest.raises(trunnion.InputError, match=re.escape(what)):
-        making._within(trunnion.load_impeller(EXAMPLES / "impeller.toml"), 0.005)
+        making._within(published, 0.005)
 
 
 def test_without_the_extra_its_installation_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

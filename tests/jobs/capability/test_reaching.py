@@ -161,7 +161,7 @@ def test_points_of_cl_files_are_judged_with_their_lines(tmp_path: Path, capfd: C
     assert "3 points, tilts from 0.00° to 95.00°" in out
     assert "the tool axis of 1 point cannot be had, first in line 7; 1 point beyond the travel, first in line 8" in out
     assert main(["reach", str(CORNER), "--machine", "dmu65", "--step", "45"]) == 0
-    told = "tilts from 54.74° to 54.74°: every tool axis can be had; but slides are not judged (give --zero)"
+    told = "tilts from 54.74° to 54.74°: every tool axis can be had; but linear axes are not judged (give --zero)"
     assert capfd.readouterr().out.splitlines()[0].endswith(told)
     assert main(["reach", str(CORNER), "--machine", "dmu65", "--step", "45", "--zero", "0,0,50"]) == 0
     told = ": all reached; but Z is not judged (give --tool-length)"
@@ -171,7 +171,7 @@ def test_points_of_cl_files_are_judged_with_their_lines(tmp_path: Path, capfd: C
     assert main(["reach", str(CORNER), "--machine", "ucp800", *setup, "--json", "-"]) == 0
     assert json.loads(capfd.readouterr().out)["slides_not_judged"] == ["X", "Y", "Z"]
     assert main(["reach", str(CORNER), "--machine", "ucp800", *setup]) == 0
-    told = "but slides are not judged (the machine states no limits)"
+    told = "but linear axes are not judged (the machine states no limits)"
     assert capfd.readouterr().out.splitlines()[0].endswith(told)
 
 

@@ -18,10 +18,13 @@ SLACK = 0.01 + 0.0015
 @pytest.mark.parametrize(
     ("name", "machine", "scallop", "round_part", "operation", "copies", "radius"),
     [
-        ("mixed_flow", "generic_head_head_ca", 0.3, "STOCK_ROUGHING", "ROOT_BLEND", 10, 2.5),
+        pytest.param(
+            "mixed_flow", "generic_head_head_ca", 0.3, "STOCK_ROUGHING", "ROOT_BLEND", 10, 2.5,
+            marks=pytest.mark.nightly,
+        ),
         ("turbo3d", "generic_nutated_b45_c", 0.15, "STOCK_FINISHING", "HUB_FINISH", 9, 1.0),
     ],
-)
+)  # fmt: skip
 def test_operations_are_proven_and_no_ball_is_in_a_blade_or_the_hub(
     name: str,
     machine: str,

@@ -55,6 +55,11 @@ def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
     (until,) = simulate(tmp_path, later.replace("N70 G0 X-20", "N70 Z-8"), fixtures=higher, until=70).findings
     assert (until.block, until.last_block) == (60, 60)  # what comes later is not simulated, however deep it goes
     assert finding.depth == pytest.approx(2.0, abs=0.1)
+    (deeper,) = simulate(tmp_path, later.replace("N70 G0 X-20", "N70 X60 Z-8"), fixtures=higher, until=80).findings
+    # The machine stops where they touch first, not where it would be deepest.
+    assert (deeper.first_block, deeper.block, deeper.last_block) == (60, 70, 70)
+    assert deeper.stretch == f"from N60 (line {deeper.first_line}) to line {deeper.last_line}"
+    assert deeper.first_line < deeper.line
     assert found.remarks[-1].what.startswith("the bodies of the machine are not checked")
 
 

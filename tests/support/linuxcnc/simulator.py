@@ -51,6 +51,7 @@ with open(os.environ["JUDGE_JOB"]) as file:
     job = json.load(file)
 command, status, channel = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 said = []
+PATIENCE = 120  # seconds, for what takes an instant where the computer is idle
 
 def until(holds, seconds, what):
     end = time.monotonic() + seconds
@@ -71,36 +72,36 @@ def idle():
 
 def mode(wanted):
     command.mode(wanted)
-    command.wait_complete(5)
+    command.wait_complete(PATIENCE)
 
 error = ""
 try:
-    until(lambda: status.task_state >= linuxcnc.STATE_ESTOP, 20, "the controller")
+    until(lambda: status.task_state >= linuxcnc.STATE_ESTOP, PATIENCE, "the controller")
     for state in (linuxcnc.STATE_ESTOP_RESET, linuxcnc.STATE_ON):
         command.state(state)
-        command.wait_complete(5)
-    until(lambda: status.task_state == linuxcnc.STATE_ON, 10, "power")
+        command.wait_complete(PATIENCE)
+    until(lambda: status.task_state == linuxcnc.STATE_ON, PATIENCE, "power")
     mode(linuxcnc.MODE_MANUAL)
     command.home(-1)
-    until(lambda: all(status.homed[: status.joints]), 20, "home")
+    until(lambda: all(status.homed[: status.joints]), PATIENCE, "home")
     for program in job["programs"]:
         mode(linuxcnc.MODE_MDI)
         for text in job["first"]:
             command.mdi(text)
-            command.wait_complete(20)
-            until(idle, 20, text)
+            command.wait_complete(PATIENCE)
+            until(idle, PATIENCE, text)
         with open(program["samples"], "w") as out:
             sampler = subprocess.Popen(["halsampler", "-t"], stdout=out)
             time.sleep(0.1)
             mode(linuxcnc.MODE_AUTO)
             command.program_open(program["file"])
-            command.wait_complete(10)
+            command.wait_complete(PATIENCE)
             command.auto(linuxcnc.AUTO_RUN, 0)
-            until(lambda: status.interp_state != linuxcnc.INTERP_IDLE, 10, "the program's start")
+            until(lambda: status.interp_state != linuxcnc.INTERP_IDLE, PATIENCE, "the program's start")
             until(idle, job["seconds"], "the program's end")
             time.sleep(0.1)
             sampler.send_signal(signal.SIGINT)
-            sampler.wait(10)
+            sampler.wait(PATIENCE)
 except Exception as problem:
     error = str(problem)
 with open(job["outcome"], "w") as file:
@@ -185,12 +186,15 @@ class SimulatorError(Exception):
 
 
 def with_rests(program: str) -> str:
-    """The program with a short dwell after each block that moves, so that the machine rests at every block's end."""
+    """The program with a short dwell after each block that moves, so that the machine rests at every block's end.
+
+    A dwell is measured by the clock, a rest in cycles of the servo thread, which are fewer where the computer is busy.
+    """
     lines = []
     for line in program.splitlines():
         lines.append(line)
         if re.match(r"(N\d+ )?(G[0-39]\S* )*[XYZABC]-?[.\d]", line) or "G53" in line:
-            lines.append("G4 P0.02")
+            lines.append("G4 P0.1")
     return "\n".join(lines) + "\n"
 
 

@@ -21,10 +21,14 @@ from trunnion.jobs.twin.serving import add_twin_user
 from trunnion.model.recording import Mark, Recording
 from trunnion.twin.recording.reading import read_recording
 
-pytestmark = pytest.mark.skipif(
-    (shutil.which("ip") is None or os.name == "nt" or os.geteuid() != 0) and not os.environ.get("CI"),
-    reason="a network namespace needs ip (Debian package iproute2) and root",
-)
+# Recordings that break off and go on have a shorter test: a relay in place of a cable (test_breaks).
+pytestmark = [
+    pytest.mark.nightly,
+    pytest.mark.skipif(
+        (shutil.which("ip") is None or os.name == "nt" or os.geteuid() != 0) and not os.environ.get("CI"),
+        reason="a network namespace needs ip (Debian package iproute2) and root",
+    ),
+]
 
 #: Seconds after which nothing more is waited for.
 PATIENCE = 300.0
@@ -156,7 +160,6 @@ def whole(recording: Recording) -> tuple[Ints, Floats]:
     return np.flatnonzero(np.isfinite(shown).all(axis=1)), shown
 
 
-@pytest.mark.nightly
 def test_nothing_is_lost_but_in_the_gap_that_is_marked(recordings: tuple[Recording, Recording]) -> None:
     beside, cut = recordings
     gaps = np.flatnonzero(cut.marked(Mark.GAP))

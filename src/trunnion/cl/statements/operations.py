@@ -88,9 +88,9 @@ def tldata(state: ReaderState, statement: Statement) -> None:
             )
             if words
             else (
-                Wording("CL770", "tldata_number_expected_or_write", count=len(given), others=tuple(others), last=last)
+                Wording("CL770", "tldata_of_other_length", count=len(given), others=tuple(others), last=last)
                 if others
-                else Wording("CL770", "tldata_number_expected_or_write_tldata", count=len(given), last=last)
+                else Wording("CL770", "tldata_of_one_length", count=len(given), last=last)
             )
         )
     sizes = zip(layouts.get(len(given), ()), given, strict=False)

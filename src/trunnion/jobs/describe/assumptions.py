@@ -99,8 +99,8 @@ def _left_open(machine: Machine) -> Iterator[str]:
     """Yield what the definition does not state, and what that means."""
     if machine.workpiece_zero is None:
         yield (
-            "Workpiece zero: not stated, and taken for the origin. Slides are checked for whether the program fits "
-            "their travel anywhere; programs without TCP want setting zero=X,Y,Z."
+            "Workpiece zero: not stated, and taken for the origin. Linear axes are checked for whether the program "
+            "fits their travel anywhere; programs without TCP want setting zero=X,Y,Z."
         )
     yield "Tool lengths: not known, for no definition has them. Programs without TCP want setting tool_length=MM."
     if not machine.spindle_point_is_stated:

@@ -121,8 +121,8 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         default="on where the control has TCP",
     ),
     "tool_length": RunSetting(
-        "Length from the spindle's gauge point to the tip. Slide limits are checked with it; without TCP it is "
-        "required on machines whose head turns the tool.",
+        "Length from the spindle's gauge point to the tip. Limits of linear axes are checked with it; without TCP it "
+        "is required on machines whose head turns the tool.",
         bounds=(0.0, 1e4),
         form="MM",
         example="120.5",

@@ -229,6 +229,8 @@ def _check(
     if findings:
         worst = max(findings, key=lambda each: each.depth)
         summary = f"{counted(len(findings), 'finding')}, the deepest {worst.depth:.3f} mm: {_words(worst)}"
+        first = min(findings, key=lambda each: each.seconds)
+        summary += f"; the first begins in line {first.first_line}"
     elif broken:
         summary = broken[0].what
     elif key == "removal":
@@ -258,6 +260,7 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
 def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
     for each in sorted(findings, key=lambda finding: -finding.depth)[:_MOST_PLACES]:
         text = f"{_words(each)}, {each.depth:.3f} mm deep at {position(each.place)}"
+        text = ", ".join(filter(None, (text, each.stretch)))
         yield Place(each.line, each.block, each.depth, text, each.cl_file, each.cl_line if each.cl_file else 0)
 
 

@@ -114,13 +114,13 @@ def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycl
     has_planes = MachiningMode.TILTED in program.control.modes(settings)
     turns = HOLES_SETTING in settings
     if not has_planes and turns and under_tcp:
-        wording = Wording("CTL370", "no_planes_or_turn", method=cycle.method, name=HOLES_SETTING)
+        wording = Wording("CTL370", "hole_without_tilted_plane", method=cycle.method, name=HOLES_SETTING)
     elif not has_planes:
         wording = Wording("CTL370", "no_planes", method=cycle.method)
     elif not under_tcp:
         wording = Wording("CTL370", "without_tcp", method=cycle.method)
     elif turns:
-        wording = Wording("CTL370", "with_tcp_or_turn", method=cycle.method, name=HOLES_SETTING)
+        wording = Wording("CTL370", "hole_with_tcp", method=cycle.method, name=HOLES_SETTING)
     else:
         wording = Wording("CTL370", "with_tcp", method=cycle.method)
     return HoleCycleError(wording)

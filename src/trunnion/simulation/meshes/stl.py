@@ -41,9 +41,7 @@ def read_stl(data: bytes, label: str, max_facets: int) -> Floats:
 
 def _check_count(count: int, label: str, max_facets: int) -> None:
     if count > max_facets:
-        raise InputError(
-            Problem(label, 0, Wording("SIM212", "facets_more_or_export", count=count, max_facets=max_facets))
-        )
+        raise InputError(Problem(label, 0, Wording("SIM212", "too_many_facets", count=count, max_facets=max_facets)))
 
 
 def _read_text(data: bytes, label: str, max_facets: int) -> Floats:

@@ -49,7 +49,7 @@ def read_three_mf(data: bytes, label: str, max_bytes: int, max_facets: int) -> t
     except (
         KeyError, ValueError, ET.ParseError, zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, OSError,
     ) as error:  # fmt: skip
-        raise InputError(Problem(label, 0, Wording("SIM210", "damaged_or_export", error=error))) from None
+        raise InputError(Problem(label, 0, Wording("SIM210", "damaged_file", error=error))) from None
     except RuntimeError as error:  # a packed file with a password
         raise InputError(Problem(label, 0, Wording("SIM210", "cannot_unpacked", error=error))) from None
     vertices = np.concatenate([np.zeros((0, 3)), *collected.vertices])

@@ -38,7 +38,7 @@ def read_by_trimesh(data: bytes, ending: str, label: str, extra: str = "simulate
         raise
     except Exception as error:  # whatever a parser raises for a damaged file
         reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
-        raise InputError(Problem(label, 0, Wording("SIM210", "damaged_or_export_again", reason=reason))) from None
+        raise InputError(Problem(label, 0, Wording("SIM210", "damaged_mesh", reason=reason))) from None
     if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
         raise InputError(Problem(label, 0, Wording("SIM210", "damaged_facet_names")))
     return vertices, faces

@@ -38,9 +38,9 @@ def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, diale
                 Wording("SIM154", "tool", number=number, unsettled=unsettled)
                 if number is not None
                 else (
-                    Wording("SIM154", "tool_or_state", tool=tool.name, unsettled=unsettled)
+                    Wording("SIM154", "unsettled_tool", tool=tool.name, unsettled=unsettled)
                     if tool.name
-                    else Wording("SIM154", "tool_or_state_tool", unsettled=unsettled)
+                    else Wording("SIM154", "unsettled_own_tool", unsettled=unsettled)
                 ),
             )
         )

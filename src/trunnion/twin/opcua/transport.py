@@ -22,6 +22,9 @@ _CHUNK: Final = 65_536
 _MESSAGE: Final = 4 * 1024 * 1024
 _UNREAD: Final = 32 * 1024 * 1024
 
+#: Seconds in which a client sends its first message, and the rest of one that it has begun.
+_PATIENCE: Final = 10.0
+
 LIMITS: Final = TransportLimits(
     max_recv_buffer=_CHUNK, max_send_buffer=_CHUNK, max_chunk_count=_UNREAD // _CHUNK, max_message_size=_MESSAGE
 )
@@ -87,6 +90,7 @@ class TwinProtocol(OPCUAProtocol):
         super().__init__(**named)
         self._secured_only = secured
         self._buffer: bytes = b""
+        self._waiting: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Take a client, if there is room."""
@@ -96,14 +100,36 @@ class TwinProtocol(OPCUAProtocol):
         self.transport.set_write_buffer_limits(high=_UNREAD)
         self.processor = TwinProcessor(self.iserver, self.transport, secured=self._secured_only)
         self.processor.set_policies(self.policies)
+        self._wait()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Leave a client that is gone."""
+        self._wait_no_more()
+        super().connection_lost(exc)
 
     def pause_writing(self) -> None:
         """End a connection whose client does not read."""
         self._end("it does not read what it asks for")
 
     def data_received(self, data: bytes) -> None:
-        """Take what a client sends, whole chunks of it."""
+        """Take what a client sends, whole chunks of it; the rest of one must come soon."""
         self._buffer += data
+        self._take_chunks()
+        if not self._buffer:
+            self._wait_no_more()
+        elif self._waiting is None:
+            self._wait()
+
+    def _wait(self) -> None:
+        """End the connection if nothing whole comes: half-open ones would take the room of others."""
+        self._waiting = asyncio.get_running_loop().call_later(_PATIENCE, self._end, "it sends no whole message")
+
+    def _wait_no_more(self) -> None:
+        if self._waiting is not None:
+            self._waiting.cancel()
+            self._waiting = None
+
+    def _take_chunks(self) -> None:
         while self._buffer:
             chunk = Buffer(self._buffer)
             try:
@@ -125,6 +151,7 @@ class TwinProtocol(OPCUAProtocol):
                 self._end("it sends faster than it is answered")
                 return
             self._buffer = self._buffer[size:]
+            self._wait_no_more()
 
     def _end(self, why: str) -> None:
         _log.info("connection of %s ended: %s", self.peer_name, why)

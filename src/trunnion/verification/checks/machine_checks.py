@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from trunnion.machines import Axis
 from trunnion.messages import Wording, phrase
+from trunnion.model.tool_additions import added_lengths
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -81,7 +82,7 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
     Slides that nobody knows the place of, as the workpiece zero or the tool length is missing, are compared with their
     whole travel; with a zero also with their limits for a tool without length, which they must not leave either.
     """
-    machine = context.run.machine
+    machine, added = context.run.machine, added_lengths(context.run)
     for k, axis in enumerate(machine.axes):
         low, high = motion.extremes[k].tolist()
         if low > high or not axis.has_limits:
@@ -98,6 +99,8 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
             continue
         value, limit, row = (low, axis.low, rows[0]) if below < above else (high, axis.high, rows[1])
         tool = "" if is_placed else " with a tool 0 mm long"
+        if machine.depends_on_length(k) and added[row]:
+            tool += f", {'' if is_placed else 'and '}the tool {added[row]:+g} mm by the program"
         unit, within = "deg" if axis.is_rotary else "mm", _within(context, motion, k, (0,) if below < above else (1,))
         text = f"{axis.name} goes to {value:.3f}{within}{tool}, its limit is {limit:g} {unit}"
         yield _Margin(axis, min(below, above), text, value, row, f" at {value:.3f}{tool}{within and ', on the way'}")

@@ -37,7 +37,7 @@ def parse_json(file: str, data: bytes) -> object:
     except json.JSONDecodeError as error:
         raise InputError(Problem(file, error.lineno, Wording("SIM170", "not_json", msg=error.msg))) from None
     except ValueError as error:  # also a number with thousands of digits
-        raise InputError(Problem(file, 0, Wording("SIM170", "not_json_or_export", error=error))) from None
+        raise InputError(Problem(file, 0, Wording("SIM170", "library_not_json", error=error))) from None
 
 
 def _refuse(word: str) -> NoReturn:
