@@ -206,6 +206,13 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     return readers.run_program(program, as_machine(machine), readers.RunOptions(subprograms=others))
 
 
+def run_without_blocks(nc: FilePath, machine: Machine, subprograms: Sequence[FilePath], levels: frozenset[int]) -> Run:
+    """Return the run of a program whose blocks of some levels of block skip are left out."""
+    others = check_paths("subprograms", subprograms)
+    options = readers.RunOptions(subprograms=others, skip=levels)
+    return readers.run_program(check_path("nc", nc), machine, options)
+
+
 def as_run(
     nc: FilePath | Run,
     machine: Machine,

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from trunnion import planning, readers
-from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
+from trunnion.controls.vocabulary import FORCED_NOTICE, INCH, MM
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated, warning
 from trunnion.files.places import file_identity, file_on_disk
 from trunnion.jobs.inputs.arguments import check_observer
@@ -27,6 +27,8 @@ from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
 from trunnion.planning.retracts.tool_retract import with_tool_retract
+
+_MM_PER_INCH: Final = 25.4
 
 #: Tilts that differ by less are one, degrees.
 _SAME_ANGLE: Final = 1e-6
@@ -106,6 +108,7 @@ def load_toolpaths(
     toolpaths = as_toolpaths(cl, observer, cl_reading(job.settings, strict))
     if job.control.units == INCH:
         _check_units_of(toolpaths)
+    toolpaths = [_with_remark_on_units(toolpath, job) for toolpath in toolpaths]
     if not toolpaths:
         raise InputError(argument_problem("cl", Wording("ARG130", "no_cl_file")))
     if job.has_normals:
@@ -134,6 +137,17 @@ def _with_repeated(toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
             known.add(same)
         found.append(toolpath)
     return found
+
+
+def _with_remark_on_units(toolpath: Toolpath, job: PostJob) -> Toolpath:
+    """Return a toolpath with a remark where its file counts otherwise than the program, and no setting says so."""
+    units = {MM: 1.0, INCH: _MM_PER_INCH}
+    if "units" in job.settings or not toolpath.states_unit or toolpath.unit == units[job.control.units]:
+        return toolpath
+    of_file = next((name for name, unit in units.items() if unit == toolpath.unit), f"{toolpath.unit:g} mm")
+    wording = Wording("CL415", "other_unit_than_program", units=of_file, program=job.control.units)
+    remark = warning(toolpath.file, 0, wording)
+    return replace(toolpath, remarks=(*toolpath.remarks, remark))
 
 
 def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:

@@ -5,7 +5,7 @@ Out:    ``PreparedSetup``: runs, bodies of tools, meshes.
 Units:  mm, degrees.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -60,6 +60,7 @@ def prepare_setup(
     runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
     _check_programs(runs, machine)
     remarks += _without_motion(runs)
+    remarks += _block_skips(runs)
     for program in programs:
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
@@ -118,6 +119,15 @@ def _without_motion(runs: Sequence[Run]) -> list[Problem]:
     return [
         Problem(run.files[0], 0, Wording("SIM148", "nothing_moves"), severity=severity) for run in runs if not len(run)
     ]
+
+
+def _block_skips(runs: Sequence[Run]) -> Iterator[Problem]:
+    """Yield a warning of each program with blocks that the operator may skip."""
+    for run in runs:
+        lines = [event.line for event in run.events if event.kind == "block_skip"]
+        if lines:
+            wording = Wording("SIM149", "blocks_may_be_skipped", count=len(lines))
+            yield Problem(run.files[0], lines[0], wording, severity=Severity.WARNING)
 
 
 def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[Problem]:

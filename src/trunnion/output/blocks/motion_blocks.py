@@ -90,7 +90,7 @@ class MotionBlockWriter:
         self.on_file_full: Callable[[], None] = lambda: None
         self._file = program.file
         self._tool = ""
-        self._length_register = 0
+        self._length_register = self._radius_offset = 0
         self._words_to_repeat: dict[str, int] = {}
         self._texts = LineTexts(program)
         self.legs = FirstLegs(ApproachLegs(program), self.writer)
@@ -120,6 +120,7 @@ class MotionBlockWriter:
         """
         self._file = self.program.file_of(motion.operation)
         self._tool = tool
+        self._radius_offset = int(self.program.effective_setting("radius_offset", motion.operation) or 0)
         loads = [event for event in motion.operation.events if isinstance(event, LoadTool)]
         if loads:  # a tool that the run's settings name has its own register
             self._length_register = 0 if self.program.effective_setting("tool", motion.operation) else loads[-1].adjust
@@ -210,7 +211,7 @@ class MotionBlockWriter:
             codes = set() if event.kind == "OFF" else {self.control.coolant[event.kind]}
             self.coolant_codes = codes and self.coolant_codes | codes
         elif isinstance(event, CutterComp) and event.side != "OFF" and not event.register and self._names_radius:
-            event = replace(event, register=int(self._tool))
+            event = replace(event, register=int(self._tool) + self._radius_offset)
         words = self.family.event_words(event, self.control.codes, self.control.coolant)
         return {word: self.writer.to_count(word, value) for word, value in words.items()}
 

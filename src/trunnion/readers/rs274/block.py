@@ -60,13 +60,13 @@ class Line:
     """A line without its comments and block number, in capitals and without blanks.
 
     number      N number, -1 for none
-    block_skip  the line begins with a slash
+    skip_level  the line begins with a slash, and the digit after it, or 1; -1: it does not
     comments    without their parentheses
     """
 
     text: str
     number: int = -1
-    block_skip: bool = False
+    skip_level: int = -1
     comments: tuple[str, ...] = ()
 
 
@@ -101,15 +101,17 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
         strange = next(character for character in outside if not character.isascii())
         raise BlockError(Wording("NC210", "not_ascii", found=repr(strange)))
     text = "".join(outside.split()).upper()
-    block_skip = text.startswith("/")
-    if block_skip:
-        text = text[2:] if text[1:2].isdigit() else text[1:]
+    skip_level = -1
+    if text.startswith("/"):
+        has_level = text[1:2].isdigit()
+        skip_level = int(text[1]) if has_level else 1
+        text = text[2:] if has_level else text[1:]
     number = -1
     match = _NUMBERED.match(text)
     if match is not None:
         number = int(match.group(1))
         text = text[match.end() :]
-    return Line(text, number, block_skip, tuple(comments))
+    return Line(text, number, skip_level, tuple(comments))
 
 
 def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]) -> Block:

@@ -82,9 +82,9 @@ class Rs274Interpreter(Interpreter[A]):
         try:
             if parts.text.startswith("%"):
                 self._percent(active)
-            elif parts.text and not (parts.block_skip and self._options.skip):
-                if parts.block_skip:
-                    self.control.add_event("block_skip")
+            elif parts.text and not (parts.skip_level >= 0 and self._options.skips(parts.skip_level)):
+                if parts.skip_level >= 0:
+                    self.control.add_event("block_skip", float(parts.skip_level))
                 self._execute_block(active, line, parts.text)
         except BlockError as error:
             self._report_block(error)

@@ -27,7 +27,10 @@ _TASKS: Final = {
 _SENSES: Final = {1: "turns clockwise", -1: "turns counter-clockwise", 0: "stands"}
 
 #: Words that mean the same on the same machine only: those of its builder, and what ends a program of its control.
-_OF_MACHINE: Final = {"m": "M", "h": "H", "known": "", "end": "end of the program"}
+_OF_MACHINE: Final = {"m": "M", "h": "H", "known": "", "end": "end of the program", "retract": "retract by"}
+
+#: Of diagnostics of what the next program begins with.
+_LEFT_ON: Final = "NC351"
 
 #: Dwells are the same within this, seconds or revolutions: programs print no more digits.
 _DIGITS: Final = 3
@@ -44,6 +47,7 @@ class PathEvents:
         names = {**_OF_ALL, **(_OF_MACHINE if same_machine else {})}
         found = [(event.before_row, text) for event, text in _texts(run, names)]
         found += [(hole.first, _spindle_words(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
+        found += [(len(run), f"left to the next program: {text}") for text in _left_on(run)] if same_machine else []
         at = np.searchsorted(rows, [row for row, _ in found])
         self._events: dict[int, list[str]] = {}
         for motion, (_, text) in zip(at.tolist(), found, strict=True):
@@ -73,6 +77,15 @@ def _texts(run: Run, names: Mapping[str, str]) -> Iterator[tuple[RunEvent, str]]
         elif event.kind in names:
             text = _words(names[event.kind], event)
             yield event, f"{text} while the spindle turns {turns}" if turns and event.kind == "stop" else text
+
+
+def _left_on(run: Run) -> list[str]:
+    """Return what the program leaves on at its end, or sets behind its last motion, each once."""
+    found = [each.wording.what for each in run.diagnostics if each.code == _LEFT_ON]
+    frames = [event.value for event in run.events if event.kind == "frame"]
+    found += [f"a frame, by {frames[-1]}"] if frames and frames[-1] else []
+    found += ["TCP on" for event in run.events if event.kind == "end" and event.tcp]
+    return list(dict.fromkeys(found))
 
 
 def _spindle_words(run: Run, hole: SpindleHole, *, chuck: bool) -> str:

@@ -1,10 +1,13 @@
 """The states of two programs that are compared besides their paths."""
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machines import forward
+from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.registers import compared_registers
@@ -14,10 +17,18 @@ from trunnion.verification.comparison.states import ComparedState
 _FEED: Final = 0.005
 _RPM: Final = 0.5
 
+#: Tool axes that are no farther apart, as the length of a vector, are the same: 0.001 degrees.
+_BENT: Final = 1.75e-5
+
+_WAYS: Final = {
+    int(Orientation.ANGLES): "rotary axes turn evenly between points",
+    int(Orientation.GREAT_CIRCLE): "the tool axis turns on a great circle between points",
+}
+
 
 def compared_states(one: MovingRows, two: MovingRows, *, path: bool) -> list[ComparedState]:
     """Return what is compared in the rows of two programs; ``path``: only what says where the tool is."""
-    states = [_frames(one, two), *compared_registers(one.run, two.run, path=path)]
+    states = [_frames(one, two), *_orientations(one.run, two.run), *compared_registers(one.run, two.run, path=path)]
     if path:
         return states
     tools = ComparedState(
@@ -47,6 +58,38 @@ def _frames(one: MovingRows, two: MovingRows) -> ComparedState:
         lambda a, b: (one.in_machine(a), two.in_machine(b)),
         lambda _a, _b: "machine coordinates against coordinates of the workpiece, whose zero is not known",
     )
+
+
+def _orientations(one: Run, two: Run) -> Iterator[ComparedState]:
+    """Yield how the tool axis moves between points under TCP: rotary axes evenly, or the axis on a great circle.
+
+    On two machines the ways differ anyhow, as their rotary axes do.
+    """
+    if one.machine.key != two.machine.key:
+        return
+
+    def counts(a: Ints, b: Ints) -> Flags:
+        found = np.asarray(one.orientation[a] != two.orientation[b])
+        at = np.flatnonzero(found)
+        found[at] = _bends(one, a[at]) & _bends(two, b[at])
+        return found
+
+    def words(a: int, b: int) -> str:
+        return f"{_WAYS[int(one.orientation[a])]} against {_WAYS[int(two.orientation[b])]}"
+
+    yield ComparedState(
+        counts, lambda a, _b: np.zeros(len(a), np.bool_), lambda a, b: (one.orientation[a], two.orientation[b]), words
+    )
+
+
+def _bends(run: Run, rows: Ints) -> Flags:
+    """In which rows the tool axis is elsewhere half-way where rotary axes move evenly under TCP, (k,) bool."""
+    before, after = run.positions(rows - 1), run.positions(rows)
+    by_angles = forward(run.machine, 0.5 * (before.joints + after.joints))[1]
+    on_circle = before.axis + after.axis
+    length = np.maximum(np.linalg.norm(on_circle, axis=1), 1e-9)
+    apart = np.linalg.norm(by_angles - on_circle / length[:, None], axis=1)
+    return np.asarray((apart > _BENT) & run.state.tcp.at(rows))
 
 
 def _feeds(one: MovingRows, two: MovingRows) -> ComparedState:

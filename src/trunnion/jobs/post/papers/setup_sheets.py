@@ -129,11 +129,19 @@ def _operations(
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),
             cuts=_with_asked_coolant(cut_ranges(verification.run, own), motions),
-            notes=tuple(dict.fromkeys(_notes(motions, names_radius=names_radius))),
+            notes=tuple(
+                dict.fromkeys(_notes(motions, _own_register(program, motions, call), names_radius=names_radius))
+            ),
         )
 
 
-def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
+def _own_register(program: Program, motions: Sequence[Motion], call: str) -> int:
+    """Return the register of the radius where CUTCOM names none, if it is not that of the tool's number; else 0."""
+    more = int(program.effective_setting("radius_offset", motions[0].operation) or 0)
+    return int(call) + more if more and call.isdigit() else 0
+
+
+def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) -> Iterator[str]:
     """Yield what a setter must know of an operation: compensation with its register, pitches, and where it stops."""
     rpm = 0.0
     for event in (event for motion in motions for event in motion.operation.events):
@@ -141,11 +149,12 @@ def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
             case SpindleOn():
                 rpm = event.rpm
             case CutterComp() if event.side != "OFF":
-                register = f"D{event.register}" if event.register and names_radius else "the radius of the tool"
+                number = (event.register or own_register) if names_radius else 0
                 # Points of a CL file are those of the tool's centre; contours are refused.
                 yield (
-                    f"radius compensation with {register}: the path is that of the tool's centre, so enter by how much"
-                    " the tool is larger than its size here (smaller: negative), and not its radius"
+                    f"radius compensation with {f'D{number}' if number else 'the radius of the tool'}: the path is that"
+                    " of the tool's centre, so enter by how much the tool is larger than its size here (smaller:"
+                    " negative), and not its radius"
                 )
             case Stop():
                 yield "optional stop (M1)" if event.optional else "stop (M0)"

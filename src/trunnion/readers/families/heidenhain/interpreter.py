@@ -120,9 +120,9 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._note(Wording("NC210", "block_before_goes_new_begins"), Severity.ERROR)
             self._finish_block(active)
             self.control.line = line
-        if parts.block_skip and not self._options.skip:
-            self.control.add_event("block_skip")
-        if parts.block_skip and self._options.skip:
+        if parts.block_skip and not self._options.skips(1):
+            self.control.add_event("block_skip", 1.0)
+        elif parts.block_skip:
             parts = Line(parts.number, True, "", parts.comment, False)
         if not self._block_parts:
             self._block_start, self._block_length = (line, parts.number), 0

@@ -98,7 +98,8 @@ class SinumerikInterpreter(WordInterpreter):
     def _execute_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         words, comment = split_comment(raw.rstrip("\r"))
         stripped = words.strip()
-        skipped = stripped.startswith("/") and self._options.skip
+        level = int(stripped[1]) if re.match(r"/\d(?!\d)", stripped) else 0
+        skipped = stripped.startswith("/") and self._options.skips(level)
         if not stripped or stripped.startswith("%") or (skipped and len(words) <= MAX_LENGTH):
             self._read_header(active, line, stripped)
             self._record_comment(line, comment)
@@ -107,7 +108,7 @@ class SinumerikInterpreter(WordInterpreter):
             self._note(Wording("NC214", "long_block_not_executed", most=MAX_LENGTH), Severity.ERROR)
             return
         if stripped.startswith("/"):
-            self.control.add_event("block_skip")
+            self.control.add_event("block_skip", float(level))
         tokens = tokenize(words)
         at = self._read_line_start(tokens)
         try:

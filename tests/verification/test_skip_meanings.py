@@ -1,0 +1,101 @@
+"""A program with blocks that may be skipped has two meanings, and passes only if both do."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.locations import TESTS
+from trunnion.errors import InputError
+
+CASES = TESTS / "data" / "cases"
+MACHINES = ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "xyzac_trt", "hs664rt"]
+
+
+def posted(machine: str, folder: Path) -> Path:
+    program = folder / "one.nc"
+    trunnion.post(CASES / "contour.cls", machine=machine, output=program)
+    return program
+
+
+def skipping(program: Path, word: str) -> Path:
+    """The program with the sign on every block that ends with a word, a pattern."""
+    lines = program.read_text(encoding="utf-8").splitlines()
+    assert any(re.search(f"{word}$", line) for line in lines)
+    other = program.with_name("other.nc")
+    text = "\n".join(f"/{line}" if re.search(f"{word}$", line) else line for line in lines)
+    other.write_text(text + "\n", encoding="utf-8")
+    return other
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("word", [" M9", r" Z\+?2\.?0*( R0)?( FMAX)?"])
+def test_a_program_whose_blocks_may_be_skipped_is_another_one(machine: str, word: str, tmp_path: Path) -> None:
+    program = posted(machine, tmp_path)
+    if (machine, word) == ("hs664rt", " M9"):
+        return  # nothing moves behind it
+    other = skipping(program, word)
+    assert not trunnion.diff(program, other, machine=machine).same
+    found = trunnion.diff(other, program, machine=machine)
+    assert "with blocks skipped (/, first in line" in str(found.first)
+    assert trunnion.diff(other, other, machine=machine).same
+
+
+def test_the_same_blocks_in_another_form_may_be_skipped(tmp_path: Path) -> None:
+    program = skipping(posted("yl569", tmp_path), " M9")
+    other = tmp_path / "third.nc"
+    text = program.read_text(encoding="utf-8")
+    other.write_text(text.replace("/N", "/0 N").replace(" M9", " M09\n/G90"), encoding="utf-8")
+    assert trunnion.diff(program, other, machine="yl569").same
+
+
+def test_what_has_been_read_needs_its_path(tmp_path: Path) -> None:
+    program = skipping(posted("yl569", tmp_path), " M9")
+    run = trunnion.read_program(program, machine="yl569")
+    with pytest.raises(InputError, match="give the path of the program"):
+        trunnion.diff(run, run, machine="yl569")
+
+
+HEAD = "%\nO0001\nG21 G17 G40 G80 G90 G94\nG49 G53 G0 Z0.\nT1 M6\nG54\nS1500 M3\n"
+CUTS = "G0 X0. Y0.\nG43 H1 Z50.\n{}G1 Z-1. F200.\nX50.\n{}G0 Z50.\n{}X0.\nM5\nG49 G53 G0 Z0.\nM30\n%\n"
+
+
+@pytest.mark.parametrize("skipped", [("", "", ""), ("/Z2.\n", "", ""), ("/M8\n", "/M9\n", "")])
+def test_a_sound_program_may_skip_blocks(skipped: tuple[str, str, str], tmp_path: Path) -> None:
+    program = tmp_path / "p.nc"
+    program.write_text(HEAD + CUTS.format(*skipped), encoding="utf-8")
+    assert trunnion.verify(program, machine="matsuura_mx330").passed
+
+
+def test_a_program_that_is_wrong_without_its_blocks_fails(tmp_path: Path) -> None:
+    program = tmp_path / "p.nc"
+    text = HEAD.replace("S1500 M3", "/S1500 M3") + CUTS.format("", "", "")
+    program.write_text(text, encoding="utf-8")
+    found = trunnion.verify(program, machine="matsuura_mx330")
+    modal = next(check for check in found.checks if check.key == "modal")
+    assert not found.passed
+    assert modal.summary.startswith("with blocks skipped (/, first in line 7): ")
+    assert "spindle off" in modal.summary
+    program.write_text(text.replace("/S", "S"), encoding="utf-8")
+    assert trunnion.verify(program, machine="matsuura_mx330").passed
+
+
+def test_each_level_is_a_meaning_of_its_own(tmp_path: Path) -> None:
+    program = tmp_path / "p.nc"
+    # Both together leave nothing that cuts; the first alone leaves a cut with the spindle off.
+    text = HEAD.replace("S1500 M3", "/2S1500 M3") + CUTS.format("", "", "").replace("G1 Z", "/3G1 Z").replace(
+        "X50.\n", "/3G1 X50. F200.\n"
+    )
+    program.write_text(text, encoding="utf-8")
+    found = trunnion.verify(program, machine="matsuura_mx330")
+    modal = next(check for check in found.checks if check.key == "modal")
+    assert modal.summary.startswith("with blocks of level 2 skipped (/, first in line 7): ")
+
+
+def test_a_simulation_says_that_it_skips_nothing(tmp_path: Path) -> None:
+    program = tmp_path / "p.nc"
+    program.write_text(HEAD + CUTS.format("/Z2.\n", "", ""), encoding="utf-8")
+    stock, tools = "box:80,20,10,-10,-10,-10", ["1=ball:10,length=60"]
+    found = trunnion.simulate(program, machine="matsuura_mx330", stock=stock, tools=tools)
+    assert [remark.code for remark in found.remarks if remark.code == "SIM149"] == ["SIM149"]

@@ -1,0 +1,70 @@
+"""``diff`` compares what programs leave on, the words that retract, and how the tool axis turns between points."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.locations import TESTS, YL569
+
+CASES = TESTS / "data" / "cases"
+
+#: Words before the end of a program that leave something on, by machine.
+LEFT = [
+    ("yl569", "TRANS X1"), ("yl569", "ROT Z5"), ("yl569", "TRAORI"), ("matsuura_mx330", "G92 X10."),
+    ("matsuura_mx330", "G55"), ("matsuura_mx330", "G91"), ("haas_umc750", "G55"), ("hs664rt", "G91"),
+    ("xyzac_trt", "G92 X10"), ("dmu65", "M136"),
+]  # fmt: skip
+
+
+def posted(machine: str, folder: Path) -> list[str]:
+    program = folder / "one.nc"
+    trunnion.post(CASES / "tilted_flood.cls", machine=machine, output=program)
+    return program.read_text(encoding="utf-8").splitlines()
+
+
+def another(folder: Path, lines: list[str]) -> Path:
+    file = folder / "other.nc"
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return file
+
+
+@pytest.mark.parametrize(("machine", "word"), LEFT)
+def test_what_a_program_leaves_on_is_a_difference(machine: str, word: str, tmp_path: Path) -> None:
+    lines = posted(machine, tmp_path)
+    end = next(k for k in range(len(lines) - 1, 0, -1) if lines[k].split()[-1] in ("M30", "M2", "M02"))
+    number = f"{lines[end].split()[0]} " if lines[end][0].isdigit() else ""
+    other = another(tmp_path, [*lines[:end], number + word, *lines[end:]])
+    assert not trunnion.diff(tmp_path / "one.nc", other, machine=machine).same
+    both = another(tmp_path, lines)
+    assert trunnion.diff(tmp_path / "one.nc", both, machine=machine).same
+
+
+def test_a_second_program_in_the_file_is_a_difference(tmp_path: Path) -> None:
+    lines = posted("matsuura_mx330", tmp_path)
+    other = another(tmp_path, [*lines[:-1], "O0002", "G0 X10.", "M30", "%"])
+    found = trunnion.diff(tmp_path / "one.nc", other, machine="matsuura_mx330")
+    assert not found.same
+    assert "stands behind the end of the program" in found.unknown_words[0]
+
+
+def test_a_retract_that_is_left_out_is_a_difference(tmp_path: Path) -> None:
+    lines = posted("hs664rt", tmp_path)
+    at = [k for k, line in enumerate(lines) if "M242" in line]
+    assert len(at) > 3
+    for k in at:
+        other = another(tmp_path, lines[:k] + lines[k + 1 :])
+        assert not trunnion.diff(tmp_path / "one.nc", other, machine="hs664rt").same
+
+
+def test_how_the_tool_axis_turns_between_points_is_a_difference(tmp_path: Path) -> None:
+    program = YL569 / "3_blade_finish.expected.mpf"
+    text = program.read_text(encoding="utf-8")
+    other = another(tmp_path, text.replace("ORIAXES", "ORIVECT").splitlines())
+    found = trunnion.diff(program, other, machine="yl569")
+    assert found.first is not None
+    assert found.first.text.startswith("rotary axes turn evenly between points against the tool axis turns on a great")
+    # Where the tool axis stays the word makes no difference.
+    plane = YL569 / "1_contour_rough.expected.mpf"
+    level = plane.read_text(encoding="utf-8").replace("G54", "ORIVECT\nG54", 1)
+    assert trunnion.diff(plane, another(tmp_path, level.splitlines()), machine="yl569").same
