@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from trunnion import planning, readers
-from trunnion.controls.vocabulary import FORCED_NOTICE, INCH, MM
+from trunnion.controls.vocabulary import INCH, MM
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated, warning
 from trunnion.files.places import file_identity, file_on_disk
 from trunnion.jobs.inputs.arguments import check_observer
@@ -16,6 +16,7 @@ from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.stages import PlannedProgram
@@ -213,7 +214,7 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
         refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
-    notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
+    notices = forced_notices(problem.what for problem in blocking)
     return PlannedProgram(replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found])
 
 
