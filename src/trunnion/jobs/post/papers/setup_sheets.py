@@ -43,8 +43,8 @@ from trunnion.wording import counted, one_line
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.simulate.result import SimulationResult
 
-#: Coolants whose M code readers do not know, in words.
-_UNREAD_COOLANTS: Final = {"THRU": "through the tool", "AIR": "air", "TAP": "for tapping"}
+#: Coolants whose words are of the builder of a machine, as people call them.
+_OTHER_COOLANTS: Final = {"THRU": "through the tool", "AIR": "air", "TAP": "for tapping"}
 
 #: Warnings of a post that a sheet repeats.
 _MOST_WARNINGS = 20
@@ -166,10 +166,10 @@ def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) 
 
 
 def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion]) -> CutRanges:
-    """Return ranges with the coolants that the CL file asks for by words that nobody reads back."""
+    """Return ranges with the coolants that the CL file asks for, and that have words of the builder of the machine."""
     asked = {event.kind for motion in motions for event in motion.operation.events if isinstance(event, Coolant)}
-    unread = [f"{said} ({word}, not read back)" for word, said in _UNREAD_COOLANTS.items() if word in asked]
-    return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *unread))))
+    others = [f"{said} ({word})" for word, said in _OTHER_COOLANTS.items() if word in asked]
+    return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *others))))
 
 
 def _with_bodies(tools: Iterable[SheetTool], simulation: "SimulationResult | None") -> Iterator[SheetTool]:
