@@ -381,3 +381,18 @@ def test_it_looks_like_the_picture_of_the_docs(page: Page, browser: Browser) -> 
     page.wait_for_timeout(300)
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     check_picture(browser, page.screenshot(), "builder.png")
+
+
+def test_each_field_says_axis_part_and_unit_to_a_screen_reader(page: Page) -> None:
+    begin(page, base="yl569")
+    page.locator("[data-page=travels]").click()
+    for name in ("X Travel lowest mm", "X Travel highest mm", "Y Travel lowest mm"):
+        assert page.get_by_label(name, exact=True).count() == 1, name
+    unnamed = "all => all.filter(each => !each.ariaLabel).map(each => each.id)"
+    for each in ("structure", "travels", "rotary", "spindle", "home", "control"):
+        page.locator(f"[data-page={each}]").click()
+        boxes = page.locator(".field .inputs > *")
+        assert boxes.count() > 0
+        assert boxes.evaluate_all(unnamed) == []
+        named = boxes.evaluate_all("all => all.map(each => each.ariaLabel)")
+        assert len(set(named)) == len(named), [name for name in named if named.count(name) > 1]

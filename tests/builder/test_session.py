@@ -136,7 +136,6 @@ def test_a_comment_of_the_users_own_is_no_mark(session: BuilderSession) -> None:
         (["axis", ["X"], "limits_mm"], [-20, 20], "X"),
         (["spindle", "max_rpm"], 5999, "6000"),
         (["control", "settings", "work_offset"], "2", "work_offset"),
-        (["control", "coolant", "ON"], 26, ""),
         (["control", "codes", "plane_xy"], 18, ""),
     ],
 )

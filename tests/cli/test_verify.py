@@ -327,7 +327,8 @@ def test_force_writes_it_and_its_head_names_the_checks(tmp_path: Path, capfd: py
     machine, target = machine_without_tcp(tmp_path), tmp_path / "p.mpf"
     assert main(["post", str(CL), "--machine", str(machine), "--output", str(target), "--force"]) == 1
     lines = target.read_text(encoding="utf-8").splitlines()
-    assert lines[0].startswith("N10 ;MUST NOT RUN AS IT IS, written by --force: tool tip against the CL points: ")
+    assert lines[0].startswith("N10 ;MUST NOT RUN AS IT IS, written by --force: 1. tool tip against the CL points: ")
+    assert sum("MUST NOT RUN" in line for line in lines) == 1
     assert sum(line.endswith(" M30") for line in lines) == 1
 
 

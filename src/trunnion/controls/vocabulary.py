@@ -54,6 +54,7 @@ PROGRAM_CHOICES: Final = {
     "preselect": ("off", "on"),
     "restart": ("off", "on"),
     "standing_spindle": ("refused", "allowed"),
+    "program_from": ("setting", "file"),
 }
 
 #: What each of them changes.
@@ -72,6 +73,8 @@ PROGRAM_MEANINGS: Final = {
     "restart": "With on, every operation calls its tool and its speed, so that the program can be entered there.",
     "standing_spindle": "With allowed, cuts before the first SPINDL of the CL files, or after SPINDL/OFF, are written, "
     "for tools that do not turn; they are refused otherwise.",
+    "program_from": "Where the number or name of the program comes from: the setting program, or the name of its "
+    "file, as 1234 of O1234.nc.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.

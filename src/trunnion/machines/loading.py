@@ -5,7 +5,7 @@ compares the two. Keys contain their unit, because that of ``rapid`` or ``limits
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePath
@@ -34,6 +34,9 @@ from trunnion.messages import Wording, phrase
 
 #: Version of the schema of machine definitions; a new one makes changes to old files necessary.
 SCHEMA: Final = 1
+
+#: Where axes must be at home, unless a definition names fewer.
+HOME_PLACES: Final = ("tool_change", "end")
 
 #: What a definition may demand that a proof stands on.
 DEMANDS: Final = ("zero", "tool_length", "dynamics", "measured")
@@ -120,7 +123,7 @@ def read_machine(table: Table, key: str) -> Machine:
     axes = tuple(_axis(entry) for entry in axis_tables)
     if "axis" in table and axis_tables:
         check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
-    demands = _demands(proof)
+    demands, home_at = _demands(proof), _home_at(proof, axes)
     bodies = read_bodies(table, [axis.name for axis in axes])
     cl_words = {word: words.text(word) for word in words.names()}
     report_duplicates(words, statement_form)
@@ -145,6 +148,7 @@ def read_machine(table: Table, key: str) -> Machine:
         unmeasured=tuple(marked_in(table.content, MARKS)),
         assumed=tuple(marked_in(table.content, ASSUMED)),
         demands=demands,
+        home_at=home_at,
     )
 
 
@@ -155,6 +159,22 @@ def _demands(proof: Table) -> tuple[str, ...]:
         if name not in DEMANDS:
             proof.add_problem("require", Wording("DEF330", "no_basis", name=name, known=DEMANDS))
     return tuple(name for name in DEMANDS if name in names)
+
+
+def _home_at(proof: Table, axes: Sequence[Axis]) -> dict[str, tuple[str, ...]]:
+    """Return which linear axes must be at home where; what the definition is silent about needs all of them."""
+    linear = tuple(axis.name for axis in axes if not axis.is_rotary)
+    found = {}
+    for place in HOME_PLACES:
+        key = f"home_at_{place}"
+        names = proof.texts(key, None)
+        if names is None:
+            continue
+        for name in names:
+            if name not in linear:
+                proof.add_problem(key, Wording("DEF330", "no_linear_axis", name=name, known=linear))
+        found[place] = tuple(name for name in linear if name in names)
+    return found
 
 
 def _axis(entry: Table) -> Axis:

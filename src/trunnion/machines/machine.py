@@ -191,6 +191,7 @@ class Machine:
     unmeasured          values that the definition marks as still to be measured or entered, with their places
     assumed             values that it marks as assumptions, with their places
     demands             what a proof must stand on: ``zero``, ``tool_length``, ``dynamics``, ``measured``
+    home_at             linear axes that must be at home before a ``tool_change`` and the ``end``; silent: all
     """
 
     key: str
@@ -211,6 +212,7 @@ class Machine:
     unmeasured: tuple[MarkedValue, ...] = ()
     assumed: tuple[MarkedValue, ...] = ()
     demands: tuple[str, ...] = ()
+    home_at: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def nobody_measured(self) -> tuple[MarkedValue, ...]:

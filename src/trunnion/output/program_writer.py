@@ -6,7 +6,7 @@ with its events, operation end. An operation with several tool axes is several m
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import BinaryIO, Final
+from typing import BinaryIO
 
 import numpy as np
 
@@ -30,9 +30,6 @@ from trunnion.output.template_printing import TemplatePrinting
 from trunnion.output.template_values import TemplateValues
 from trunnion.output.template_writer import TemplateWriter
 from trunnion.output.tool_calls import LoadedTool, tool_text
-
-#: M codes of coolant that belong to the control.
-_OWN_COOLANT: Final = frozenset({7, 8})
 
 
 def write_program(
@@ -272,11 +269,7 @@ class _ProgramWriter:
         self._blocks.assume_rotary_position(motion)
 
     def _switch_coolant_off(self, motion: Motion, number: int, ends_program: bool) -> None:
-        """Switch the coolant off after an operation, unless the end of the operation or of the program does it.
-
-        The end of a program switches off what the control's own words have switched on; that it does so with a word of
-        the machine builder is not known.
-        """
+        """Switch the coolant off after an operation, unless the end of the operation or of the program says so."""
         if self._blocks.coolant == "OFF":
             return
         ends_program = ends_program and self._files is None
@@ -285,9 +278,9 @@ class _ProgramWriter:
         depends = any(self._control.templates[end].is_text for end in ends)
         values = self._values(motion, number) if depends else {}
         said = any(off in self._templates.switching_lines(end, values, motion) for end in ends)
-        if not said and not (ends_program and self._blocks.coolant_codes <= _OWN_COOLANT):
+        if not said:
             self._blocks.writer.write_lines([off])
-        self._blocks.coolant, self._blocks.coolant_codes = "OFF", set()
+        self._blocks.coolant = "OFF"
 
     # From plane to plane
 

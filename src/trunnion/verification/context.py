@@ -26,6 +26,7 @@ class ExpectedValues:
     tool                   tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
     work_offset            as in ``Run.work_offset``; None: any, but the same throughout
     edge                   number of the cutting edge (D); None: any
+    radius_offset          what is added to the tool's number for the register of the radius
     span                   how far the tool axis may be off between points, degrees; None: ``axis_tolerance``
     span_tip               how far the tip may be off its line between points without TCP, mm; None: reported, not
                            checked
@@ -52,6 +53,7 @@ class ExpectedValues:
     tool: str = ""
     work_offset: int | None = None
     edge: int | None = None
+    radius_offset: int = 0
     span: float | None = None
     span_tip: float | None = None
     absolute: bool = False
@@ -74,7 +76,7 @@ class ExpectedValues:
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""
-        every = OperationSettings(self.tool, self.work_offset, self.edge)
+        every = OperationSettings(self.tool, self.work_offset, self.edge, self.radius_offset)
         return self.by_operation.get(name, every)
 
 

@@ -138,8 +138,18 @@ def test_examples_come_after_the_machines_of_builders_and_are_marked(tmp_path: P
     assert main(["fit", blade, "--machines", asked, "--turns", "360", "--tool-length", "100"]) == 0
     head, *lines = capfd.readouterr().out.splitlines()
     assert head.startswith("zero: of the workpiece in the machine frame, X,Y,Z in mm with all axes at zero")
-    assert [line.split()[0] for line in lines if line[0] != " "] == ["own", "yl569", "generic_head_table_bc", "xyzac_trt"]
-    assert [line.endswith("; an example, no builder's machine") for line in lines if line[0] != " "] == [False, False, True, True]
+    assert [line.split()[0] for line in lines if line[0] != " "] == [
+        "own",
+        "yl569",
+        "generic_head_table_bc",
+        "xyzac_trt",
+    ]
+    assert [line.endswith("; an example, no builder's machine") for line in lines if line[0] != " "] == [
+        False,
+        False,
+        True,
+        True,
+    ]
 
 
 def test_examples_are_shipped_and_named_as_what_they_are() -> None:

@@ -186,12 +186,15 @@ class SimulatorError(Exception):
 
 
 def with_rests(program: str) -> str:
-    """The program with a short dwell after each block that moves, so that the machine rests at every block's end."""
+    """The program with a short dwell after each block that moves, so that the machine rests at every block's end.
+
+    A dwell is measured by the clock, a rest in cycles of the servo thread, which are fewer where the computer is busy.
+    """
     lines = []
     for line in program.splitlines():
         lines.append(line)
         if re.match(r"(N\d+ )?(G[0-39]\S* )*[XYZABC]-?[.\d]", line) or "G53" in line:
-            lines.append("G4 P0.02")
+            lines.append("G4 P0.1")
     return "\n".join(lines) + "\n"
 
 

@@ -97,7 +97,7 @@ export class Form {
       const head = field.path[0] === "axis" ? name : name && `${field.path.at(-3)} ${name}`;
       if (head !== group && head) this.list.append(Object.assign(document.createElement("h3"), { textContent: String(head) }));
       group = String(head);
-      const row = this.#row(field);
+      const row = this.#row(field, String(head));
       this.rows.set(idOf(field.path), row);
       this.list.append(row);
       this.#write(field, row);
@@ -108,8 +108,11 @@ export class Form {
     if (again && typeof selectionStart === "number") again.setSelectionRange(selectionStart, selectionEnd);
   }
 
-  /** @param {FieldData} field */
-  #row(field) {
+  /**
+   * @param {FieldData} field
+   * @param {string} head of the group: the letter of an axis
+   */
+  #row(field, head) {
     const row = document.createElement("div");
     row.className = "field";
     row.dataset.path = idOf(field.path);
@@ -121,7 +124,8 @@ export class Form {
     for (const input of inputsOf(field)) {
       input.id = inputs.childElementCount ? `${id}-${inputs.childElementCount}` : id;
       input.setAttribute("aria-describedby", `${id}-help`);
-      if (inputs.childElementCount || field.size) input.setAttribute("aria-label", `${name} ${["X", "Y", "Z"][inputs.childElementCount] ?? ""}`);
+      // Travel of which axis, and in what: the headline and the unit are not part of the label that is seen.
+      input.setAttribute("aria-label", [head, name, partOf(field, inputs.childElementCount), field.unit].filter(Boolean).join(" "));
       input.addEventListener("input", () => this.held.set(idOf(field.path), texts(row)));
       input.addEventListener("change", () => {
         const filled = texts(row).filter((text) => text.trim()).length;
@@ -246,6 +250,16 @@ function inputsOf(field) {
     if (field.kind !== "text") input.inputMode = "decimal";
     return input;
   });
+}
+
+/**
+ * Which of several inputs one is.
+ * @param {FieldData} field
+ * @param {number} number
+ */
+function partOf(field, number) {
+  if (field.kind === "interval") return say(number ? "highest" : "lowest");
+  return field.size ? ["X", "Y", "Z"][number] ?? "" : "";
 }
 
 /** @param {FieldData} field */

@@ -7,7 +7,7 @@ from typing import Final
 from trunnion.controls import Control
 from trunnion.controls.inches import without_comments
 from trunnion.controls.template import Template
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 
 #: What changes whether a line is one of the program: statements of the template language.
@@ -32,9 +32,7 @@ _MOTION: Final = re.compile(
 def motions_in_branches(control: Control) -> list[Problem]:
     """Return a warning for each line of a shop's template that moves an axis, and is not in every program."""
     return [
-        Problem(
-            *template.place_of(line), Wording("DEF595", "motion_in_branch", template=name), severity=Severity.WARNING
-        )
+        warning(*template.place_of(line), Wording("DEF595", "motion_in_branch", template=name))
         for name, template in control.templates.items()
         if template.is_text
         for line, text in _branches(template)

@@ -4,7 +4,7 @@ In:     a program, its proof, and what proves it again.
 Out:    the program with notices in its head, and the proof of it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from typing import Final
@@ -39,7 +39,7 @@ def write_forced(
     proof: Proof,
     prove: Callable[[Run | None, Sequence[OperationStart]], Proof],
 ) -> Proof:
-    """Write a program with a notice for each check that failed, and return the proof of what is written.
+    """Write a program with a notice of the checks that failed, and return the proof of what is written.
 
     Notices move lines and numbers of blocks, which they quote themselves: the program is read back and proven again
     with them, and what the second proof says of it stands in the notices that stay.
@@ -61,8 +61,15 @@ def write_forced(
     return proof
 
 
+def forced_notices(faults: Iterable[str]) -> list[str]:
+    """Return the notice of what was overruled: one for all faults, each said once; none if there are none."""
+    each = list(dict.fromkeys(faults))
+    listed = each if len(each) < 2 else [f"{number}. {fault}" for number, fault in enumerate(each, 1)]
+    return [f"{FORCED_NOTICE}, written by --force: {'; '.join(listed)}"] if each else []
+
+
 def _notices(proof: Proof) -> list[str]:
-    return [f"{FORCED_NOTICE}, written by --force: {check.title}: {check.summary}" for check in proof.failed]
+    return forced_notices(f"{check.title}: {check.summary}" for check in proof.failed)
 
 
 def _write(posting: Posting, program: Program, notices: Sequence[str]) -> tuple[OperationStart, ...]:

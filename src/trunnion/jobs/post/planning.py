@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from trunnion import planning, readers
-from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
+from trunnion.controls.vocabulary import INCH, MM
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated, warning
 from trunnion.files.places import file_identity, file_on_disk
 from trunnion.jobs.inputs.arguments import check_observer
@@ -16,6 +16,7 @@ from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.stages import PlannedProgram
@@ -27,6 +28,8 @@ from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
 from trunnion.planning.retracts.tool_retract import with_tool_retract
+
+_MM_PER_INCH: Final = 25.4
 
 #: Tilts that differ by less are one, degrees.
 _SAME_ANGLE: Final = 1e-6
@@ -106,6 +109,7 @@ def load_toolpaths(
     toolpaths = as_toolpaths(cl, observer, cl_reading(job.settings, strict))
     if job.control.units == INCH:
         _check_units_of(toolpaths)
+    toolpaths = [_with_remark_on_units(toolpath, job) for toolpath in toolpaths]
     if not toolpaths:
         raise InputError(argument_problem("cl", Wording("ARG130", "no_cl_file")))
     if job.has_normals:
@@ -134,6 +138,17 @@ def _with_repeated(toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
             known.add(same)
         found.append(toolpath)
     return found
+
+
+def _with_remark_on_units(toolpath: Toolpath, job: PostJob) -> Toolpath:
+    """Return a toolpath with a remark where its file counts otherwise than the program, and no setting says so."""
+    units = {MM: 1.0, INCH: _MM_PER_INCH}
+    if "units" in job.settings or not toolpath.states_unit or toolpath.unit == units[job.control.units]:
+        return toolpath
+    of_file = next((name for name, unit in units.items() if unit == toolpath.unit), f"{toolpath.unit:g} mm")
+    wording = Wording("CL415", "other_unit_than_program", units=of_file, program=job.control.units)
+    remark = warning(toolpath.file, 0, wording)
+    return replace(toolpath, remarks=(*toolpath.remarks, remark))
 
 
 def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
@@ -199,7 +214,7 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
         refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
-    notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
+    notices = forced_notices(problem.what for problem in blocking)
     return PlannedProgram(replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found])
 
 

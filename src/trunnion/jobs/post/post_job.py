@@ -2,14 +2,16 @@
 
 import math
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from trunnion.controls import Control, load_control
 from trunnion.controls.inches import in_units
+from trunnion.controls.setting_rules import SettingRule
 from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
 from trunnion.errors import InputError, argument_problem, setting_problem
 from trunnion.files import OutputFiles
@@ -108,6 +110,22 @@ class PostJob:
     def has_normals(self) -> bool:
         """Whether the program states surface normals."""
         return {**self.control.settings, **self.settings}.get("normals") == "contact"
+
+    def named_after(self, path: Path | None) -> Self:
+        """Return the job of a program that has the number or name of its file, where the settings say so.
+
+        Raises ``InputError`` if there is no file, or its name has no such number.
+        """
+        if {**self.control.settings, **self.settings}.get("program_from") != "file":
+            return self
+        if path is None:
+            raise InputError(setting_problem("program_from", Wording("ARG250", "no_file_to_name")))
+        rule = self.control.setting_rules.get("program", SettingRule())
+        numbers = re.findall("[0-9]+", path.stem) if rule.is_number else [path.stem]
+        if len(numbers) != 1 or not rule.allows(numbers[0]):
+            wording = Wording("ARG250", "file_without_number", file=path.name, allowed=rule.allowed())
+            raise InputError(setting_problem("program_from", wording))
+        return replace(self, settings={**self.settings, "program": numbers[0]})
 
     def subprograms(self, files: OutputFiles, path: Path | None) -> SubprogramOutput | None:
         """How the program is divided into files; None: it is a single file.

@@ -200,6 +200,7 @@ def post_toolpaths(
     later: list[PostPapers] | None = None,
 ) -> PostResult:
     """Plan, write and prove a program; errors as ``post`` raises them, ``later`` as ``Work`` has it."""
+    job = job.named_after(target.path)
     subprograms = job.subprograms(target.files, target.path)
     posting = Posting(toolpaths, job, target, observer, subprograms, ProgramPlaces(target))
     with reported_refusals(posting):

@@ -34,6 +34,7 @@ def expected_values(
         tool=every.tool,
         work_offset=every.work_offset,
         edge=every.edge,
+        radius_offset=every.radius_offset,
         by_operation={name: _operation_settings(own, machine) for name, own in own_settings.items()},
         rapid_feed=rapid_feed,
         below_rapid_feed=slower,
@@ -46,7 +47,8 @@ def expected_values(
 
 
 def _operation_settings(settings: Mapping[str, str], machine: Machine) -> OperationSettings:
-    """Tool, work offset and edge as settings give them."""
+    """Tool, work offset, edge and register of the radius as settings give them."""
     offset = work_offset_setting(settings["work_offset"], machine) if "work_offset" in settings else None
     edge = int(settings["edge"]) if "edge" in settings else None
-    return OperationSettings(settings.get("tool", "").strip('"'), offset, edge)
+    radius_offset = int(settings.get("radius_offset") or 0)
+    return OperationSettings(settings.get("tool", "").strip('"'), offset, edge, radius_offset)

@@ -58,7 +58,6 @@ class MotionBlockWriter:
     writer          the block writer
     spindle         the last spindle start, also after the spindle has stopped; None before the first
     coolant         the kind of the last coolant command
-    coolant_codes   M codes of coolant since it was switched off last
     feeds           F and the active feed mode
     tool_height     Z of the tool after the last row, mm
     height_bound    after blocks that may be skipped: the tool may be lower than ``tool_height``, but not higher than
@@ -82,7 +81,6 @@ class MotionBlockWriter:
         self._axis_coordinates: AxisCoordinates | None = None
         self.spindle: SpindleOn | None = None
         self.coolant = "OFF"
-        self.coolant_codes: set[int] = set()
         self.tool_height = 0.0
         self.height_bound: float | None = None
         self.xy_before_z = False
@@ -90,7 +88,7 @@ class MotionBlockWriter:
         self.on_file_full: Callable[[], None] = lambda: None
         self._file = program.file
         self._tool = ""
-        self._length_register = 0
+        self._length_register = self._radius_offset = 0
         self._words_to_repeat: dict[str, int] = {}
         self._texts = LineTexts(program)
         self.legs = FirstLegs(ApproachLegs(program), self.writer)
@@ -120,6 +118,7 @@ class MotionBlockWriter:
         """
         self._file = self.program.file_of(motion.operation)
         self._tool = tool
+        self._radius_offset = int(self.program.effective_setting("radius_offset", motion.operation) or 0)
         loads = [event for event in motion.operation.events if isinstance(event, LoadTool)]
         if loads:  # a tool that the run's settings name has its own register
             self._length_register = 0 if self.program.effective_setting("tool", motion.operation) else loads[-1].adjust
@@ -207,10 +206,8 @@ class MotionBlockWriter:
             self.spindle = event
         elif isinstance(event, Coolant):
             self.coolant = event.kind
-            codes = set() if event.kind == "OFF" else {self.control.coolant[event.kind]}
-            self.coolant_codes = codes and self.coolant_codes | codes
         elif isinstance(event, CutterComp) and event.side != "OFF" and not event.register and self._names_radius:
-            event = replace(event, register=int(self._tool))
+            event = replace(event, register=int(self._tool) + self._radius_offset)
         words = self.family.event_words(event, self.control.codes, self.control.coolant)
         return {word: self.writer.to_count(word, value) for word, value in words.items()}
 

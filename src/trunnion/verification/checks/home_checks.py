@@ -19,6 +19,9 @@ from trunnion.verification.results import Check, Place
 
 _TITLE: Final = "retracts to the machine's home"
 
+#: Where axes must be at home, by the kinds of events.
+_NAMES: Final = {"tool_change": "a tool change", "end": "the end"}
+
 _SLIDE_WORDS: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
 
 
@@ -75,15 +78,27 @@ def check_home(context: Context) -> Check:
         return _check_other_positions(context)
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
     good = "linear and rotary axes at home before, after and at every tool change"
+    stated = context.run.machine.home_at
+    if stated:
+        which = (f"{' '.join(names) or 'no axis'} at {_NAMES[place]}" for place, names in stated.items())
+        good = f"at home as the definition asks: {', '.join(which)}"
     return check_from_places("home", _TITLE, places, good)
+
+
+def _needed(machine: Machine, *places: str) -> list[int]:
+    """Return the linear axes that must be at home at one of some places."""
+    needed = {name for place in places for name in machine.home_at.get(place, machine.names)}
+    return [column for column in machine.linear if machine.names[column] in needed]
 
 
 def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
     """Motions to other positions, at feed, or along several axes before the tool was retracted along one."""
     run, machine = context.run, context.run.machine
+    free = set(machine.linear) - set(_needed(machine, *_NAMES))
     for k, row in enumerate(motions.rows.tolist()):
         axes = [machine.axes[c].name for c in np.flatnonzero(motions.named[k])]
-        away = [machine.axes[c].name for c in np.flatnonzero(motions.named[k] & ~motions.at_home[k])]
+        elsewhere = np.flatnonzero(motions.named[k] & ~motions.at_home[k]).tolist()
+        away = [machine.axes[c].name for c in elsewhere if c not in free]
         if away:
             text = f"moves {' and '.join(away)} to a machine position that is not its home"
             yield context.place(row, 0.0, text)
@@ -98,24 +113,27 @@ def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
 
 def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator[Place]:
     """Yield the last motion before each tool change and end of program for which the linear axes are not at home."""
-    run, slides = context.run, list(context.run.machine.linear)
+    run = context.run
     for event in run.events:
         if event.kind not in ("tool_change", "end") or not 0 < event.before_row <= len(run):
+            continue
+        slides = _needed(run.machine, event.kind)
+        if not slides:
             continue
         row = event.before_row - 1
         k = int(np.searchsorted(motions.rows, row, "right")) - 1
         was_home = k >= 0 and motions.at_home[k, slides].all()
-        if not (was_home and _slides_stay_home(run, int(motions.rows[k]) + 1, row + 1)):
+        if not (was_home and _slides_stay_home(run, slides, int(motions.rows[k]) + 1, row + 1)):
             what = "changes the tool" if event.kind == "tool_change" else "ends"
             text = f"{what} in line {event.line} while the linear axes are not at home; this is the last motion before"
             yield context.place(row, 0.0, text)
 
 
-def _slides_stay_home(run: Run, first: int, end: int) -> bool:
-    """Whether rows ``first`` to ``end`` only turn rotary axes, and the linear axes stay at home."""
-    if (run.programmed[first:end] & int(_SLIDE_WORDS)).any():
+def _slides_stay_home(run: Run, slides: list[int], first: int, end: int) -> bool:
+    """Whether no word of rows ``first`` to ``end`` moves some linear axes, and they stay at home."""
+    words = np.array(_axis_words(run.machine))[slides]
+    if (run.programmed[first:end] & int(np.bitwise_or.reduce(words))).any():
         return False
-    slides = list(run.machine.linear)
     rows = np.arange(first, end)
     off = run.positions(rows).joints[:, slides] - run.machine.home[slides]
     return bool((np.abs(off) <= home_tolerance(run, rows)[:, slides]).all())

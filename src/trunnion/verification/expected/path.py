@@ -41,11 +41,13 @@ class OperationSettings:
     tool         tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
     work_offset  54..59, 505..599, or 600 plus the P of G54.1; None: any, but the same throughout
     edge         number of the cutting edge (D); None: any
+    radius_offset  what is added to the tool's number for the register of the radius
     """
 
     tool: str = ""
     work_offset: int | None = None
     edge: int | None = None
+    radius_offset: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -82,6 +82,7 @@ def compensation_states(expected: ExpectedPath) -> list[StateRange[ExpectedCompe
                 last = _SIDES.get(event.side, last)
                 called = section.settings.tool
                 own = int(called) if called.isdigit() else number
+                own += section.settings.radius_offset if own else 0
                 side = 0 if event.side == "OFF" else last
                 changes.append((event.row, ExpectedCompensation(side, event.register or own)))
         states += _ranges(section, changes)

@@ -422,7 +422,7 @@ def test_the_sheet_has_title_library_coolant_and_what_compensation_means(tmp_pat
     (tool,) = data["tools"]
     assert (tool["holder"], tool["stick_out"]) == ("Ø40 × 50 mm", 60.0)
     coolants = [each["coolant"] for each in data["operations"]]
-    assert coolants[0].startswith("through the tool (THRU, not read back)")
+    assert coolants[0].startswith("through the tool (THRU)")
     (note,) = [note for each in data["operations"] for note in each["notes"] if "radius compensation" in note]
     assert note.startswith("radius compensation with the radius of the tool: the path is that of the tool's centre")
     assert "Our &lt;hub&gt;" in page.read_text("utf-8")

@@ -395,3 +395,21 @@ def test_a_program_number_has_four_digits_unless_a_definition_says_more(tmp_path
     text = trunnion.post(part, machine=own, settings={"program": "12345"}).text
     assert text is not None
     assert "O12345" in text
+
+
+@pytest.mark.parametrize(("on", "off"), [(True, False), (False, True)])
+def test_radius_compensation_that_begins_or_ends_on_a_circle_is_refused(on: bool, off: bool, tmp_path: Path) -> None:
+    circle = "CIRCLE/20,10,5,0,0,1,10\nGOTO/30,10,5\n"
+    way = [
+        "CUTCOM/LEFT\n",
+        "" if on else "GOTO/20,0,5\n",
+        circle,
+        "CUTCOM/OFF\n",
+        circle if off else "",
+        "GOTO/40,40,5\n",
+    ]
+    part = tmp_path / "part.cls"
+    start = "" if not on else "GOTO/20,0,5\n"
+    part.write_text(HEAD + start + "".join(way) + END, encoding="utf-8")
+    with pytest.raises(InputError, match="before a circle"):
+        trunnion.post(part, machine="matsuura_mx330")

@@ -43,8 +43,8 @@ from trunnion.wording import counted, one_line
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.simulate.result import SimulationResult
 
-#: Coolants whose M code readers do not know, in words.
-_UNREAD_COOLANTS: Final = {"THRU": "through the tool", "AIR": "air", "TAP": "for tapping"}
+#: Coolants whose words are of the builder of a machine, as people call them.
+_OTHER_COOLANTS: Final = {"THRU": "through the tool", "AIR": "air", "TAP": "for tapping"}
 
 #: Warnings of a post that a sheet repeats.
 _MOST_WARNINGS = 20
@@ -129,11 +129,19 @@ def _operations(
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),
             cuts=_with_asked_coolant(cut_ranges(verification.run, own), motions),
-            notes=tuple(dict.fromkeys(_notes(motions, names_radius=names_radius))),
+            notes=tuple(
+                dict.fromkeys(_notes(motions, _own_register(program, motions, call), names_radius=names_radius))
+            ),
         )
 
 
-def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
+def _own_register(program: Program, motions: Sequence[Motion], call: str) -> int:
+    """Return the register of the radius where CUTCOM names none, if it is not that of the tool's number; else 0."""
+    more = int(program.effective_setting("radius_offset", motions[0].operation) or 0)
+    return int(call) + more if more and call.isdigit() else 0
+
+
+def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) -> Iterator[str]:
     """Yield what a setter must know of an operation: compensation with its register, pitches, and where it stops."""
     rpm = 0.0
     for event in (event for motion in motions for event in motion.operation.events):
@@ -141,11 +149,12 @@ def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
             case SpindleOn():
                 rpm = event.rpm
             case CutterComp() if event.side != "OFF":
-                register = f"D{event.register}" if event.register and names_radius else "the radius of the tool"
+                number = (event.register or own_register) if names_radius else 0
                 # Points of a CL file are those of the tool's centre; contours are refused.
                 yield (
-                    f"radius compensation with {register}: the path is that of the tool's centre, so enter by how much"
-                    " the tool is larger than its size here (smaller: negative), and not its radius"
+                    f"radius compensation with {f'D{number}' if number else 'the radius of the tool'}: the path is that"
+                    " of the tool's centre, so enter by how much the tool is larger than its size here (smaller:"
+                    " negative), and not its radius"
                 )
             case Stop():
                 yield "optional stop (M1)" if event.optional else "stop (M0)"
@@ -157,10 +166,10 @@ def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
 
 
 def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion]) -> CutRanges:
-    """Return ranges with the coolants that the CL file asks for by words that nobody reads back."""
+    """Return ranges with the coolants that the CL file asks for, and that have words of the builder of the machine."""
     asked = {event.kind for motion in motions for event in motion.operation.events if isinstance(event, Coolant)}
-    unread = [f"{said} ({word}, not read back)" for word, said in _UNREAD_COOLANTS.items() if word in asked]
-    return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *unread))))
+    others = [f"{said} ({word})" for word, said in _OTHER_COOLANTS.items() if word in asked]
+    return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *others))))
 
 
 def _with_bodies(tools: Iterable[SheetTool], simulation: "SimulationResult | None") -> Iterator[SheetTool]:

@@ -5,7 +5,7 @@ parameters of the control.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from textwrap import wrap
 from typing import Final
 
@@ -17,7 +17,7 @@ from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import LINES_FOR_SPLINES, SPLINES_SETTING
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
+from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
 from trunnion.output.families.fanuc.cycles import cycle_lines, dwell_parts, is_valid_shift
 from trunnion.output.families.fanuc.splines import spline_lines as spline_lines
@@ -156,13 +156,28 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """Return G95 without a spindle speed, and radius compensation while the tool axis changes: that is G41.2."""
+    """Return G95 without a spindle speed, and radius compensation while the tool axis changes: that is G41.2.
+
+    And radius compensation that begins or ends on a circle, at which the control stops with an alarm.
+    """
     problems = iso.feed_per_rev_before_spindle(operation, spindle_known)
+    problems += list(_compensation_on_arcs(operation))
     if np.ptp(operation.moves.axis, axis=0).max(initial=0.0) > 0.0:
         why = UnsupportedFeatureError(Wording("CTL220", "cutter_radius_compensation"))
         events = [event for event in operation.events if isinstance(event, CutterComp) and event.side != "OFF"]
         problems += [(event.line, why) for event in events]
     return problems
+
+
+def _compensation_on_arcs(operation: Operation) -> Iterator[tuple[int, UnsupportedFeatureError]]:
+    """Yield each CUTCOM that switches radius compensation on or off for a circle."""
+    kind, is_on = operation.moves.kind, False
+    for event in operation.events:
+        if not isinstance(event, CutterComp):
+            continue
+        switches, is_on = is_on != (event.side != "OFF"), event.side != "OFF"
+        if switches and event.row < len(kind) and kind[event.row] == Kind.ARC:
+            yield event.line, UnsupportedFeatureError(Wording("CTL220", "cutcom_before_circle", side=event.side))
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
