@@ -31,6 +31,13 @@ def test_a_home_that_is_assumed_is_said() -> None:
     assert [text for text in warnings if text.startswith(assumed)]
 
 
+@pytest.mark.parametrize("machine", ["generic_head_head_ca", "generic_head_table_bc", "linuxcnc_5axis"])
+def test_a_home_in_the_midst_of_the_travel_that_is_assumed_is_said(machine: str) -> None:
+    _, warnings = travel_and_warnings(machine)
+    assumed = f"{machine}: warning: home of Z is assumed, in the midst of its travel: the program retracts there"
+    assert [text for text in warnings if text.startswith(assumed)]
+
+
 def test_a_program_that_does_not_go_home_along_the_slides_says_nothing_of_it() -> None:
     _, warnings = travel_and_warnings("hs664rt")
     assert not [text for text in warnings if "home" in text]

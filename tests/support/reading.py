@@ -42,13 +42,18 @@ def run(tmp_path: Path, yl569: Machine) -> Runner:
     """Return a function that runs a text as a program, with the ``files`` it may call."""
 
     def runner(
-        text: str | bytes, machine: Machine = yl569, files: dict[str, str] | None = None, **settings: object
+        text: str | bytes,
+        machine: Machine = yl569,
+        files: dict[str, str] | None = None,
+        family: str | None = None,
+        **settings: object,
     ) -> Run:
         for name, content in (files or {}).items():
             (tmp_path / name).write_text(content, encoding="utf-8")
         program = tmp_path / "MAIN.MPF"
         program.write_bytes(text.encode() if isinstance(text, str) else text)
         named = [tmp_path / name for name in files or {}]
-        return run_program(program, machine, RunOptions(subprograms=named, **settings))  # type: ignore[arg-type]
+        options = RunOptions(subprograms=named, **settings)  # type: ignore[arg-type]
+        return run_program(program, machine, options, family=family)
 
     return runner

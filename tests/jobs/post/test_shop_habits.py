@@ -177,3 +177,18 @@ def test_a_cl_file_in_other_units_than_the_program_is_reported(
     source.write_text(f"UNITS/{units}\n{small}", encoding="utf-8")
     result = trunnion.post(source, machine="matsuura_mx330", settings=settings)
     assert ("CL415" in [problem.code for problem in result.problems]) is said
+
+
+# The first approach
+
+
+@pytest.mark.parametrize("base", _MACHINES)
+def test_the_first_approach_goes_one_group_of_axes_at_a_time(base: str, tmp_path: Path) -> None:
+    source, output = _source(tmp_path), tmp_path / "part.nc"
+    machine = _machine(tmp_path, base, "[control]\nlevel_approach = true\n")
+    assert trunnion.post(source, machine=machine, output=output).passed
+    run = trunnion.read_program(output, machine=machine)
+    axes = {"rotary": 8 | 16, "level": 1 | 2, "height": 4}
+    first = next(k for k in range(len(run)) if not run.machine_frame[k] and run.programmed[k] & axes["level"])
+    moved = [{name for name, bits in axes.items() if run.programmed[k] & bits} for k in (first, first + 1)]
+    assert moved == [{"level"}, {"height"}]

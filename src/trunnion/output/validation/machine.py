@@ -1,12 +1,16 @@
 """What a machine's definition leaves open that a program for it would take for granted."""
 
 from trunnion.errors import Problem, warning
+from trunnion.machines import Axis
 from trunnion.messages import Wording
 from trunnion.output.coordinates.approach_leg import ApproachLegs, tilts_tool
 from trunnion.output.program import Program
 
 #: Values without a measure that one warning names.
 _MOST_SHOWN = 12
+
+#: Home within this distance of a limit is at the end of the travel, mm.
+_NEAR_END = 10.0
 
 
 def machine_problems(program: Program) -> list[Problem]:
@@ -29,6 +33,9 @@ def machine_problems(program: Program) -> list[Problem]:
         )
     if homeless:
         problems.append(_warning(program, Wording("CTL720", "home_not_stated", homeless=tuple(homeless))))
+    marked = {value.of for value in (*machine.unmeasured, *machine.assumed) if value.key == "home_mm"}
+    if "home_z" in printed and any(axis.name == "Z" and _is_midway(axis) for axis in slides if axis.name in marked):
+        problems.append(_warning(program, Wording("CTL720", "retract_is_assumed")))
     if unlimited:
         problems.append(_warning(program, Wording("CTL720", "travel_not_stated", unlimited=tuple(unlimited))))
     legs = ApproachLegs(program)
@@ -37,6 +44,11 @@ def machine_problems(program: Program) -> list[Problem]:
         variant = "way_not_known" if legs.goes_home else "retract_not_known"
         problems.append(_warning(program, Wording("CTL730", variant, operations=tuple(tilted)[:_MOST_SHOWN])))
     return problems
+
+
+def _is_midway(axis: Axis) -> bool:
+    """Whether home is at no end of the travel."""
+    return axis.low + _NEAR_END < axis.home < axis.high - _NEAR_END
 
 
 def _warning(program: Program, wording: Wording) -> Problem:

@@ -16,6 +16,7 @@ from trunnion.verification.basis import ACCELERATION, RAPID, SPINDLE, TOOL_LENGT
 from trunnion.verification.checks.basis_check import check_basis
 from trunnion.verification.checks.compensation_checks import check_compensation
 from trunnion.verification.checks.coolant_checks import check_coolant
+from trunnion.verification.checks.coverage import with_coverage
 from trunnion.verification.checks.feed_checks import check_feed
 from trunnion.verification.checks.hole_checks import check_holes
 from trunnion.verification.checks.home_checks import check_home
@@ -167,4 +168,5 @@ def all_checks(seen: Measured) -> tuple[Check, ...]:
     """Every check; those that need more than is known are not checked."""
     run = seen.context.run
     unmeasured = unmeasured_values(run.machine, tuple(ValueKind), joint_samples(run))
-    return tuple(check for entry in CHECKS for check in entry.checks(seen, unmeasured))
+    checks = tuple(check for entry in CHECKS for check in entry.checks(seen, unmeasured))
+    return tuple(with_coverage(seen.context, checks)) if isinstance(seen, Compared) else checks

@@ -26,12 +26,14 @@ class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram that is being executed, and its modal cycle or subprogram (MCALL).
 
     header_end  the last of the lines without a block with which the file begins
+    repeated    how often a REPEAT has gone back to its label, by its line
     """
 
     source: SinumerikText
     variables: Variables = field(default_factory=Variables)
     modal: Call | None = None
     header_end: int = 0
+    repeated: dict[int, int] = field(default_factory=dict)
 
 
 #: What a condition that never changes consists of, besides numbers.
@@ -117,8 +119,27 @@ class Flow:
 
     def _repeat(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         if reader.token is not None:
+            self._repeat_part(reader, active, line)
+        else:
+            active.source.partner(line)
+
+    def _repeat_part(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        """REPEAT LABEL P=n: execute the blocks from a label to here again, n times."""
+        name = reader.peek()
+        reader.at += 1
+        times = 1.0
+        if reader.accept("P"):
+            reader.expect("=")
+            times = reader.number()
+        active.source.load()
+        begin = active.source.repeated_from(name.upper(), line)
+        if reader.token is not None or begin is None or times < 0.0 or times != int(times):
             raise ExpressionError(Wording("NC220", "repeating_part_program_labels_not"))
-        active.source.partner(line)
+        done = active.repeated.pop(line, 0)
+        if done < times:
+            active.repeated[line] = done + 1
+            active.source.jumps_back = 0
+            active.source.jump(begin)
 
     def _until(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         begin = active.source.partner(line)[1]

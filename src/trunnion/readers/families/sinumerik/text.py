@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -20,6 +20,8 @@ _STRUCTURE = re.compile(
 )
 _JUMPS = re.compile(rb"(?<![A-Z0-9_])GOTO[FBCS]?(?![A-Z0-9_])", re.IGNORECASE)
 
+_END_LABEL: Final = re.compile(rb"(?<![A-Z0-9_])ENDLABEL(?![A-Z0-9_])", re.IGNORECASE)
+
 #: The keyword that begins a structure, by the one that ends it.
 _ENDS: Final = {"ENDIF": "IF", "ENDFOR": "FOR", "ENDWHILE": "WHILE", "ENDLOOP": "LOOP", "UNTIL": "REPEAT"}
 
@@ -33,11 +35,15 @@ SUFFIXES: Final = (".SPF", "_SPF", ".MPF", "_MPF", "")
 
 @dataclass(slots=True, eq=False)
 class _JumpTargets:
-    """Lines of labels and block numbers, and the counterparts of keywords; each found on first use."""
+    """Lines of labels and block numbers, and the counterparts of keywords; each found on first use.
+
+    repeated  the first line of the part that a REPEAT repeats, by its line; None: it repeats another part
+    """
 
     labels: dict[str, list[int]] | None = None
     numbers: dict[int, list[int]] | None = None
     partners: dict[int, tuple[int, int]] | None = None
+    repeated: dict[int, int | None] = field(default_factory=dict)
 
 
 class SinumerikText(SourceText):
@@ -56,6 +62,18 @@ class SinumerikText(SourceText):
             for match in _LABEL.finditer(self.whole_bytes()):
                 labels.setdefault(match.group(1).decode().upper(), []).append(self.line_of(match.start(1)))
         return _choose_line(labels.get(name, []), here, forward=forward, backward=backward)
+
+    def repeated_from(self, name: str, here: int) -> int | None:
+        """Return the line of the label from which a REPEAT repeats up to its own line; None if it is another part.
+
+        An end of its own (ENDLABEL), or a jump out of the part, is another one.
+        """
+        known = self._jump_targets.repeated
+        if here not in known:
+            begin = self.label(name, here, forward=False, backward=True)
+            part = b"" if begin is None else b"\n".join(self.whole_bytes().split(b"\n")[begin - 1 : here - 1])
+            known[here] = None if _JUMPS.search(part) or _END_LABEL.search(part) else begin
+        return known[here]
 
     def number(self, number: int, here: int, *, forward: bool, backward: bool) -> int | None:
         """Return the line of a block number, found like a label."""
