@@ -131,7 +131,7 @@ def test_a_set_up_behind_the_first_finding_is_told_as_not_simulated(tmp_path: Pa
         False,
         None,
     )
-    assert "were not looked for" in (tmp_path / "bottom.html").read_text(encoding="utf-8")
+    assert "(no simulation)" in (tmp_path / "bottom.html").read_text(encoding="utf-8")
     before = contents(tmp_path)
     trunnion.post_project(tmp_path / "part.toml")
     assert contents(tmp_path) == before, "nothing depends on the clock"
@@ -139,6 +139,6 @@ def test_a_set_up_behind_the_first_finding_is_told_as_not_simulated(tmp_path: Pa
 
 def test_papers_say_so_where_nothing_was_simulated(tmp_path: Path) -> None:
     trunnion.post_project(example(tmp_path, "off"))
-    assert "were not looked for" in (tmp_path / "top.html").read_text(encoding="utf-8")
+    assert "(no simulation)" in (tmp_path / "top.html").read_text(encoding="utf-8")
     manifest = data(tmp_path / "top.json")
     assert (manifest["inputs"]["simulation"], manifest["simulation_passed"]) == ([], None)
