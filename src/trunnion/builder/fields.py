@@ -25,8 +25,8 @@ PAGES: Final = (
 #: Ends of keys, and the unit that stands behind the field; the first that fits counts.
 _UNITS: Final = {
     "_mm_min": "mm/min", "_deg_min": "°/min", "_mm_s2": "mm/s²", "_deg_s2": "°/s²", "_mm": "mm", "_deg": "°",
-    "_mm_s3": "mm/s³", "_deg_s3": "°/s³", "_rpm": "rev/min", "_rpm_s": "rev/min/s", "_s": "s", "_kw": "kW", "_nm": "N·m",
-    "rotary_tolerance": "°", "tolerance": "mm", "retract_distance": "mm", "delta_length": "mm",
+    "_mm_s3": "mm/s³", "_deg_s3": "°/s³", "_rpm": "rev/min", "_rpm_s": "rev/min/s", "_s": "s", "_kw": "kW",
+    "_nm": "N·m", "rotary_tolerance": "°", "tolerance": "mm", "retract_distance": "mm", "delta_length": "mm",
     "delta_radius": "mm",
 }  # fmt: skip
 

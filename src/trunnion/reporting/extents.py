@@ -17,7 +17,8 @@ from trunnion.model.arc_extremes import Reach, RunArcs
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.reporting.text import clean
 from trunnion.results import NOT_DATA, BlockNumber, Figure
-from trunnion.verification.kinematics.positioning_moves import approach_rows, names_no_axis
+from trunnion.verification.kinematics.positioning_moves import names_no_axis
+from trunnion.verification.kinematics.unknown_approaches import unknown_approaches
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,13 +146,13 @@ def is_zero_known(run: Run, k: int) -> bool:
 def travel_rows(run: Run, axis: Axis) -> Ints:
     """Rows that count for the travel of an axis, as for the check: for a slide, not those in machine coordinates.
 
-    On the first leg of an approach the tool is still as high as the machine position before it.
+    On the first leg of an approach the tool is still as high as before it, which may be known to nobody.
     """
     if axis.is_rotary:
         return np.arange(len(run))
     linear = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
     counts = ~run.machine_frame & (run.tcp | ((run.programmed & linear) != 0) | names_no_axis(run.programmed))
-    counts[approach_rows(run)] = False
+    counts[unknown_approaches(run).rows] = False
     return np.flatnonzero(counts)
 
 

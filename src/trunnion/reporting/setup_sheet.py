@@ -8,13 +8,14 @@ Text from outside is cleaned here of characters that no file can hold.
 """
 
 from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Annotated, ClassVar, Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Axis
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -26,6 +27,10 @@ from trunnion.verification.results import OperationRows
 
 #: Decimals of angles.
 _DECIMALS: Final = 3
+
+#: An axis that moves by less stands still, deg; so many positions at which it stands are named.
+_STILL: Final = 1e-6
+_MOST_POSITIONS: Final = 6
 
 #: A lowest and a highest value.
 Range = tuple[float, float]
@@ -63,6 +68,7 @@ class CutRanges:
     """What a run does in the cuts of one operation, and where that begins.
 
     rotary  range of the primary and of the secondary rotary axis
+    stands  where these stand in the cuts, in their order; empty for one that turns, or has many positions
     start   its first block
     """
 
@@ -73,6 +79,7 @@ class CutRanges:
     feed_per_rev: Range | None
     coolant: str
     start: BlockReference | None
+    stands: Annotated[tuple[tuple[float, ...], tuple[float, ...]], NOT_DATA] = ((), ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,15 +192,27 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
     # Coolant that the operation before has left on is on in this one.
     before = [event for event in run.events[:first] if event.kind == "coolant"][-1:]
     coolants = [str(event.value) for event in (*before, *run.events[first:end]) if event.kind == "coolant"]
+    axes = run.machine.primary, run.machine.secondary
+    stands = [_stands(run, operation.first + np.flatnonzero(cuts), k) for k in axes]
     return CutRanges(
-        rotary=(_turns(run, joints, run.machine.primary, cuts), _turns(run, joints, run.machine.secondary, cuts)),
+        rotary=(_turns(run, joints, axes[0], cuts, stands[0]), _turns(run, joints, axes[1], cuts, stands[1])),
         rpm=_range(run.rpm[rows], cuts & (run.spindle[rows] != 0)),
         sense=", ".join(senses),
         feed=_range(feed, cuts & (mode == 94)),
         feed_per_rev=_range(feed, cuts & (mode == 95)),
         coolant=clean(", ".join(dict.fromkeys(each for each in coolants if each != "off"))),
         start=_start(run, operation),
+        stands=(stands[0], stands[1]),
     )
+
+
+def _stands(run: Run, rows: Ints, k: int) -> tuple[float, ...]:
+    """Return the displayed positions at which a rotary axis stands in the cuts of some rows; empty if it turns."""
+    here, before = run.joints[rows, k], run.joints[np.maximum(rows - 1, 0), k]
+    if not len(rows) or not np.isfinite(here).all() or np.abs(here - before).max() > _STILL:
+        return ()
+    positions = tuple(dict.fromkeys(run.machine.axes[k].displayed(here, _DECIMALS).tolist()))
+    return positions if len(positions) <= _MOST_POSITIONS else ()
 
 
 def displayed_extent(axis: Axis, extent: AxisExtent) -> AxisExtent:
@@ -206,8 +225,10 @@ def displayed_extent(axis: Axis, extent: AxisExtent) -> AxisExtent:
     return replace(extent, extremes=replace(extent.extremes, low=low, high=high))
 
 
-def _turns(run: Run, joints: Floats, k: int, chosen: Flags) -> Range | None:
-    """Return the range of a rotary axis as the machine displays it."""
+def _turns(run: Run, joints: Floats, k: int, chosen: Flags, stands: Sequence[float]) -> Range | None:
+    """Return the range of a rotary axis as the machine displays it; where it only stands, that of its positions."""
+    if stands:
+        return min(stands), max(stands)
     found = _range(joints[:, k], chosen)
     return None if found is None else run.machine.axes[k].displayed_range(*found, _DECIMALS)
 

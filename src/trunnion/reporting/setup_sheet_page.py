@@ -145,7 +145,8 @@ def _operation(each: SheetOperation, names: Sequence[str]) -> str:
             for name, low, high in zip("XYZ", *each.box, strict=True)
         ]
     )
-    box += [f"{escape(name)} {_degrees(turn)}" for name, turn in zip(names, each.cuts.rotary, strict=True) if turn]
+    turns = zip(names, each.cuts.rotary, each.cuts.stands, strict=True)
+    box += [f"{escape(name)} {_degrees(turn, stands)}" for name, turn, stands in turns if turn]
     feeds = [format_range(each.cuts.feed)] if each.cuts.feed else []
     feeds += [f"{format_range(each.cuts.feed_per_rev)} mm/rev"] if each.cuts.feed_per_rev else []
     sense = "" if each.cuts.sense in ("", "clockwise") else f"<br><small>{escape(each.cuts.sense)}</small>"
@@ -158,7 +159,9 @@ def _operation(each: SheetOperation, names: Sequence[str]) -> str:
     )
 
 
-def _degrees(turn: Range) -> str:
+def _degrees(turn: Range, stands: Sequence[float]) -> str:
+    if stands:
+        return ", ".join(f"{format_fixed(value)}°" for value in stands)
     low, high = (format_fixed(value) for value in turn)
     return f"{low}°" if low == high else f"{low} … {high}°"
 

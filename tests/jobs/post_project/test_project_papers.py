@@ -66,7 +66,7 @@ def test_sheet_manifest_and_report_tell_what_the_simulation_found(
     sheet, manifest = (folder / "top.html").read_text(encoding="utf-8"), data(folder / "top.json")
     of_top = [each.what for each in found.problems if each.file.endswith("plate_top.mpf")]
     assert {"gouge", "collision"} <= {what.split(": ")[1] for what in of_top}
-    assert "were not looked for" not in sheet
+    assert "(no simulation)" not in sheet
     assert "THE SIMULATION WARNS" in sheet
     for what in of_top:
         assert f"Warning: {what}" in sheet
@@ -131,7 +131,7 @@ def test_a_set_up_behind_the_first_finding_is_told_as_not_simulated(tmp_path: Pa
         False,
         None,
     )
-    assert "were not looked for" in (tmp_path / "bottom.html").read_text(encoding="utf-8")
+    assert "(no simulation)" in (tmp_path / "bottom.html").read_text(encoding="utf-8")
     before = contents(tmp_path)
     trunnion.post_project(tmp_path / "part.toml")
     assert contents(tmp_path) == before, "nothing depends on the clock"
@@ -139,6 +139,6 @@ def test_a_set_up_behind_the_first_finding_is_told_as_not_simulated(tmp_path: Pa
 
 def test_papers_say_so_where_nothing_was_simulated(tmp_path: Path) -> None:
     trunnion.post_project(example(tmp_path, "off"))
-    assert "were not looked for" in (tmp_path / "top.html").read_text(encoding="utf-8")
+    assert "(no simulation)" in (tmp_path / "top.html").read_text(encoding="utf-8")
     manifest = data(tmp_path / "top.json")
     assert (manifest["inputs"]["simulation"], manifest["simulation_passed"]) == ([], None)

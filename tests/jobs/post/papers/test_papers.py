@@ -14,6 +14,7 @@ import pytest
 import trunnion
 from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file
+from tests.support.locations import TESTS
 from tests.support.posting import FOOT, HEAD
 from trunnion.cli import main
 from trunnion.errors import InputError
@@ -170,6 +171,45 @@ def test_a_sheet_tells_of_compensation_pitches_angles_and_stops(tmp_path: Path) 
     assert second["notes"] == ["optional stop (M1)", "pitch 1.25 mm"]
     assert second["method"] == ""
     assert any(tool["kind"] == "drill, tip 118°" for tool in data["tools"]), data["tools"]
+
+
+def test_a_sheet_tells_of_blocks_to_skip_left_hands_and_where_axes_stand(tmp_path: Path) -> None:
+    """C goes from 270 to 330 and 30: it cuts at these, and nowhere between."""
+    cl, sheet = tmp_path / "part.cls", tmp_path / "a.json"
+    tap = HEAD.replace("OP1", "TAPPING").replace(",CLW", ",CCLW")
+    around = "".join(
+        f"GOTO/{30.0 * x:.4f},{30.0 * y:.4f},0.0,{x:.7f},{y:.7f},0.0\n"
+        for x, y in ((1.0, 0.0), (0.5, 0.8660254), (-0.5, 0.8660254))
+    )
+    holes = "RAPID\nGOTO/60.0,0.0,0.0,1.0,0.0,0.0\nCYCLE/TAP,RAPTO,3,FEDTO,-10,RTRCTO,20,MMPR,1.25\n"
+    cl.write_text(HEAD + "OPSKIP/ON\nGOTO/20,0,5\nOPSKIP/OFF\n" + FOOT + tap + holes + around + "CYCLE/OFF\n" + FOOT)
+    paper = tmp_path / "a.html"
+    result = trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=sheet)
+    assert result.passed
+    first, second = json.loads(sheet.read_text(encoding="utf-8"))["operations"]
+    assert first["notes"] == ["blocks that the operator may skip (/)"]
+    assert second["notes"] == ["pitch 1.25 mm, left hand"]
+    assert second["rotary"]["C"] != [0.0, 360.0]
+    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "b.nc", sheet=paper)
+    text = " ".join(_Tags(paper.read_text(encoding="utf-8")).text.split())
+    assert re.search(r"C \d+\.000°, \d+\.000°, \d+\.000°", text)
+
+
+def test_the_travel_of_a_sheet_is_that_of_its_check(tmp_path: Path) -> None:
+    cl, sheet = TESTS / "data" / "cases" / "tilted.cls", tmp_path / "a.json"
+    placed: dict[str, Any] = {"zero": (700.0, 0.0, -500.0), "tool_length": 150.0}
+    result = trunnion.post(cl, machine="generic_head_head_ca", output=tmp_path / "a.mpf", settings=placed, sheet=sheet)
+    told = next(check.told for check in result.checks if check.key == "travel")
+    axes = json.loads(sheet.read_text(encoding="utf-8"))["axes"]
+    for axis in axes:
+        assert f"{axis['name']} {axis['margin']:.3f} {axis['unit']} left" in told
+
+
+def test_what_is_left_to_a_person_is_told_as_a_task(tmp_path: Path) -> None:
+    cl, sheet = TESTS / "data" / "cases" / "contour.cls", tmp_path / "a.json"
+    trunnion.post(cl, machine="yl569", output=tmp_path / "a.mpf", sheet=sheet)
+    tasks = json.loads(sheet.read_text(encoding="utf-8"))["to_check"]
+    assert all(re.match(r"Check |Look |Run |Measure |Warning: ", task) for task in tasks), tasks
 
 
 def test_a_refused_post_tells_of_the_files_that_are_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -422,7 +462,7 @@ def test_the_sheet_has_title_library_coolant_and_what_compensation_means(tmp_pat
     (tool,) = data["tools"]
     assert (tool["holder"], tool["stick_out"]) == ("Ø40 × 50 mm", 60.0)
     coolants = [each["coolant"] for each in data["operations"]]
-    assert coolants[0].startswith("through the tool (THRU)")
+    assert coolants[0].startswith("through the tool (THRU, M26)")
     (note,) = [note for each in data["operations"] for note in each["notes"] if "radius compensation" in note]
     assert note.startswith("radius compensation with the radius of the tool: the path is that of the tool's centre")
     assert "Our &lt;hub&gt;" in page.read_text("utf-8")

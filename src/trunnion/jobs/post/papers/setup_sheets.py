@@ -1,6 +1,6 @@
 """The setup sheet of a post: what is known of machine, tools, operations and files, and what is left to a person."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -17,7 +17,19 @@ from trunnion.machines import Machine
 from trunnion.model.clamping_notices import PLACED_NOTICES
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.run import NO_OFFSET, Run
-from trunnion.model.toolpath import Coolant, CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool
+from trunnion.model.toolpath import (
+    BlockSkip,
+    Coolant,
+    CutterComp,
+    CycleOn,
+    Insert,
+    Kind,
+    Operation,
+    Sense,
+    SpindleOn,
+    Stop,
+    Tool,
+)
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
@@ -128,7 +140,7 @@ def _operations(
             seconds=usage.seconds,
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),
-            cuts=_with_asked_coolant(cut_ranges(verification.run, own), motions),
+            cuts=_with_asked_coolant(cut_ranges(verification.run, own), motions, program.control.coolant),
             notes=tuple(
                 dict.fromkeys(_notes(motions, _own_register(program, motions, call), names_radius=names_radius))
             ),
@@ -143,11 +155,11 @@ def _own_register(program: Program, motions: Sequence[Motion], call: str) -> int
 
 def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) -> Iterator[str]:
     """Yield what a setter must know of an operation: compensation with its register, pitches, and where it stops."""
-    rpm = 0.0
+    rpm, sense = 0.0, Sense.CLW
     for event in (event for motion in motions for event in motion.operation.events):
         match event:
             case SpindleOn():
-                rpm = event.rpm
+                rpm, sense = event.rpm, event.sense
             case CutterComp() if event.side != "OFF":
                 number = (event.register or own_register) if names_radius else 0
                 # Points of a CL file are those of the tool's centre; contours are refused.
@@ -156,19 +168,26 @@ def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) 
                     " of the tool's centre, so enter by how much the tool is larger than its size here (smaller:"
                     " negative), and not its radius"
                 )
+            case BlockSkip() if event.on:
+                yield "blocks that the operator may skip (/)"
             case Stop():
                 yield "optional stop (M1)" if event.optional else "stop (M0)"
             case CycleOn() if event.mode[:1] == ("TAP",):
                 values = dict(event.values)
                 per_minute = values.get("MMPM", (0.0,))[0] / rpm if rpm else 0.0
                 if pitch := values.get("MMPR", (per_minute,))[0]:
-                    yield f"pitch {format_number(pitch)} mm"
+                    yield f"pitch {format_number(pitch)} mm{', left hand' if sense is Sense.CCLW else ''}"
 
 
-def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion]) -> CutRanges:
+def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion], codes: Mapping[str, int]) -> CutRanges:
     """Return ranges with the coolants that the CL file asks for, and that have words of the builder of the machine."""
     asked = {event.kind for motion in motions for event in motion.operation.events if isinstance(event, Coolant)}
-    others = [f"{said} ({word})" for word, said in _OTHER_COOLANTS.items() if word in asked]
+    seen = cuts.coolant.split(", ")
+    others = [
+        f"{said} ({word}, M{codes[word]})" if word in codes else f"{said} ({word})"
+        for word, said in _OTHER_COOLANTS.items()
+        if word in asked and said not in seen
+    ]
     return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *others))))
 
 
@@ -274,25 +293,25 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     offsets = ", ".join(_offsets(run)) or "the machine's zero"
     is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
     turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
-    yield f"Work offset {offsets} is set to the zero of the program, {turned}."
+    yield f"Check that work offset {offsets} is set to the zero of the program, {turned}."
     for notice in job.notices:
         if notice.startswith(PLACED_NOTICES):
             yield f"{notice}."
     if machine.workpiece_zero is None:
-        yield "Travel: nobody said where the workpiece zero is, so the proof only knows that the motion fits somewhere."
+        yield "Check the travel: nobody said where the workpiece zero is, and it is only proven to fit somewhere."
     else:
-        yield "The workpiece zero is where the sheet says: the limits of the linear axes were proven for it."
+        yield "Check that the workpiece zero is where the sheet says: the limits of the linear axes were proven for it."
     if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions):
-        yield "Without TCP the program holds for this zero and this tool length alone: measure both before each part."
-    yield "Tools: the right one in each pocket, its length and radius measured and entered, its edge sharp, no run-out."
-    yield "The part is clamped, the blank has its size, and everything that turns has room."
+        yield "Measure zero and tool length before each part: without TCP the program holds for these alone."
+    yield "Check each tool: the right one in its pocket, length and radius measured and entered, edge sharp."
+    yield "Check that the part is clamped, that the blank has its size, and that everything that turns has room."
     if result.simulation is None:
-        yield "Collisions of tool, holder and head with part, fixtures and table were not looked for (no simulation)."
+        yield "Look for collisions of tool, holder and head with part, fixtures and table (no simulation)."
     else:
         found = len(result.simulation.findings)
         knew = "knew the stock, tools and fixtures that it was given, and no more"
-        yield f"The simulation ({counted(found, 'finding')}) {knew}."
-    yield "Axis directions, rotary centres and pivot lengths of this machine have been compared with its definition."
+        yield f"Check what else there is. The simulation ({counted(found, 'finding')}) {knew}."
+    yield "Check that axis directions, rotary centres and pivot lengths of the machine are those of its definition."
     inserted = [
         event.text.strip()
         for motion in program.motions
@@ -301,7 +320,7 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     ]
     if inserted:
         texts = "; ".join(dict.fromkeys(inserted))
-        yield f"Texts that the CL file inserts, whose effect beyond the path is not proven: {texts[:300]}"
+        yield f"Check the texts that the CL file inserts, whose effect beyond the path is not proven: {texts[:300]}"
     warnings = remark_groups(problem for problem in result.problems if problem.severity is Severity.WARNING)
     for remark in warnings[:_MOST_WARNINGS]:
         yield f"Warning: {remark.text}" + (f" (and {remark.count - 1} more like it)" if remark.count > 1 else "")
@@ -310,4 +329,4 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     for problem in result.problems:
         if problem.severity is Severity.ERROR:
             yield f"OVERRULED: {problem.what}"
-    yield "The first part runs block by block or with low override, with a hand on feed hold."
+    yield "Run the first part block by block or with low override, with a hand on feed hold."
