@@ -31,6 +31,8 @@ WORDS = [
     ("yl569", ["FGROUP()", "FGROUP(Z,X,Y)"], ["FGROUP(Z)", "FGROUP(X,Y,Z,C)", "FL[X]=9", "VELOLIM[X]=50", "FLIN"]),
     ("yl569", ["OTOL=0.1 STOL=2 ADISPOS=.5"], ["OTOL=5", "STOL=99", "ADISPOS=9", "CTOLG=9", "OTOLG=9", "RTLIOF"]),
     ("yl569", ["TRAORI(1)\nA3=0 C3=1"], ["TRAORI(3)", "A3=0 C3=1", "DIAMON", "DIAM90", "PROC A SAVE", "FPO"]),
+    ("yl569", ["TRAORI(1,,,1,0,0)", "TRAORI()"], ["TRAORI(1,1,0,0)", "TRAORI(,0,1,0)", "TRAORI(1,0,0,-1)"]),
+    ("yl569", ["TRAORI(1,,,,0)", "SPCOF", "SPCON(1)"], ["TRAORI(1,,,,5,0)", "TRAORI(1,,,,,5)", "TRAORI(2)"]),
     ("yl569", ["FGREF[C]=10 G1 X1 C9", "FGREF[C]=57.296 G1 C9"], ["FGREF[C]=10 G1 C9", "FGREF[C]=10\nG1 C9\nC5"]),
     ("yl569", ["CFTCP KONTT G62", "G41 X9 NORM"], ["G41 CFTCP", "CFIN\nG42 X9", "G41 G62", "G41 KONTT"]),
     ("matsuura_mx330", ["G61\nG64", "G22\nG23", f"{PLANE} P0"], ["G60 X5.", "G62", "G22 X9.", "G96 S99", "G5.3 P1"]),

@@ -237,8 +237,7 @@ class BlockReader:
         elif name == "TRAORI":
             block.words.append(name)
             if follows == "(":
-                numbers = reader.arguments()
-                block.traori = _number(numbers[0]) if numbers and numbers[0] is not None else 1.0
+                block.traori = reader.arguments()
         elif name == FEED_GROUP and follows == "(":
             self._feed_group(reader)
         elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
