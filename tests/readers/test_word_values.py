@@ -44,11 +44,12 @@ WORDS = [
     ("dmu65", ["FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"], ["M98", "M112 T.5", "M144", "M150", "LN X+1 TX+0 TZ+1"]),
     ("dmu65", ["CYCL DEF 251"], ["CYCL DEF 239 Q570=+0", "CYCL DEF 220", "FUNCTION TCPM F CONT AXIS POS"]),
     ("yl569", ["CYCLE832(.02,_ORI_FINISH,1)", "CYCLE832(.02,112102)"], ["CYCLE832(.02,5)", "CYCLE832(.02,21,1)"]),
-    ("yl569", ["CYCLE832(.02,2000012,.5)", "OVR=100"], ["CYCLE832(.02,11,-1)", "OVR=50", "G1 X1. FB=20"]),
+    ("yl569", ["CYCLE832(.02,2000012,.5)", "OVR=100"], ["CYCLE832(.02,11,-1)", "CYCLE832(.02,1,5)", "OVR=50", "FB=20"]),
     ("yl569", ["CYCLE83(9.,0.,1.,-9.,,-3.,,,,,,1)"], ["CYCLE83(9.,0.,1.,-9.,,-3.,,,,,,2)"]),
     ("yl569", ['CYCLE800(0,"",0,57,0,0,0,0,0,0,0,0,0,0)'], ['CYCLE800(9,"",0,57,0,0,0,0,0,0,0,0,0,0)']),
     ("yl569", ['CYCLE800(0,"",1,57,0,0,0,0,0,0,0,0,0,0)'], ['CYCLE800(0,"",2,57,0,0,0,0,0,0,0,0,0,0)']),
     ("dmu65", [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 HSC-MODE:1 TA0.1"], [f"{CYCLE_32} X0.02"]),
+    ("dmu65", [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 TA1"], [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 TA3"]),
     ("dmu65", ["FN 16: F-PRINT A"], ["FN 17: SYSWRITE ID150 NR2 IDX1 = +5"]),
     ("dmu65", ["M120 LA5"], [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 HSC-MODE:2", "M120 LA500"]),
 ]  # fmt: skip

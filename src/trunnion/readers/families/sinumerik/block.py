@@ -33,6 +33,7 @@ class Block:
     deltas   what the program adds to length and radius of the tool
     waits    words with which it waits for another channel
     feed_radius  at which F counts for rotary axes
+    orientation_tolerance  OTOL, degrees
     traori   the arguments of TRAORI
     """
 
@@ -55,6 +56,7 @@ class Block:
     waits: list[str] = field(default_factory=list)
     tolerances: list[float] = field(default_factory=list)
     feed_radius: float | None = None
+    orientation_tolerance: float | None = None
 
     @property
     def tool_axis(self) -> Floats | None:

@@ -3,7 +3,7 @@
 from typing import Final
 
 from trunnion.readers.control.iso_m_codes import PROGRAM_ENDS
-from trunnion.readers.program.word_values import Values, one_of, whole
+from trunnion.readers.program.word_values import GREATEST_TURN, Values, one_of, whole
 
 
 def _words(text: str) -> frozenset[str]:
@@ -174,7 +174,10 @@ DEGREE_AS_MILLIMETRE: Final = 57.296
 
 #: Those within which the control may leave rapids, mm, or the tool axis, degrees: the greatest value that the checks
 #: allow for. STOL is a factor.
-GREATEST: Final = {"ADISPOS": 1.0, "CTOLG": 1.0, "STOL": 10.0, "OTOL": 1.0, "OTOLG": 1.0}
+GREATEST: Final = {"ADISPOS": 1.0, "CTOLG": 1.0, "STOL": 10.0, "OTOL": GREATEST_TURN, "OTOLG": GREATEST_TURN}
+
+#: That of the tool axis in cuts.
+ORIENTATION_TOLERANCE: Final = "OTOL"
 
 #: Mode of CYCLE832: the machining type, in tens whether the second tolerance is that of the orientation, in millions
 #: the smoothing of surfaces. The digits in between are those of older software.
