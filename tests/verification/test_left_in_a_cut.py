@@ -4,8 +4,10 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.verifying import check
 from trunnion import verify
+from trunnion.errors import Severity
 
 CASES = Path(__file__).parents[1] / "data" / "cases"
 
@@ -67,3 +69,11 @@ def test_nothing_stops_in_a_hole_made_by_motion(word: str, fault: bool, tmp_path
     program = changed(tmp_path, "stop_in_hole_made_by_motion.nc", "M0", word)
     found = check(verify(program, machine="linuxcnc_5axis", cl=CASES / "holes.cls"), "stops")
     assert bool(found.places) is fault
+
+
+def test_a_simulation_refuses_cuts_from_where_nobody_knows() -> None:
+    stock, tools = "box:200,200,60,-100,-100,-60", ["7=ball:8,length=60", "8=ball:6,length=60"]
+    found = trunnion.simulate(CASES / "m242_in_cut.nc", machine="hs664rt", stock=stock, tools=tools)
+    assert [(remark.code, remark.severity) for remark in found.remarks if remark.code == "SIM143"] == [
+        ("SIM143", Severity.ERROR)
+    ]

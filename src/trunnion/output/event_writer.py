@@ -194,7 +194,9 @@ class EventWriter:
             formats = self._control.number_formats(self._motion.three_axis)
             blocks.write_lines(self._family.dwell(event, rpm, formats))
         elif isinstance(event, Message):
-            blocks.write_lines(self._family.message(replace(event, text=spelled(event.text, self._encoding))))
+            lines = self._family.message(replace(event, text=spelled(event.text, self._encoding)))
+            # One without a text ends that before it, where the control displays any.
+            blocks.write_lines([line for line in lines if event.text or line not in self._family.comment("")])
         elif isinstance(event, Insert):
             lines = event.text.split("\n")
             blocks.write_lines(lines, as_they_are=True, template=event.template)

@@ -66,7 +66,7 @@ def test_sheet_manifest_and_report_tell_what_the_simulation_found(
     sheet, manifest = (folder / "top.html").read_text(encoding="utf-8"), data(folder / "top.json")
     of_top = [each.what for each in found.problems if each.file.endswith("plate_top.mpf")]
     assert {"gouge", "collision"} <= {what.split(": ")[1] for what in of_top}
-    assert "were not looked for" not in sheet
+    assert "(no simulation)" not in sheet
     assert "THE SIMULATION WARNS" in sheet
     for what in of_top:
         assert f"Warning: {what}" in sheet

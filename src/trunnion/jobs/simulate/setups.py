@@ -35,6 +35,7 @@ from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification import restore_rapids
+from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
 
 #: Fewer errors do not say that a file is no program of the machine.
 _FEW_ERRORS: Final = 5
@@ -61,6 +62,7 @@ def prepare_setup(
     _check_programs(runs, machine)
     remarks += _without_motion(runs)
     remarks += _block_skips(runs)
+    remarks += _cuts_from_unknown_places(runs)
     for program in programs:
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
@@ -128,6 +130,15 @@ def _block_skips(runs: Sequence[Run]) -> Iterator[Problem]:
         if lines:
             wording = Wording("SIM149", "blocks_may_be_skipped", count=len(lines))
             yield Problem(run.files[0], lines[0], wording, severity=Severity.WARNING)
+
+
+def _cuts_from_unknown_places(runs: Sequence[Run]) -> Iterator[Problem]:
+    """Yield an error of each program that cuts from where nobody knows how far the tool has gone."""
+    for run in runs:
+        rows = cuts_from_unknown_places(run)
+        if len(rows):
+            wording = Wording("SIM143", "cuts_from_unknown", count=len(rows))
+            yield Problem(run.files[0], int(run.lines[int(rows[0])]), wording, severity=Severity.ERROR)
 
 
 def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[Problem]:

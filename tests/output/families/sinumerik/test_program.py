@@ -75,6 +75,25 @@ def test_dwells_stops_messages_and_inserts_are_blocks_of_their_own(post: Post) -
     assert motion(post(text))[2:] == own + said_again
 
 
+def test_the_text_of_a_stop_is_displayed_until_the_program_goes_on(post: Post) -> None:
+    lines = motion(post(HEAD + 'STOP/CHECK THE "INSERT"\nGOTO/20,0,5\nOPSTOP/LOOK\nGOTO/30,0,5\n' + FOOT))
+    assert lines[2:6] == ["M5", "MSG(\"CHECK THE 'INSERT'\")", "M0", "MSG()"]
+    at = lines.index('MSG("LOOK")')
+    assert lines[at + 1 : at + 3] == ["M1", "MSG()"]
+    long = motion(post(HEAD + f"STOP/{'WORD ' * 60}\nGOTO/20,0,5\n" + FOOT))
+    assert [line for line in long if line.startswith("MSG(") and len(line) > 100]
+    assert sum(line.count("WORD") for line in long if line.startswith(";")) == 60
+
+
+def test_a_message_is_ended_only_where_one_is_displayed(post: Post) -> None:
+    text = HEAD + "DISPLY/LOOK\nDISPLY/\nGOTO/20,0,5\n" + FOOT
+    assert 'MSG("LOOK")' in post(text)
+    assert "MSG()" in post(text)
+    fanuc = post.all(text, machine="matsuura_mx330")[1]
+    assert "(LOOK)" in fanuc
+    assert "()" not in fanuc
+
+
 def test_cutter_compensation_joins_the_next_motion_and_is_taken_back(post: Post) -> None:
     lines = motion(post(HEAD + "CUTCOM/LEFT\nGOTO/20,0,5\nCUTCOM/OFF\nGOTO/30,0,5\n" + FOOT))
     assert lines[2:] == ["G41 X20.", "G40 X30."]

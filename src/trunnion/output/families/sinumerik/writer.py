@@ -170,14 +170,25 @@ def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
 
 
 def stop(event: Stop, codes: Codes) -> list[str]:
-    """Return M0 or M1, after a comment for the operator."""
-    return program_stop(event, codes, comment)
+    """Return M0 or M1 after the text for the operator, which the control displays until the program goes on.
+
+    A text that is longer than a message stands in comments, too.
+    """
+    lines = program_stop(event, codes, _stop_text)
+    return [*lines, "MSG()"] if event.text else lines
+
+
+def _stop_text(text: str) -> list[str]:
+    pieces = split_text(text.replace('"', "'"), _MESSAGE_BYTES)
+    return [*(comment(text) if len(pieces) > 1 else ()), f'MSG("{pieces[0]}")']
 
 
 def message(event: Message) -> list[str]:
     """Return a comment, or MSG for the operator; a quotation mark would end its text."""
     if not event.display:
         return comment(event.text)
+    if not event.text:
+        return ["MSG()"]
     return [f'MSG("{piece}")' for piece in split_text(event.text.replace('"', "'"), _MESSAGE_BYTES)]
 
 
