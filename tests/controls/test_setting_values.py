@@ -38,8 +38,8 @@ def test_the_greatest_number_of_a_tool_is_that_of_the_control() -> None:
 def test_the_number_of_a_program_is_one_that_the_control_takes() -> None:
     assert "of at least 1 and of at most 99999" in problem("haas_umc750", program="12345678")
     assert not problem("haas_umc750", program="12345")
-    assert not problem("matsuura_mx330", program="9999")
-    assert "of at most 9999" in problem("matsuura_mx330", program="12345")
+    assert not problem("matsuura_mx330", program="1234")
+    assert "of at most 9999." in problem("matsuura_mx330", program="12345")  # eight digits are an option of the control
 
 
 @pytest.mark.parametrize(

@@ -234,7 +234,7 @@ def _template_rank(name: str) -> int:
 def _control_setting(control: Control, name: str) -> SettingDescription:
     rule = control.setting_rule(name)
     of_family = dict(control.family.validate_settings({**control.settings, name: _IMPOSSIBLE}))
-    allowed = of_family.get(name, rule.allowed()).what
+    allowed = of_family.get(name, rule.allowed()).bare().what
     if name == "work_offset" and FAMILIES[control.family_name].reader:
         allowed = load_reader(control.family_name).work_offsets.form
     elif rule.kind is SettingKind.TOOL and control.allowed_instead(name, "NAME") is None:

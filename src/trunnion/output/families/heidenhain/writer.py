@@ -175,15 +175,12 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     """Return an invalid program name, preset, side, retract or block form."""
     wrong = []
     name, blank = settings.get("program", ""), settings.get("blank", "")
+    named = phrase("name_of_program")
     if others := re.sub(r"[A-Za-z0-9_#$%&-]", "", name):
-        wrong.append(
-            (
-                "program",
-                phrase("name_of_program_without", characters=tuple(f'"{each}"' for each in dict.fromkeys(others))),
-            )
-        )
+        signs = tuple(f'"{each}"' for each in dict.fromkeys(others))
+        wrong.append(("program", named.within("without_characters", characters=signs)))
     elif len(name) > _LONGEST_NAME:
-        wrong.append(("program", phrase("name_of_program_shorter", count=len(name))))
+        wrong.append(("program", named.within("shorter", count=len(name))))
     if not re.fullmatch(r"[0-9]{1,5}", settings.get("work_offset", "1")):
         wrong.append(("work_offset", phrase("number_of_preset")))
     if settings.get("disengage", "") not in ("", "1", "2", "3", "4"):
