@@ -52,7 +52,8 @@ def test_a_coolant_has_the_number_of_no_other_word(
     stated: str, other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lines = told(tmp_path, capsys, f"{AXES_OF_CONTROL}[control.coolant]\n{stated}\n")
-    assert lines and all(f", which is {other}; write the M number" in line for line in lines)
+    assert lines
+    assert all(f", which is {other}" in line and "; write the M number" in line for line in lines)
 
 
 def test_a_name_that_stands_twice_is_one_mistake(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
