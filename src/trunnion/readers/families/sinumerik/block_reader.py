@@ -20,6 +20,7 @@ from trunnion.readers.families.sinumerik.words import (
     GREATEST,
     NOT_SIMULATED,
     ORIENTATION,
+    ORIENTATION_TOLERANCE,
     OTHER_FEEDS,
     POSITION_MODES,
     TOLERANCES,
@@ -237,8 +238,7 @@ class BlockReader:
         elif name == "TRAORI":
             block.words.append(name)
             if follows == "(":
-                numbers = reader.arguments()
-                block.traori = _number(numbers[0]) if numbers and numbers[0] is not None else 1.0
+                block.traori = reader.arguments()
         elif name == FEED_GROUP and follows == "(":
             self._feed_group(reader)
         elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
@@ -297,6 +297,8 @@ class BlockReader:
             raise ExpressionError(Wording("NC220", "changes_feed_not_simulated", name=name))
         elif name in GREATEST and not 0.0 <= _number(value) <= GREATEST[name]:
             raise ExpressionError(Wording("NC215", "tolerance_too_great", name=name, most=GREATEST[name]))
+        elif name == ORIENTATION_TOLERANCE:
+            block.orientation_tolerance = _number(value)
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""

@@ -212,6 +212,8 @@ class SinumerikInterpreter(WordInterpreter):
             self._other_feed_radius = abs(radius - DEGREE_AS_MILLIMETRE) > _SAME_RADIUS
         for tolerance in block.tolerances:
             control.add_tolerance(tolerance * control.length_unit)
+        if block.orientation_tolerance is not None:
+            control.add_orientation_tolerance(block.orientation_tolerance)
         for name, delta in block.deltas.items():
             control.add_tool_delta(name, delta * control.length_unit)
 
