@@ -69,7 +69,7 @@ def test_a_mode_behind_the_last_motion_is_told_unless_it_is_set_back(
     in_force_at_end = name == "G66"
     assert line == PROGRAMS[machine][0].count("\n") + (4 if in_force_at_end else 3)
     assert left(tmp_path, machine, cut(machine, 10), word, back) == []
-    if name not in ("G66", "G93", "M89", "G41", "G42", "G23"):  # these need more than a motion, or are told anyway
+    if name not in ("G66", "G93", "M89", "G41", "G42", "G23"):  # these need more than a motion; G23 counts with any
         assert left(tmp_path, machine, word, cut(machine, 10)) == [], "it has its use in this program"
         assert left(tmp_path, machine, word, cut(machine, 10), back) == []
 
