@@ -11,6 +11,8 @@ PLANE = "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"
 
 CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 
+TAP = "CYCLE84(9.,0.,1.,-9.,,,"
+
 #: A machine, blocks that its control knows, and blocks with values that it does not know.
 WORDS = [
     ("matsuura_mx330", ["G05.1 Q1", "G05.1 Q1 R10", "G05.1 Q3 X0 Y0 Z0", "G05.1 Q0"], ["G05.1 Q8", "G05.1 Q1 R11"]),
@@ -50,6 +52,15 @@ WORDS = [
     ("yl569", ['CYCLE800(0,"",1,57,0,0,0,0,0,0,0,0,0,0)'], ['CYCLE800(0,"",2,57,0,0,0,0,0,0,0,0,0,0)']),
     ("dmu65", [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 HSC-MODE:1 TA0.1"], [f"{CYCLE_32} X0.02"]),
     ("dmu65", [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 TA1"], [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 TA3"]),
+    ("yl569", ["S250 D1", "S0", "F25. T=3"], ["S-250", "S250 S2500", "D2 D1", "F25. F250.", "T=3 T=2", "X1. X2."]),
+    ("yl569", ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,,)"], ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,1)"]),
+    ("yl569", [f"{TAP}3,,1.,0.,500)", f"{TAP}5,6,1.,0.,500)"], [f"{TAP}0,,1.,0.,500)", f"{TAP}3,8,1.,0.,500)"]),
+    ("yl569", [f"{TAP}4,6,,0.,500)"], [f"{TAP}3,6,-1.,0.,500)", f"{TAP}3,6,,0.,-500)"]),
+    ("matsuura_mx330", ["S250"], ["S-250"]),
+    ("haas_umc750", ["S250"], ["S-250"]),
+    ("xyzac_trt", ["S250"], ["S-250"]),
+    ("hs664rt", ["S250"], ["S-250"]),
+    ("dmu65", ["TOOL CALL Z S250"], ["TOOL CALL Z S-250"]),
     ("dmu65", ["FN 16: F-PRINT A"], ["FN 17: SYSWRITE ID150 NR2 IDX1 = +5"]),
     ("dmu65", ["M120 LA5"], [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 HSC-MODE:2", "M120 LA500"]),
 ]  # fmt: skip

@@ -201,8 +201,8 @@ class SinumerikInterpreter(WordInterpreter):
         if block.feed is not None:
             control.programmed_feed = block.feed * control.unit_of_feed
         if block.speed is not None and not G_LIMITS.intersection(block.g):
-            control.modal.rpm.set(control.row, abs(block.speed))
-            control.add_event("speed", abs(block.speed))
+            control.modal.rpm.set(control.row, block.speed)
+            control.add_event("speed", block.speed)
         if block.tool is not None:
             control.select_tool(block.tool)
         if block.edge is not None:
