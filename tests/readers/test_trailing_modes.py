@@ -117,7 +117,8 @@ def test_a_position_that_the_next_program_goes_to_is_told(tmp_path: Path, word: 
     ((severity, _, text),) = left(tmp_path, "xyzac_trt", cut("xyzac_trt", 10), word)
     assert severity is Severity.ERROR
     assert text.startswith(f"{word} behind the last motion changes the position that {word[:3]} goes to in the next")
-    assert left(tmp_path, "xyzac_trt", word, cut("xyzac_trt", 10)) == []
+    ((severity, _, text),) = left(tmp_path, "xyzac_trt", word, cut("xyzac_trt", 10))
+    assert (severity, text) == (Severity.WARNING, f"{word} stays in the control behind the end of the program")
 
 
 def test_no_tool_length_is_left_on_by_h0(tmp_path: Path) -> None:

@@ -122,6 +122,9 @@ FAULTS = [
     ("matsuura_mx330", " G84 ", " G89 ", "holes"),
     ("matsuura_mx330", " G84 ", " G86 ", "holes"),
     ("matsuura_mx330", " M29 S500", "", "holes"),
+    ("matsuura_mx330", " G84 ", " G84 Q3. ", "holes"),
+    ("matsuura_mx330", " G84 ", " G84 J3 ", "words"),
+    ("matsuura_mx330", "G05.1 Q1", "G05.1 Q3", "words"),
     ("matsuura_mx330", "\nN210 G69", "\nN210", "turns"),
     # Fidia
     ("hs664rt", "N170 G55 O1", "N170", "words"),
@@ -136,6 +139,9 @@ FAULTS = [
     # LinuxCNC
     ("xyzac_trt", "G64 P0.02", "G64 P2", "modal"),
     ("xyzac_trt", "G64 P0.02", "G64", "modal"),
+    ("xyzac_trt", "G64 P0.02", "G64 P0.02 Q1", "modal"),
+    ("xyzac_trt", "T2 M6", "M61 Q2", "words"),
+    ("xyzac_trt", "T2 M6", "T3 M6\nM61 Q2", "words"),
     ("xyzac_trt", "G43 H2", "G43 H1", "tool"),
     ("xyzac_trt", "T2 M6", "T2", "tool"),
     ("xyzac_trt", "G21 ", "", "modal"),
