@@ -39,6 +39,23 @@ def test_mistakes_of_axes_and_of_the_control_come_together(tmp_path: Path, capsy
     assert lines[-1].endswith('write a text in quotes: edge = "2" [DEF330]')
 
 
+@pytest.mark.parametrize(
+    ("stated", "other"),
+    [
+        ("ON = 9", "OFF"),
+        ("OFF = 8", "OFF"),
+        ("THRU = 4", "spindle_counterclockwise"),
+        ("MIST = 30", "the end of a program"),
+    ],
+)
+def test_a_coolant_has_the_number_of_no_other_word(
+    stated: str, other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = told(tmp_path, capsys, f"{AXES_OF_CONTROL}[control.coolant]\n{stated}\n")
+    assert lines
+    assert all(f", which is {other}" in line and "; write the M number" in line for line in lines)
+
+
 def test_a_name_that_stands_twice_is_one_mistake(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     axes = '[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n[[axis]]\nname = "B"\nhome_deg = 3\n'
     (line,) = told(tmp_path, capsys, AXES_OF_CONTROL + axes)

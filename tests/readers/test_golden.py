@@ -61,8 +61,9 @@ def test_the_modal_state_is_that_of_the_finishing_program(yl569: Machine) -> Non
     assert run.machine_frame[[0, 1, 2, 3, -1, -2]].all()
     assert run.spindle[-1] == 1
     assert [e.kind for e in run.events] == [
-        "exact_stop", "tool", "tool_change", "message", "cycle832", "tolerance", "exact_stop", "speed",
-        "spindle", "cycle832", "tolerance", "exact_stop", "spindle", "end",
+        "exact_stop", "tool", "tool_change", "message", "cycle832", "tolerance", "orientation_tolerance",
+        "exact_stop", "speed",
+        "spindle", "cycle832", "tolerance", "orientation_tolerance", "exact_stop", "spindle", "end",
     ]  # fmt: skip
     assert run.events[4].value == (0.06, "_ORI_ROUGH", 1.0)
     assert [c.text for c in run.comments if c.before_row == first] == []

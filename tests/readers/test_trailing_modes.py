@@ -69,7 +69,7 @@ def test_a_mode_behind_the_last_motion_is_told_unless_it_is_set_back(
     in_force_at_end = name == "G66"
     assert line == PROGRAMS[machine][0].count("\n") + (4 if in_force_at_end else 3)
     assert left(tmp_path, machine, cut(machine, 10), word, back) == []
-    if name not in ("G66", "G93", "M89", "G41", "G42"):  # these need more than a motion
+    if name not in ("G66", "G93", "M89", "G41", "G42", "G23"):  # these need more than a motion; G23 counts with any
         assert left(tmp_path, machine, word, cut(machine, 10)) == [], "it has its use in this program"
         assert left(tmp_path, machine, word, cut(machine, 10), back) == []
 
@@ -117,7 +117,8 @@ def test_a_position_that_the_next_program_goes_to_is_told(tmp_path: Path, word: 
     ((severity, _, text),) = left(tmp_path, "xyzac_trt", cut("xyzac_trt", 10), word)
     assert severity is Severity.ERROR
     assert text.startswith(f"{word} behind the last motion changes the position that {word[:3]} goes to in the next")
-    assert left(tmp_path, "xyzac_trt", word, cut("xyzac_trt", 10)) == []
+    ((severity, _, text),) = left(tmp_path, "xyzac_trt", word, cut("xyzac_trt", 10))
+    assert (severity, text) == (Severity.WARNING, f"{word} stays in the control behind the end of the program")
 
 
 def test_no_tool_length_is_left_on_by_h0(tmp_path: Path) -> None:

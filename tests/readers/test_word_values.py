@@ -11,6 +11,8 @@ PLANE = "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"
 
 CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 
+TAP = "CYCLE84(9.,0.,1.,-9.,,,"
+
 #: A machine, blocks that its control knows, and blocks with values that it does not know.
 WORDS = [
     ("matsuura_mx330", ["G05.1 Q1", "G05.1 Q1 R10", "G05.1 Q3 X0 Y0 Z0", "G05.1 Q0"], ["G05.1 Q8", "G05.1 Q1 R11"]),
@@ -31,6 +33,8 @@ WORDS = [
     ("yl569", ["FGROUP()", "FGROUP(Z,X,Y)"], ["FGROUP(Z)", "FGROUP(X,Y,Z,C)", "FL[X]=9", "VELOLIM[X]=50", "FLIN"]),
     ("yl569", ["OTOL=0.1 STOL=2 ADISPOS=.5"], ["OTOL=5", "STOL=99", "ADISPOS=9", "CTOLG=9", "OTOLG=9", "RTLIOF"]),
     ("yl569", ["TRAORI(1)\nA3=0 C3=1"], ["TRAORI(3)", "A3=0 C3=1", "DIAMON", "DIAM90", "PROC A SAVE", "FPO"]),
+    ("yl569", ["TRAORI(1,,,1,0,0)", "TRAORI()"], ["TRAORI(1,1,0,0)", "TRAORI(,0,1,0)", "TRAORI(1,0,0,-1)"]),
+    ("yl569", ["TRAORI(1,,,,0)", "SPCOF", "SPCON(1)"], ["TRAORI(1,,,,5,0)", "TRAORI(1,,,,,5)", "TRAORI(2)"]),
     ("yl569", ["FGREF[C]=10 G1 X1 C9", "FGREF[C]=57.296 G1 C9"], ["FGREF[C]=10 G1 C9", "FGREF[C]=10\nG1 C9\nC5"]),
     ("yl569", ["CFTCP KONTT G62", "G41 X9 NORM"], ["G41 CFTCP", "CFIN\nG42 X9", "G41 G62", "G41 KONTT"]),
     ("matsuura_mx330", ["G61\nG64", "G22\nG23", f"{PLANE} P0"], ["G60 X5.", "G62", "G22 X9.", "G96 S99", "G5.3 P1"]),
@@ -42,11 +46,21 @@ WORDS = [
     ("dmu65", ["FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"], ["M98", "M112 T.5", "M144", "M150", "LN X+1 TX+0 TZ+1"]),
     ("dmu65", ["CYCL DEF 251"], ["CYCL DEF 239 Q570=+0", "CYCL DEF 220", "FUNCTION TCPM F CONT AXIS POS"]),
     ("yl569", ["CYCLE832(.02,_ORI_FINISH,1)", "CYCLE832(.02,112102)"], ["CYCLE832(.02,5)", "CYCLE832(.02,21,1)"]),
-    ("yl569", ["CYCLE832(.02,2000012,.5)", "OVR=100"], ["CYCLE832(.02,11,-1)", "OVR=50", "G1 X1. FB=20"]),
+    ("yl569", ["CYCLE832(.02,2000012,.5)", "OVR=100"], ["CYCLE832(.02,11,-1)", "CYCLE832(.02,1,5)", "OVR=50", "FB=20"]),
     ("yl569", ["CYCLE83(9.,0.,1.,-9.,,-3.,,,,,,1)"], ["CYCLE83(9.,0.,1.,-9.,,-3.,,,,,,2)"]),
     ("yl569", ['CYCLE800(0,"",0,57,0,0,0,0,0,0,0,0,0,0)'], ['CYCLE800(9,"",0,57,0,0,0,0,0,0,0,0,0,0)']),
     ("yl569", ['CYCLE800(0,"",1,57,0,0,0,0,0,0,0,0,0,0)'], ['CYCLE800(0,"",2,57,0,0,0,0,0,0,0,0,0,0)']),
     ("dmu65", [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 HSC-MODE:1 TA0.1"], [f"{CYCLE_32} X0.02"]),
+    ("dmu65", [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 TA1"], [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 TA3"]),
+    ("yl569", ["S250 D1", "S0", "F25. T=3"], ["S-250", "S250 S2500", "D2 D1", "F25. F250.", "T=3 T=2", "X1. X2."]),
+    ("yl569", ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,,)"], ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,1)"]),
+    ("yl569", [f"{TAP}3,,1.,0.,500)", f"{TAP}5,6,1.,0.,500)"], [f"{TAP}0,,1.,0.,500)", f"{TAP}3,8,1.,0.,500)"]),
+    ("yl569", [f"{TAP}4,6,,0.,500)"], [f"{TAP}3,6,-1.,0.,500)", f"{TAP}3,6,,0.,-500)"]),
+    ("matsuura_mx330", ["S250"], ["S-250"]),
+    ("haas_umc750", ["S250"], ["S-250"]),
+    ("xyzac_trt", ["S250"], ["S-250"]),
+    ("hs664rt", ["S250"], ["S-250"]),
+    ("dmu65", ["TOOL CALL Z S250"], ["TOOL CALL Z S-250"]),
     ("dmu65", ["FN 16: F-PRINT A"], ["FN 17: SYSWRITE ID150 NR2 IDX1 = +5"]),
     ("dmu65", ["M120 LA5"], [f"{CYCLE_32} T0.02\nCYCL DEF 32.2 HSC-MODE:2", "M120 LA500"]),
 ]  # fmt: skip

@@ -275,7 +275,7 @@ def outside_work(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
     cycles = [(int(rows[e.before_row]), e.value) for e in run.events if e.kind == "cycle832"]
     # Exact stops are those of G words, which are among the drives, and of CYCLE832, which smooths.
     silent = {"tool", "tool_change", "spindle", "speed", "coolant", "message", "end", "offset"}
-    silent |= {"cycle832", "tolerance", "exact_stop"}
+    silent |= {"cycle832", "tolerance", "orientation_tolerance", "exact_stop"}
     return {
         START: found,
         HOME: state.tolist(),

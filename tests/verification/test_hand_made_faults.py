@@ -136,6 +136,9 @@ FAULTS = [
     # LinuxCNC
     ("xyzac_trt", "G64 P0.02", "G64 P2", "modal"),
     ("xyzac_trt", "G64 P0.02", "G64", "modal"),
+    ("xyzac_trt", "G64 P0.02", "G64 P0.02 Q1", "modal"),
+    ("xyzac_trt", "T2 M6", "M61 Q2", "words"),
+    ("xyzac_trt", "T2 M6", "T3 M6\nM61 Q2", "words"),
     ("xyzac_trt", "G43 H2", "G43 H1", "tool"),
     ("xyzac_trt", "T2 M6", "T2", "tool"),
     ("xyzac_trt", "G21 ", "", "modal"),

@@ -24,6 +24,7 @@ GOTO/0,0,30
 DRILL = "DRILL,RAPTO,3,FEDTO,-10,MMPM,100"
 REAM = "REAM,RAPTO,3,FEDTO,-10,MMPM,100"
 DRAG = "BORE,DRAG,RAPTO,3,FEDTO,-10,MMPM,100"
+TAP = "TAP,RAPTO,3,FEDTO,-10,MMPR,1"
 DEEP = "DRILL,DEEP,RAPTO,3,FEDTO,-10,STEP,4,MMPM,100"
 
 #: Machine, cycle of the CL file, what is written, what it becomes.
@@ -41,6 +42,9 @@ CHANGED = [
     ("yl569", DRAG, ",3,0.0,0,0,0.0)", ",4,0.0,0,0,0.0)"),
     ("yl569", DEEP, ",0.0,0,0,1,1,3,", ",0.0,9,0,1,1,3,"),
     ("yl569", DEEP, ",0.0,0,0,1,1,3,", ",0.0,0,9,1,1,3,"),
+    ("dmu65", DRILL, "M99", "M99\nCYCL CALL"),
+    ("dmu65", DEEP, "M99", "M99\nL M99"),
+    ("dmu65", TAP, "M99", "M99\nCALL LBL 1\nLBL 1\nCYCL CALL\nLBL 0"),
 ]
 
 

@@ -36,6 +36,17 @@ from trunnion.model.axis_tolerance import AxisTolerance
 #: What may stand for 0: nothing, which is as other numbers, or a text that a control reads as 0.
 _ZERO: Final = r"([+-]?(0{1,2}(\.0{0,4})?|\.0{1,4}))?"
 
+#: M words that no coolant may have: those of ``codes``, and what ends a program or changes the tool.
+_OTHER_M_WORDS: Final = (
+    "spindle_clockwise",
+    "spindle_counterclockwise",
+    "spindle_off",
+    "stop",
+    "optional_stop",
+    "call",
+)
+_M_OF_PROGRAMS: Final = {2: "the end of a program", 30: "the end of a program", 6: "a tool change"}
+
 
 def control_library() -> Traversable:
     """Return the folder of the shipped control definitions."""
@@ -71,8 +82,8 @@ def load_control(own: Table) -> Control:
         block_numbers=_read_block_numbers(table.table("block_numbers"), family),
         formats=formats,
         words=tuple(_read_word(entry, formats, words) for entry in table.tables("word")),
-        codes=_read_integers(table.table("codes"), family.CODES),
-        coolant=_read_coolant(table.table("coolant")),
+        codes=(codes := _read_integers(table.table("codes"), family.CODES)),
+        coolant=_read_coolant(table.table("coolant"), codes),
         initial_modal_state=_read_integers(table.table("in_force"), words, complete=False),
         statements=_read_statements(table.table("statements")),
         settings=_read_settings(settings, family),
@@ -237,11 +248,20 @@ def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) 
     return {name: number for name, number in found.items() if number is not None}
 
 
-def _read_coolant(table: Table) -> dict[str, int]:
-    """Return the M codes of coolants; ``"none"`` takes away what the definition extends."""
-    codes = {name: table.integer(name, None, at_least=0, nothing="none") for name in COOLANTS}
+def _read_coolant(table: Table, codes: Mapping[str, int]) -> dict[str, int]:
+    """Return the M codes of coolants; ``"none"`` takes away what the definition extends.
+
+    The reader takes the meaning of a coolant's number from here, so none may be that of a word with another effect.
+    """
+    stated = {name: table.integer(name, None, at_least=0, nothing="none") for name in COOLANTS}
     table.report_unread_keys()
-    return {name: code for name, code in codes.items() if code is not None}
+    found = {name: code for name, code in stated.items() if code is not None}
+    others = {codes[name]: name for name in _OTHER_M_WORDS if name in codes} | dict(_M_OF_PROGRAMS)
+    for name, code in found.items():
+        other = "OFF" if name != "OFF" and code == found.get("OFF") else others.get(code)
+        if other:
+            table.add_problem(name, Wording("DEF330", "coolant_is_other_word", code=code, other=other))
+    return found
 
 
 def _read_texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:

@@ -96,7 +96,9 @@ STATES: Final = (
     ),
     State("smoothing words", "G64, G5.1 Q1, G8 P1, G187, COMPCAD, SOFT", _REPORTED),
     State("exact stop", "G60, G61, G9", _REPORTED, kinds=("exact_stop",)),
-    State("tolerance of the path", "CTOL, G187 E0.05", _REPORTED, kinds=("tolerance",)),
+    State(
+        "tolerance of the path", "CTOL, OTOL, G187 E0.05", _REPORTED, kinds=("tolerance", "orientation_tolerance"),
+    ),
     State("flood", "M8", _CARRIED, kinds=("coolant",)),
     State("mist", "M7", _CARRIED, lacks=("Haas",)),
     State("coolant through the tool", "M26, M88", _CARRIED, lacks=_others("Sinumerik", "Klartext")),

@@ -213,7 +213,7 @@ class CoordinateControl(RowRecorder):
         first, used = self._stored_systems.setdefault(system, self.row), self._in_use.at_part
         if clears:
             self._changed_offsets.pop(system, None)
-        elif what == OFFSET and system:
+        elif system:
             self._changed_offsets[system] = self.line, self.modal.file.current, word
         if self._stored_offsets and self._stored_offsets[0][0] < used:
             self._stored_offsets.clear()

@@ -37,6 +37,7 @@ class EventRecorder:
         self._tool_names = [""]
         self._selected_tool = 0
         self._tool_deltas: dict[str, float] = {}
+        self._orientation_tolerance = 0.0
 
     @property
     def row(self) -> int:
@@ -91,6 +92,15 @@ class EventRecorder:
     def add_tolerance(self, tolerance: float) -> None:
         """Record within which tolerance the control may round off the path from now on, mm; 0: none."""
         self.add_event("tolerance", tolerance)
+
+    def add_orientation_tolerance(self, tolerance: float) -> None:
+        """Record within which tolerance the control may turn the tool away from now on, degrees; 0: none.
+
+        None in force that stays none is no event: most programs do not speak of it.
+        """
+        if tolerance or self._orientation_tolerance:
+            self._orientation_tolerance = tolerance
+            self.add_event("orientation_tolerance", tolerance)
 
     def add_exact_stop(self, mode: str) -> None:
         """Record how the control goes through the ends of blocks from now on.

@@ -1,6 +1,7 @@
 """What the value of a word may be on a control; another one has no meaning, or one that the reader does not know."""
 
 from dataclasses import dataclass
+from typing import Final
 
 from trunnion.messages import Wording
 
@@ -38,3 +39,12 @@ def fault_of_value(word: str, letter: str, value: float, known: Values) -> Wordi
     if value in known:
         return None
     return Wording("NC215", "unknown_value", word=word, letter=letter, value=value, known=known)
+
+
+#: How far the control may turn the tool away at most, degrees: the checks allow for no more.
+GREATEST_TURN: Final = 1.0
+
+
+def orientation_fault(word: str, value: float) -> Wording:
+    """Return what is wrong with a tolerance of the orientation above the greatest."""
+    return Wording("NC215", "orientation_tolerance_too_great", word=word, value=value, most=GREATEST_TURN)

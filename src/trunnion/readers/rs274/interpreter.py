@@ -186,8 +186,10 @@ class Rs274Interpreter(Interpreter[A]):
             control.programmed_feed = feed if self._inverse_time else feed * control.feed_unit
         speed = block.take("S")
         if speed is not None:
-            control.modal.rpm.set(control.row, abs(speed))
-            control.add_event("speed", abs(speed))
+            if speed < 0.0:
+                raise BlockError(Wording("NC215", "speed_below_zero"))
+            control.modal.rpm.set(control.row, speed)
+            control.add_event("speed", speed)
 
     def _common_m_code(self, code: int) -> bool:
         """Execute an M code that all these languages share; False if it is another one."""

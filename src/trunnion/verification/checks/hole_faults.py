@@ -88,6 +88,7 @@ def hole_faults(
     yield from _height_faults(hole, motions)
     yield from peck_faults(hole, motions)
     yield from _exit_faults(hole, motions)
+    yield from _repeats(hole, motions)
     way = np.linalg.norm(np.diff(positions.tip, axis=0), axis=1) if match.by_motion else np.full(len(kind), np.nan)
     yield from _feed_faults(run, hole, motions.row[kind == Kind.LINEAR], rpm, way[kind == Kind.LINEAR])
     yield from _dwell_faults(hole, match, bottom, dwells, rpm)
@@ -139,6 +140,19 @@ def _exit_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
         yield motions.fault(after, 0.0, f"leaves the hole {how}, which is not what the CL file says")
     elif motions.by_motion and at_feed and abs(height - hole.cycle.clearance) > hole.tolerance:
         yield motions.fault(after, height, f"leaves the hole at a feed to another height than {hole.cycle.clearance:g}")
+
+
+def _repeats(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
+    """Yield a hole that is drilled again: two cycles at one place have no motion between them, and count as one."""
+    h = motions.height
+    bottom = int(np.argmax(h <= h.min() + _NOISE))
+    out = bottom + np.flatnonzero(h[bottom:] >= hole.cycle.clearance - hole.tolerance)
+    if len(out) and hole.cycle.depth > 0.0:
+        into = (motions.kind == Kind.LINEAR) & (h < hole.cycle.clearance - hole.tolerance)
+        into[: int(out[0])] = False
+        if into.any():
+            k = int(np.argmax(into))
+            yield motions.fault(k, float(h[k]), "drills the hole again; the CL file wants it once")
 
 
 def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float, way: Floats) -> Iterator[HoleFault]:

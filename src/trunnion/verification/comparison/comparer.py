@@ -6,13 +6,14 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags
+from trunnion.arrays import Flags, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
 from trunnion.verification.comparison.path_events import PathEvents
 from trunnion.verification.comparison.result import Alignment, Comparison, Difference, DifferentRows
+from trunnion.verification.comparison.rotary_ways import RotaryWays
 from trunnion.verification.comparison.row_states import compared_states
 from trunnion.verification.comparison.states import DifferentStretch, StateComparison
 from trunnion.verification.matching.resync import find_resync
@@ -49,6 +50,7 @@ class Comparer:
         self._states = StateComparison(compared_states(self._one, self._two, path=path))
         programs = () if path else (self._one, self._two)
         self._events = [PathEvents(each.run, each.rows, same_machine=same_machine) for each in programs]
+        self._ways = RotaryWays(one, two) if same_machine and not path else None
         self._tolerances = PointTolerances(tolerance, float(np.radians(axis_tolerance)))
         self._largest_tip = self._largest_axis = 0.0
         self._points = 0
@@ -105,6 +107,7 @@ class Comparer:
             self._note(i, j, float("inf"), f"only the {which} program goes on")
         elif i == len(one) and j == len(two):
             self._compare_events((i, j), (i + 1, j + 1))
+            self._compare_ways(i, j, *(np.array([len(each.run) - 1]) for each in (one, two)))
         return Comparison(
             programs=(one.run.files[0], two.run.files[0]),
             points=self._points,
@@ -139,6 +142,7 @@ class Comparer:
         a, b = one.rows[i : i + count], two.rows[j : j + count]
         self._points += int(np.count_nonzero(one.in_machine(a) == two.in_machine(b)))
         self._compare_states(i, j, count)
+        self._compare_ways(i, j, a, b)
         motions = {
             motion - first
             for events, first in zip(self._events, (i, j), strict=False)
@@ -162,6 +166,11 @@ class Comparer:
         for stretch in self._states.follow(i, j, a, b):
             self._count += 1
             self._note_first(stretch)
+
+    def _compare_ways(self, i: int, j: int, a: Ints, b: Ints) -> None:
+        for k, text in self._ways.follow(a, b) if self._ways else ():
+            self._count += 1
+            self._note_first(_PathDifference(i + k, j + k, 0.0, text))
 
     def _same_circle(self, i: int, j: int) -> bool:
         one, two = self._one.circle(i), self._two.circle(j)
@@ -227,6 +236,8 @@ class Comparer:
         """Note a difference between the paths."""
         self._count += 1
         self._path_count += 1
+        if self._ways:
+            self._ways.forget()
         place = _PathDifference(i, j, value, text)
         self._note_first(place)
         if self._worst is None or value > self._worst.value:

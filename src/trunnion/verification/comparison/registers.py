@@ -98,6 +98,8 @@ def _registers(one: Run, two: Run, same_words: bool) -> Iterator[Register]:
     yield _register("radius of", runs, [run.state.radius for run in runs], _radius_words, _compensated)
     tolerances = [_tolerance_column(run) for run in runs]
     yield replace(_register("tolerance", runs, tolerances, _tolerance_words, _cutting), within=digit)
+    turns = [_tolerance_column(run, "orientation_tolerance") for run in runs]
+    yield replace(_register("tolerance of the tool axis", runs, turns, _turn_words, _cutting), within=_LAST_DIGIT)
 
 
 def _register(
@@ -161,11 +163,11 @@ def _delta_column(run: Run, by_name: bool, digit: float, numbers: dict[Hashable,
     return _steps(run, [(0, frozenset()), *values()], numbers)
 
 
-def _tolerance_column(run: Run) -> StepColumn:
-    """Within which tolerance the control may leave the path, mm; 0: none."""
+def _tolerance_column(run: Run, kind: str = "tolerance") -> StepColumn:
+    """Within which tolerance the control may leave the path, mm, or the tool axis, degrees; 0: none."""
     found: list[tuple[int, float]] = [(0, 0.0)]
     for event in run.events:
-        if event.kind == "tolerance":
+        if event.kind == kind:
             found.append((event.before_row, float(event.value) if isinstance(event.value, int | float) else 0.0))
     rows, values = zip(*found, strict=True)
     return _column(run, list(rows), list(values))
@@ -217,7 +219,11 @@ def _delta_words(run: Run, row: int) -> str:
     return ", ".join(f"{name} {value:g} mm" for name, value in held.items() if value) or "nothing"
 
 
-def _tolerance_words(run: Run, row: int) -> str:
-    found = [event.value for event in run.events if event.kind == "tolerance" and event.before_row <= row]
+def _tolerance_words(run: Run, row: int, kind: str = "tolerance", unit: str = "mm") -> str:
+    found = [event.value for event in run.events if event.kind == kind and event.before_row <= row]
     value = float(found[-1]) if found and isinstance(found[-1], int | float) else 0.0
-    return ("any" if np.isinf(value) else f"{value:g} mm") if value else "none"
+    return ("any" if np.isinf(value) else f"{value:g} {unit}") if value else "none"
+
+
+def _turn_words(run: Run, row: int) -> str:
+    return _tolerance_words(run, row, "orientation_tolerance", "degrees")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.support.matrix.expected import WITHOUT_TCP
@@ -53,6 +53,8 @@ def test_where_the_definition_says_what_f_counts_programs_are_proven(name: str, 
     @given(st.composite(off_the_pole)(pair.machine))
     def every(text: str) -> None:
         done = posted(text, pair, tmp_path, WITHOUT_TCP)
+        # How far M242 retracts is not known: on a head the way from there may lead through the part, and is refused.
+        assume("the way from home leads through the part" not in done.err)
         check_proven(done, pair, WITHOUT_TCP)
         run = run_program(done.program, known(pair.machine))
         assert (run.state.feed_path.at(np.arange(len(run))) == RULES[rule]).all()

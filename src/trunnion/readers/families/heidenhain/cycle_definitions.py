@@ -43,7 +43,7 @@ from trunnion.readers.families.heidenhain.words import (
     TOLERANCE,
     TOLERANCE_WORDS,
 )
-from trunnion.readers.program.word_values import Values
+from trunnion.readers.program.word_values import GREATEST_TURN, Values, orientation_fault
 
 _NUMBER = re.compile(r"[ \t]*([0-9]{1,4})(?:\.([0-9]{1,2}))?(?![0-9.])")
 _ASSIGNED = re.compile(
@@ -220,6 +220,7 @@ class Definitions:
 
     def _tolerance(self, line: int, block_words: list[Word], parameters: Parameters) -> None:
         """Cycle 32: the tolerance T of its first line; without one the machine's own holds again."""
+        values: dict[str, float] = {}
         for word in block_words:
             known = TOLERANCE_WORDS.get((line, word.name))
             value = None if word.operand is None else value_of(word.operand, parameters)
@@ -229,10 +230,12 @@ class Definitions:
                 raise KlartextError(
                     Wording("NC215", "line_cycle_32_control_does", word=word.name, value=value, line=line)
                 )
+            if word.name == "TA" and value > GREATEST_TURN:
+                raise KlartextError(orientation_fault(f"CYCL DEF 32.{line} TA", value))
+            values[word.name] = value
         if line == 1:
-            operands = [word.operand for word in block_words if word.name == "T" and word.operand is not None]
-            tolerance = value_of(operands[0], parameters) if operands else 0.0
-            self._control.add_tolerance(tolerance * self._control.length_unit)
+            self._control.add_tolerance(values.get("T", 0.0) * self._control.length_unit)
+        self._control.add_orientation_tolerance(values.get("TA", 0.0))
 
     def _tilt(self, block_words: list[Word], parameters: Parameters) -> None:
         """Cycle 19: tilt by spatial angles, without a motion; that the angles are spatial ones is unconfirmed."""

@@ -185,13 +185,15 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     feed = values.get("F")
     if feed is not None and not 0.0 <= feed <= MAX_FEED:
         raise KlartextError(Wording("NC215", "feed_out_of_range", most=MAX_FEED))
+    if values.get("S", 0.0) < 0.0:
+        raise KlartextError(Wording("NC215", "speed_below_zero"))
     along = "XYZ".index(tool_axes[-1]) if tool_axes else None
     if along is not None and abs(control.machine.spindle_direction[along]) < _ALONG:
         control.note(Wording("NC361", "tool_axis_not_spindle", axis=tool_axes[-1]), Severity.ERROR)
     control.call_tool(name, along)
     if "S" in values:
-        control.modal.rpm.set(control.row, abs(values["S"]))
-        control.add_event("speed", abs(values["S"]))
+        control.modal.rpm.set(control.row, values["S"])
+        control.add_event("speed", values["S"])
     for key in ("DL", "DR", "DR2"):
         if values.get(key):
             control.add_tool_delta(key, values[key] * control.length_unit)

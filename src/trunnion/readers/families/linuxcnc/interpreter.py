@@ -156,13 +156,13 @@ class LinuxcncInterpreter(CycleInterpreter):
         control.update_frame()
 
     def _blending(self, word: Word, block: Block) -> None:
-        """G64: continuous path, within the tolerance P."""
+        """G64: continuous path, within the tolerance P, and with points left out within Q; the wider one is judged."""
         control = self.control
         tolerance, naive = block.take("P"), block.take("Q")
         if (tolerance or 0.0) < 0.0 or (naive or 0.0) < 0.0:
             self._note(Wording("NC215", "g64_tolerance_below_zero"), Severity.ERROR)
         # P0 is no tolerance: the control keeps its speed, as without P.
-        control.add_tolerance(tolerance * control.length_unit if tolerance else np.inf)
+        control.add_tolerance(max(tolerance, naive or 0.0) * control.length_unit if tolerance else np.inf)
         control.add_exact_stop("off")
 
     def _exact_path(self, word: Word, block: Block) -> None:
@@ -220,9 +220,12 @@ class LinuxcncInterpreter(CycleInterpreter):
         if block.take("P") != 0.0:
             self._note(Wording("NC220", "m52_lets_signal_scale_feed"), Severity.ERROR)
 
-    def _set_tool(self, word: Word, block: Block) -> None:
-        self.control.select_tool(f"{block.take('Q') or 0:g}")
-        self.control.change_tool()
+    def _rename_tool(self, word: Word, block: Block) -> None:
+        """M61: take the tool in the spindle for Q, whatever it is: no tool is changed."""
+        number = block.take("Q")
+        name = f"{number or 0:g}"
+        if number is None or name != self.control.tool_in_spindle:
+            self._note(Wording("NC220", "renames_tool", word=word.text, tool=name), Severity.ERROR)
 
     def _change_pallet(self, word: Word, block: Block) -> None:
         self.control.add_event("stop", "pallet")

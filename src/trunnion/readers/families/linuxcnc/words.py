@@ -73,8 +73,8 @@ TABLE: Final = WordTable(
         sets=("path", "on"), group="path control",
     ),
     Word(
-        "G64", "events `tolerance` and `exact_stop`: `off`", effect=_NONE, act="blending", group="path control",
-        letters="PQ",
+        "G64", "events `tolerance`, the wider of `P` and `Q`, and `exact_stop`: `off`", effect=_NONE, act="blending",
+        group="path control", letters="PQ",
     ),
     Word(
         "G70 G71 G71.1 G71.2 G72 G72.1 G72.2", "a turning cycle is not simulated", effect=_ERROR, group="motion",
@@ -108,7 +108,8 @@ TABLE: Final = WordTable(
     Word("M52", "with `P0`; else a signal scales the feed: an error", effect=_NONE, act="adaptive_feed",
          group="overrides", letters="P"),
     Word("M60", "event `stop`", act="change_pallet", group="stop", when=_AFTER),
-    Word("M61", "events `tool` `Q` and `tool_change`", act="set_tool", group="tool", letters="Q"),
+    Word("M61", "renames the tool in the spindle: an error for another than the one that was loaded", effect=_NONE,
+         act="rename_tool", group="tool", letters="Q"),
     Word("M62 M63 M64 M65", "digital outputs", effect=_NONE, act="signal", group="signals", letters="P",
          values={"P": _BIT}),
     Word("M66", "an input; with `L` it waits", effect=_NONE, act="wait_for_input", group="signals", letters="PELQ",

@@ -33,6 +33,8 @@ class Block:
     deltas   what the program adds to length and radius of the tool
     waits    words with which it waits for another channel
     feed_radius  at which F counts for rotary axes
+    orientation_tolerance  OTOL, degrees
+    traori   the arguments of TRAORI
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -49,11 +51,12 @@ class Block:
     speed: float | None = None
     tool: str | None = None
     edge: int | None = None
-    traori: float = 1.0
+    traori: list[Value | None] = field(default_factory=list)
     deltas: dict[str, float] = field(default_factory=dict)
     waits: list[str] = field(default_factory=list)
     tolerances: list[float] = field(default_factory=list)
     feed_radius: float | None = None
+    orientation_tolerance: float | None = None
 
     @property
     def tool_axis(self) -> Floats | None:

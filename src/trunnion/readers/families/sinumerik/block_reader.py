@@ -20,6 +20,7 @@ from trunnion.readers.families.sinumerik.words import (
     GREATEST,
     NOT_SIMULATED,
     ORIENTATION,
+    ORIENTATION_TOLERANCE,
     OTHER_FEEDS,
     POSITION_MODES,
     TOLERANCES,
@@ -42,6 +43,9 @@ _MODES: Final = (
 
 #: Words with a value that belong to circles and frames.
 _PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
+
+#: Where a block holds the words of which it has one at most.
+_HELD: Final = {"T": "tool", "S": "speed", "F": "feed", "D": "edge"}
 
 
 #: The value of a word and its mode.
@@ -142,15 +146,21 @@ class BlockReader:
         return sign * token.value, PositionMode.MODAL
 
     def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
-        if name in block.axes:
-            self._note(Wording("NC212", "last_counts", word=name), Severity.WARNING)
+        self._once(name, name in block.axes)
         block.axes[name] = value, mode
+
+    def _once(self, word: str, is_there: bool) -> None:
+        """Report a word that its block has already: the control stops there (alarm 12010)."""
+        if is_there:
+            self._note(Wording("NC212", "twice_in_block", word=word), Severity.ERROR)
 
     def _address(self, reader: ExpressionReader, block: Block, address: tuple[str, str], word: _Word) -> None:
         """Execute a word that is no axis; ``address`` is its letter and the digits after it."""
         letter, extension = address
         value, mode = word
         master_spindle = extension in ("", "0", "1")
+        if (extension == "" or (master_spindle and letter in "TS")) and (held := _HELD.get(letter)):
+            self._once(letter, getattr(block, held) is not None)
         if letter == "T" and master_spindle:
             block.tool = value if isinstance(value, str) else f"{value:.10g}"
             return
@@ -165,6 +175,8 @@ class BlockReader:
             case "M", _:
                 block.m.append(_code(number, "M"))
             case "S", _:
+                if number < 0.0:
+                    raise ExpressionError(Wording("NC215", "speed_below_zero"))
                 block.speed = number
             case "F", "":
                 if not 0.0 <= number <= MAX_FEED:
@@ -175,8 +187,10 @@ class BlockReader:
             case "H", _:
                 block.h.append(number)
             case (("I" | "J" | "K"), ("" | "1")):
+                self._once(letter + extension, letter + extension in block.params)
                 block.params[letter + extension] = number, mode
             case (("A" | "B" | "C"), "3"):
+                self._once(f"{letter}3=", letter in block.vector)
                 block.vector[letter] = number
             case (("A" | "B" | "C"), ("4" | "5")):
                 pass  # Surface normals are for radius compensation, which is not simulated.
@@ -237,8 +251,7 @@ class BlockReader:
         elif name == "TRAORI":
             block.words.append(name)
             if follows == "(":
-                numbers = reader.arguments()
-                block.traori = _number(numbers[0]) if numbers and numbers[0] is not None else 1.0
+                block.traori = reader.arguments()
         elif name == FEED_GROUP and follows == "(":
             self._feed_group(reader)
         elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
@@ -297,6 +310,8 @@ class BlockReader:
             raise ExpressionError(Wording("NC220", "changes_feed_not_simulated", name=name))
         elif name in GREATEST and not 0.0 <= _number(value) <= GREATEST[name]:
             raise ExpressionError(Wording("NC215", "tolerance_too_great", name=name, most=GREATEST[name]))
+        elif name == ORIENTATION_TOLERANCE:
+            block.orientation_tolerance = _number(value)
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""

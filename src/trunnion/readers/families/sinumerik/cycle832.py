@@ -17,6 +17,7 @@ from trunnion.readers.families.sinumerik.words import (
     SMOOTHING_SURFACES,
     SMOOTHING_TYPES,
 )
+from trunnion.readers.program.word_values import GREATEST_TURN, orientation_fault
 
 #: The cycle takes no more values.
 _MOST_ARGUMENTS: Final = 3
@@ -27,15 +28,20 @@ def smooth(control: SinumerikControl, call: Call) -> None:
     values = zip(call.argument_texts, call.arguments, strict=True)
     control.add_event("cycle832", tuple(text if text in CONSTANTS else value for text, value in values))
     tolerance, mode, orientation = (*call.arguments, None, None, None)[:3]
-    if len(call.arguments) > _MOST_ARGUMENTS or (isinstance(orientation, float) and orientation < 0.0):
+    turn = orientation if isinstance(orientation, float) else 0.0
+    if len(call.arguments) > _MOST_ARGUMENTS or turn < 0.0:
         control.note(Wording("NC215", "cycle832_takes_tolerance_mode_tolerance"), Severity.ERROR)
+    if turn > GREATEST_TURN:
+        control.note(orientation_fault("CYCLE832", turn), Severity.ERROR)
     if isinstance(mode, float) and not _is_mode(mode):
         control.note(Wording("NC215", "cycle832_mode_control_does_not", mode=mode), Severity.ERROR)
     given = tolerance if isinstance(tolerance, float) else 0.0
     if given < 0.0 or (given == 0.0 and isinstance(mode, float) and int(mode) % 10):
         control.note(Wording("NC215", "cycle832_smooths_within_give_first", given=given), Severity.ERROR)
     control.add_tolerance(given * control.length_unit)
-    control.smooth(isinstance(mode, float) and _is_mode(mode) and int(mode) % 10 > 0)
+    is_on = isinstance(mode, float) and _is_mode(mode) and int(mode) % 10 > 0
+    control.add_orientation_tolerance(turn if is_on else 0.0)
+    control.smooth(is_on)
 
 
 def _is_mode(mode: float) -> bool:

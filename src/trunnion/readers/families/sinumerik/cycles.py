@@ -63,6 +63,9 @@ _MODE_PLACES: Final = {
     "CYCLE85": 9, "CYCLE86": 12, "CYCLE87": 7, "CYCLE88": 8, "CYCLE89": 7,
 }  # fmt: skip
 
+#: Pitches that differ by less are the same, mm.
+_SAME_PITCH: Final = 1e-4
+
 #: _AMODE of CYCLE81 and CYCLE82: how the depth counts (1 by DPR, 2 by DP), and in tens the dwell (1 s, 2 turns).
 _ALTERNATIVES: Final = frozenset(float(10 * dwell + depth) for dwell in range(3) for depth in range(3))
 
@@ -149,6 +152,13 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
 
     plane_axis   the axis along which it drills here: that perpendicular to the working plane
     """
+    most = _MODE_PLACES[name] + 2
+    if any(value is not None for value in arguments[most:]):
+        raise CycleExecutionError(Wording("NC380", "too_many_values", most=most, given=len(arguments)))
+    if name in _SENSE_PLACES and _get(arguments, _SENSE_PLACES[name]) == 0.0:
+        raise CycleExecutionError(Wording("NC380", "bad_spindle_sense", code=0.0))
+    if name == "CYCLE84":
+        _check_tap(arguments)
     for place, known in CYCLE_VALUES.get(name, {}).items():
         if (value := _or(arguments, place)) not in known:
             raise CycleExecutionError(Wording("NC215", "value_control_knows", value=value, place=place, known=known))
@@ -177,6 +187,17 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
         raise CycleExecutionError(Wording("NC380", "amode_does_not_fit_dp", alternatives=alternatives))
     if (dwell == 1 and _or(arguments, 6) < 0.0) or (dwell == 2 and _or(arguments, 6) > 0.0):
         raise CycleExecutionError(Wording("NC380", "amode_does_not_fit_dwell", alternatives=alternatives))
+
+
+def _check_tap(arguments: Arguments) -> None:
+    """Refuse a size of thread (MPIT) beside another pitch (PIT), and a speed (SST, SST1) below zero."""
+    size, pitch, unit = _get(arguments, 8), _get(arguments, 9), _or(arguments, 14)
+    if size and pitch:
+        is_same = abs(_pitch(size, None, unit) - _pitch(None, pitch, unit)) < _SAME_PITCH
+        if not is_same or (size > 0.0) is not (pitch > 0.0):
+            raise CycleExecutionError(Wording("NC380", "two_pitches", size=size, pitch=pitch))
+    if _or(arguments, 11) < 0.0 or _or(arguments, 12) < 0.0:
+        raise CycleExecutionError(Wording("NC215", "speed_below_zero"))
 
 
 def _get(arguments: Arguments, place: int) -> float | None:

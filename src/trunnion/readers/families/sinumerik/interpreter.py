@@ -201,8 +201,8 @@ class SinumerikInterpreter(WordInterpreter):
         if block.feed is not None:
             control.programmed_feed = block.feed * control.unit_of_feed
         if block.speed is not None and not G_LIMITS.intersection(block.g):
-            control.modal.rpm.set(control.row, abs(block.speed))
-            control.add_event("speed", abs(block.speed))
+            control.modal.rpm.set(control.row, block.speed)
+            control.add_event("speed", block.speed)
         if block.tool is not None:
             control.select_tool(block.tool)
         if block.edge is not None:
@@ -212,6 +212,8 @@ class SinumerikInterpreter(WordInterpreter):
             self._other_feed_radius = abs(radius - DEGREE_AS_MILLIMETRE) > _SAME_RADIUS
         for tolerance in block.tolerances:
             control.add_tolerance(tolerance * control.length_unit)
+        if block.orientation_tolerance is not None:
+            control.add_orientation_tolerance(block.orientation_tolerance)
         for name, delta in block.deltas.items():
             control.add_tool_delta(name, delta * control.length_unit)
 

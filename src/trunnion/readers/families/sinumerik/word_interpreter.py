@@ -16,6 +16,7 @@ from trunnion.readers.families.sinumerik.control import (
     POLYNOMIAL,
     THROUGH,
 )
+from trunnion.readers.families.sinumerik.expressions import Value
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement, state_of_frame
 from trunnion.readers.families.sinumerik.words import (
     EXACT_STOPS,
@@ -42,6 +43,9 @@ from trunnion.readers.program.interpreter import ProgramEnd
 #: G words of threads, which are taken as lines, and of the dwell.
 _THREADS: Final = (33, 63, 331, 332)
 DWELL: Final = 4
+
+#: TRAORI takes the offsets of two rotary axes.
+_MOST_OFFSETS: Final = 2
 
 
 class WordInterpreter(CallInterpreter):
@@ -88,8 +92,8 @@ class WordInterpreter(CallInterpreter):
         control = self.control
         match word:
             case "TRAORI":
-                if block.traori not in (1.0, 2.0):
-                    self._note(Wording("NC224", "traori_only_machine_knows_what", traori=block.traori), Severity.ERROR)
+                if fault := _fault_of_traori(block.traori):
+                    self._note(fault, Severity.ERROR)
                 control.set_tcp(True)
                 control.lose_offset()
             case "TRAFOOF":
@@ -168,3 +172,20 @@ class WordInterpreter(CallInterpreter):
         result = control.program_frame.compose(frame) if additive else frame
         control.set_program_frame(result)
         control.add_event("frame", state_of_frame(word, result))
+
+
+def _fault_of_traori(arguments: list[Value | None]) -> Wording | None:
+    """Return what is wrong with TRAORI(n,X,Y,Z,A,B): it is followed for the first transformation, and a tool along Z.
+
+    X, Y, Z are the direction of the tool in the basic position, A and B the offsets of the rotary axes.
+    """
+    number, *rest = arguments or [None]
+    if number not in (None, 1.0):
+        return Wording("NC224", "traori_only_machine_knows_what", traori=str(number).removesuffix(".0"))
+    direction, offsets = rest[:3], rest[3:]
+    x, y, z = (*(value or 0.0 for value in direction), 0.0, 0.0, 0.0)[:3]
+    is_along_z = direction.count(None) == len(direction) or (x == y == 0.0 and not isinstance(z, str) and z > 0.0)
+    if is_along_z and not any(offsets) and len(offsets) <= _MOST_OFFSETS:
+        return None
+    written = ",".join("" if value is None else str(value).removesuffix(".0") for value in arguments)
+    return Wording("NC224", "traori_turns_basic_position", arguments=written)

@@ -3,7 +3,7 @@
 from typing import Final
 
 from trunnion.readers.control.iso_m_codes import PROGRAM_ENDS
-from trunnion.readers.program.word_values import Values, one_of, whole
+from trunnion.readers.program.word_values import GREATEST_TURN, Values, one_of, whole
 
 
 def _words(text: str) -> frozenset[str]:
@@ -145,7 +145,7 @@ WITHOUT_PATH_EFFECT: Final = _words("""
     DYNNORM DYNPOS DYNROUGH DYNSEMIFIN DYNFINISH DYNPREC
     UPATH SPATH
     ORISON ORISOF
-    STOPRE STARTFIFO STOPFIFO WALIMON WALIMOF
+    STOPRE STARTFIFO STOPFIFO FIFOCTRL SPCON SPCOF WALIMON WALIMOF
     SBLON SBLOF DISPLOF DISPLON ACTBLOCNO
     PAROTOF TCOFR TCABS
     RTLION CPRECON CPRECOF
@@ -156,7 +156,7 @@ WITHOUT_PATH_EFFECT: Final = _words("""
 #: Words with ``=value`` or ``[axis]=value`` that the path does not depend on.
 WITHOUT_PATH_EFFECT_VALUES: Final = _words("""
     ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC
-    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA SPCON DITS DITE FZ
+    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA DITS DITE FZ
     """)
 
 #: Those within which the control may round off the path, mm.
@@ -174,7 +174,10 @@ DEGREE_AS_MILLIMETRE: Final = 57.296
 
 #: Those within which the control may leave rapids, mm, or the tool axis, degrees: the greatest value that the checks
 #: allow for. STOL is a factor.
-GREATEST: Final = {"ADISPOS": 1.0, "CTOLG": 1.0, "STOL": 10.0, "OTOL": 1.0, "OTOLG": 1.0}
+GREATEST: Final = {"ADISPOS": 1.0, "CTOLG": 1.0, "STOL": 10.0, "OTOL": GREATEST_TURN, "OTOLG": GREATEST_TURN}
+
+#: That of the tool axis in cuts.
+ORIENTATION_TOLERANCE: Final = "OTOL"
 
 #: Mode of CYCLE832: the machining type, in tens whether the second tolerance is that of the orientation, in millions
 #: the smoothing of surfaces. The digits in between are those of older software.
@@ -196,7 +199,7 @@ CYCLE_VALUES: Final[dict[str, dict[int, Values]]] = {
 
 #: Words with arguments that the path does not depend on.
 WITHOUT_PATH_EFFECT_CALLS: Final = _words("""
-    WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
+    WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCON SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
     ORISOF ORISON GROUP_BEGIN GROUP_END GROUP_ADDEND TOFFOF
     """)
 
