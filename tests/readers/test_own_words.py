@@ -149,6 +149,14 @@ def test_readers_without_such_words_refuse_them(
     assert "machine.toml:" in capsys.readouterr().err
 
 
+def test_smoothing_of_a_fanuc_can_be_declared(tmp_path: Path) -> None:
+    file = definition(tmp_path, "matsuura_mx330", '"G5.1 Q3" = "no effect: nano smoothing within 0.01 mm"')
+    program = tmp_path / "part.nc"
+    program.write_text(HEADS["matsuura_mx330"].format(lines="G05.1 Q3 X0 Y0 Z0\nG5.1Q3\nG05.1 Q2"), encoding="utf-8")
+    errors = trunnion.read_program(program, machine=file).errors
+    assert [error.text.split(" smooths")[0] for error in errors] == ["G5.1 Q2"]
+
+
 def test_a_code_with_tenths_is_another_word(tmp_path: Path) -> None:
     file = definition(tmp_path, "matsuura_mx330", 'G187 = "no effect"')
     program = tmp_path / "part.nc"

@@ -11,11 +11,12 @@ PLANE = "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"
 
 CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 
+SWIVEL = 'CYCLE800(0,"",0,'
 TAP = "CYCLE84(9.,0.,1.,-9.,,,"
 
 #: A machine, blocks that its control knows, and blocks with values that it does not know.
 WORDS = [
-    ("matsuura_mx330", ["G05.1 Q1", "G05.1 Q1 R10", "G05.1 Q3 X0 Y0 Z0", "G05.1 Q0"], ["G05.1 Q8", "G05.1 Q1 R11"]),
+    ("matsuura_mx330", ["G05.1 Q1", "G05.1 Q1 R10", "G05.1 Q0"], ["G05.1 Q8", "G05.1 Q1 R11", "G05.1 Q3 X0 Y0"]),
     ("matsuura_mx330", ["G05 P10000", "G05 P0", "G08 P1", "G08 P0"], ["G05 P1000", "G08 P2"]),
     ("matsuura_mx330", ["G10 L2 P6 X1.", "G10 L20 P1 X1."], ["G10 L12 P5 R3.", "G10 L2 P0 X1.", "G10 L20 P0 X1."]),
     ("matsuura_mx330", ["G30 P2 Z0", "G4 P1500"], ["G30 P9 Z0", "G10 L12 P0 R3.", "G4 P-5", "G10 L4 P1 R3."]),
@@ -39,7 +40,7 @@ WORDS = [
     ("yl569", ["CFTCP KONTT G62", "G41 X9 NORM"], ["G41 CFTCP", "CFIN\nG42 X9", "G41 G62", "G41 KONTT"]),
     ("matsuura_mx330", ["G61\nG64", "G22\nG23", f"{PLANE} P0"], ["G60 X5.", "G62", "G22 X9.", "G96 S99", "G5.3 P1"]),
     ("matsuura_mx330", ["G43 H1 Z9.\nG69"], [f"{PLANE}\nG43 H1 Z9.\nG69", "G43 H1 Z9.\nG68.2 X0 Y0 Z0 I0 J0 K0"]),
-    ("matsuura_mx330", ["M29 S99"], ["G33 Z-9. F1.", "G31 Z-9. F9.", f"{PLANE} P1"]),
+    ("matsuura_mx330", ["M29 S99"], ["G84 X1. Z-9. R1. J2", "G33 Z-9. F1.", "G31 Z-9. F9.", f"{PLANE} P1"]),
     ("haas_umc750", ["G187", "G187 E.02", "M83"], ["G187 P", "M39", "M41", "M50", "M82", "M86", "M138", "G60 X5."]),
     ("xyzac_trt", ["M52 P0", "G92 X5\nG92.3", "M110"], ["M52", "M52 P1", "G92.3", "M129", "G38.2 Z0 F9", "G33 Z0 K1"]),
     ("dmu65", ["M103", "M111", "M124", "M124 T.1", "M138", "M138 A C"], ["M103 F20", "M109", "M110", "M138 A"]),
@@ -56,6 +57,7 @@ WORDS = [
     ("yl569", ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,,)"], ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,1)"]),
     ("yl569", [f"{TAP}3,,1.,0.,500)", f"{TAP}5,6,1.,0.,500)"], [f"{TAP}0,,1.,0.,500)", f"{TAP}3,8,1.,0.,500)"]),
     ("yl569", [f"{TAP}4,6,,0.,500)"], [f"{TAP}3,6,-1.,0.,500)", f"{TAP}3,6,,0.,-500)"]),
+    ("yl569", [f"{SWIVEL}57,0,0,0,0,0,0,0,0,0,0,0,1)"], [f"{SWIVEL}57,0,0,0,0,0,0,0,0,0,0,0,2)", f"{SWIVEL}192)"]),
     ("matsuura_mx330", ["S250"], ["S-250"]),
     ("haas_umc750", ["S250"], ["S-250"]),
     ("xyzac_trt", ["S250"], ["S-250"]),

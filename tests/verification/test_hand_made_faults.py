@@ -122,6 +122,9 @@ FAULTS = [
     ("matsuura_mx330", " G84 ", " G89 ", "holes"),
     ("matsuura_mx330", " G84 ", " G86 ", "holes"),
     ("matsuura_mx330", " M29 S500", "", "holes"),
+    ("matsuura_mx330", " G84 ", " G84 Q3. ", "holes"),
+    ("matsuura_mx330", " G84 ", " G84 J3 ", "words"),
+    ("matsuura_mx330", "G05.1 Q1", "G05.1 Q3", "words"),
     ("matsuura_mx330", "\nN210 G69", "\nN210", "turns"),
     # Fidia
     ("hs664rt", "N170 G55 O1", "N170", "words"),

@@ -42,6 +42,7 @@ _SILENT: Final = frozenset({"no effect", "comes back", HOME, WAITS})
 _MOST_LETTERS: Final = 40
 _LEADING_ZEROS: Final = re.compile(r"^([GM])0+([0-9])")
 _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
+_CODE: Final = re.compile(r"^[GM](?=[0-9])")
 #: A G code without tenths: one with them is another word.
 _G_CODE: Final = re.compile(r"G[0-9]+")
 _BLOCK_BEGIN: Final = re.compile(r"[ \t]*/?[0-9]?[ \t]*(?:N[0-9]+|[0-9]+(?=[ \t]))?[ \t]*/?[ \t]*")
@@ -154,9 +155,9 @@ class KnownWords:
         words = known_words(machine)
         self._codes = {word.code: word for word in words if word.code is not None}
         blocks = [word for word in words if word.code is None]
-        begins = "|".join(rf"(?:{_pattern(word.word)})" for word in sorted(blocks, key=lambda word: -len(word.word)))
-        self._begin = re.compile(rf"({begins})(?![A-Z0-9_])", re.IGNORECASE) if blocks else None
-        self._blocks = {word.word: word for word in blocks}
+        self._blocks = sorted(blocks, key=lambda word: -len(word.word))
+        begins = "|".join(f"({_pattern(word.word)})" for word in self._blocks)
+        self._begin = re.compile(rf"(?:{begins})(?![A-Z0-9_])", re.IGNORECASE) if blocks else None
         codes = "|".join(str(code) for code in self._codes)
         self._code = re.compile(rf"(?<![A-Z0-9_.$])M0*({codes})(?![0-9=])(?:\([^)]*\))?", re.I) if codes else None
         self._continues = False
@@ -170,10 +171,9 @@ class KnownWords:
         if self._begin is not None:
             start = _BLOCK_BEGIN.match(raw)
             match = self._begin.match(raw, start.end() if start else 0)
-            if match is not None:
+            if match is not None and match.lastindex is not None:
                 self._continues = raw.rstrip().endswith("~")
-                word = self._blocks[" ".join(match[1].upper().split())]
-                self._execute_block(word, raw[match.start() :].split(";")[0].strip())
+                self._execute_block(self._blocks[match.lastindex - 1], raw[match.start() :].split(";")[0].strip())
                 return None, ()
         if self._code is None:
             return raw, ()
@@ -231,6 +231,6 @@ class KnownWords:
 
 
 def _pattern(word: str) -> str:
-    """Return the regular expression of a word; blanks between its parts may be more, or missing."""
-    parts = r"[ \t]*".join(re.escape(part) for part in word.split())
+    """Return the regular expression of a word; blanks between its parts, and zeros of its code, may be more."""
+    parts = r"[ \t]*".join(_CODE.sub(r"\g<0>0*", re.escape(part)) for part in word.split())
     return parts + (r"(?!\.[0-9])" if _G_CODE.fullmatch(word) else "")

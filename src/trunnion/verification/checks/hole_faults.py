@@ -208,6 +208,9 @@ def _work_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, Spin
     if has is not wants and not (match.by_motion and wants in _BY_MOTION):
         yield HoleFault(at, 0.0, f"{_TASKS[has]}; the CL file wants a hole whose cycle {_TASKS[wants]}")
         return
+    if work is not None and work.stroke and not hole.cycle.pecks:
+        text = f"cuts a thread in strokes of {work.stroke:g} mm; the CL file wants it in one"
+        yield HoleFault(at, work.stroke, text)
     if work is None or hole.spindle is None or not hole.spindle.sense:
         return
     hand, sense = work.hand, hole.spindle.sense  # 0: that of the spindle, which is judged by itself

@@ -126,10 +126,11 @@ class CycleInterpreter(OffsetInterpreter):
     def _check_words(self, block: Block) -> None:
         """Refuse words that describe pecks and retracts on some controls, and dwells whose unit is in doubt."""
         settings = self.control.settings
+        others = "" if self.motion_code in cycles.SHIFTED else "IJ"
         if settings.repeat_letter == "L":
-            pecks = "K" if self.motion_code == cycles.FINE_BORE else "IJK"
-            if found := [letter for letter in pecks if letter in block.words]:
-                raise BlockError(Wording("NC220", "peck_word_not_simulated", word=found[0]))
+            others = "K" if self.motion_code == cycles.FINE_BORE else "IJK"
+        if found := [letter for letter in others if letter in block.words]:
+            raise BlockError(Wording("NC220", "peck_word_not_simulated", word=found[0]))
         dwell = block.words.get("P")
         in_doubt = settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value
         if in_doubt and not words.takes_number(block):

@@ -192,6 +192,8 @@ class FanucInterpreter(CycleInterpreter):
     def _contour_control(self, word: Word, block: Block) -> None:
         if "Q" not in block.words:
             self._note(Wording("NC215", "g5_1_needs_q1_q0"), Severity.ERROR)
+        elif (written := f"{word.text} Q{block.words['Q'].value:g}") in words.SMOOTHING:
+            self._note(Wording("NC224", "smooths_path", word=written), Severity.ERROR)
 
     def _exact_stop(self, word: Word, block: Block) -> None:
         self.control.add_exact_stop(word.sets)

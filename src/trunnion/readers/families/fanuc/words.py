@@ -13,14 +13,14 @@ _BEHIND, _AFTER = When.BEHIND_MODES, When.AFTER_MOTION
 _POSITION: Final = "tool position offsets are not simulated"
 _REGISTER: Final = whole(0, 999)
 
-#: G5.1 Q2 and Q3 (smooth interpolation, nano smoothing) round within the tolerance of the control. P1 and P2 of G53.1
-#: choose another of the two positions of the rotary axes than the nearest.
+#: P1 and P2 of G53.1 choose another of the two positions of the rotary axes than the nearest.
 TABLE: Final = WordTable(
     *COMMON_WORDS,
     Word("G4", "dwell", act="dwell", letters="PXU", when=_BEHIND, moves=False),
     Word("G5", effect=_NONE, letters="P", values={"P": one_of(0, 10000)}, moves=False),
     Word(
-        "G5.1", "AI contour control", effect=_NONE, act="contour_control", letters="QRXYZABC",
+        "G5.1", "AI contour control; `Q2` and `Q3`, which smooth the path: an error, or declared", effect=_NONE,
+        act="contour_control", letters="QRXYZABC",
         values={"Q": whole(0, 3), "R": whole(1, 10)}, moves=False,
     ),
     Word("G5.3", "what it chooses is not known", effect=_ERROR, letters="P", moves=False),
@@ -170,6 +170,9 @@ MACROS: Final = frozenset({TABLE.code("G65"), TABLE.code("G66")})
 MODAL_MACRO: Final = TABLE.code("G66")
 TILT: Final = TABLE.code("G68.2")
 
+#: Smooth interpolation and nano smoothing, which round the path within a tolerance of the control.
+SMOOTHING: Final = ("G5.1 Q2", "G5.1 Q3")
+
 #: Threads.
 THREADS: Final = frozenset({TABLE.code("G74"), TABLE.code("G84")})
 
@@ -205,7 +208,12 @@ FLOW: Final = ("IF", "GOTO", "WHILE", "DO", "END", "THEN")
 
 
 def is_own_word(word: str) -> bool:
-    """Whether a declared word begins with one of the control; a call of a named program does not."""
+    """Whether a declared word begins with one of the control; a call of a named program does not.
+
+    How far smooth interpolation leaves the path is up to the control: a definition may answer for it.
+    """
+    if word in SMOOTHING:
+        return False
     return word.partition(" ")[0].rstrip("0123456789") in FLOW or TABLE.is_own(word)
 
 
