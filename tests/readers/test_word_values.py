@@ -11,6 +11,7 @@ PLANE = "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"
 
 CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 
+SWIVEL = 'CYCLE800(0,"",0,'
 TAP = "CYCLE84(9.,0.,1.,-9.,,,"
 
 #: A machine, blocks that its control knows, and blocks with values that it does not know.
@@ -56,6 +57,7 @@ WORDS = [
     ("yl569", ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,,)"], ["CYCLE82(9.,0.,1.,-9.,,.5,0,1,12,1)"]),
     ("yl569", [f"{TAP}3,,1.,0.,500)", f"{TAP}5,6,1.,0.,500)"], [f"{TAP}0,,1.,0.,500)", f"{TAP}3,8,1.,0.,500)"]),
     ("yl569", [f"{TAP}4,6,,0.,500)"], [f"{TAP}3,6,-1.,0.,500)", f"{TAP}3,6,,0.,-500)"]),
+    ("yl569", [f"{SWIVEL}57,0,0,0,0,0,0,0,0,0,0,0,1)"], [f"{SWIVEL}57,0,0,0,0,0,0,0,0,0,0,0,2)", f"{SWIVEL}192)"]),
     ("matsuura_mx330", ["S250"], ["S-250"]),
     ("haas_umc750", ["S250"], ["S-250"]),
     ("xyzac_trt", ["S250"], ["S-250"]),

@@ -68,3 +68,29 @@ def test_how_the_tool_axis_turns_between_points_is_a_difference(tmp_path: Path) 
     plane = YL569 / "1_contour_rough.expected.mpf"
     level = plane.read_text(encoding="utf-8").replace("G54", "ORIVECT\nG54", 1)
     assert trunnion.diff(plane, another(tmp_path, level.splitlines()), machine="yl569").same
+
+
+#: CL files, machines, words of their programs, and what takes their place: the path stays.
+CONDITIONS = [
+    (TESTS / "golden" / "hs664rt" / "radial_holes.cls", "hs664rt", "N120 G71\n", "", "in mm or inches"),
+    (TESTS / "golden" / "fanuc" / "flange.cls", "matsuura_mx330", "G21 G17", "G17", "in mm or inches"),
+    (YL569 / "1_contour_rough.cls", "yl569", "N310 M6", "N305 M3 S500\nN310 M6", "tool change while the spindle"),
+    (YL569 / "3_blade_finish.cls", "yl569", "D1 M3\n", "D1 M4 M3\n", "one block turns the spindle"),
+    (CASES / "contour.cls", "matsuura_mx330", "N280 M3\nN290 M8\n", "N280 M3\n", "coolant flood after a stop"),
+    (CASES / "tilted.cls", "generic_head_table_bc", "N640 CYCLE800()\n", "", "while a tilted plane is on"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("source", "machine", "words", "others", "what"), CONDITIONS)
+def test_conditions_that_the_path_does_not_show_are_differences(
+    source: Path, machine: str, words: str, others: str, what: str, tmp_path: Path
+) -> None:
+    one, two = tmp_path / "one.nc", tmp_path / "two.nc"
+    trunnion.post(source, machine=machine, output=one)
+    text = one.read_text(encoding="utf-8")
+    assert words in text
+    two.write_text(text.replace(words, others, 1), encoding="utf-8")
+    found = trunnion.diff(one, two, machine=machine)
+    assert found.first is not None
+    assert what in found.first.text
+    assert not found.same

@@ -250,6 +250,13 @@ class Run:
 
     # Some rows
 
+    @property
+    def first_without_units(self) -> int | None:
+        """The first row that states a position before the program says whether it counts in mm or inches, if any."""
+        positions = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
+        rows = np.flatnonzero((self.programmed[: self.units_from] & positions) != 0)
+        return int(rows[0]) if len(rows) else None
+
     @cached_property
     def _kinematics(self) -> KinematicParameters:
         return kinematic_parameters(self.machine)

@@ -64,13 +64,9 @@ def _cuts_from_unknown_places(context: Context) -> Iterator[Place]:
 
 def _without_units(context: Context) -> Iterator[Place]:
     """Yield the first motion, if the program never said before whether its lengths are millimetres or inches."""
-    run = context.run
-    if not len(run) or (run.units_from is not None and run.units_from == 0):
-        return
-    positions = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
-    first = np.flatnonzero((run.programmed[: run.units_from] & positions) != 0)
-    if len(first):
-        yield context.place(int(first[0]), 0.0, "moves before the program says whether it counts in mm or inches")
+    row = context.run.first_without_units
+    if row is not None:
+        yield context.place(row, 0.0, "moves before the program says whether it counts in mm or inches")
 
 
 def _changed_while_turning(context: Context) -> Iterator[Place]:

@@ -14,6 +14,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.spindle_work import SpindleHole, SpindleTask
+from trunnion.verification.comparison.conditions import conditions
 
 #: What every control has, and messages call it.
 _OF_ALL: Final = {"stop": "stop", "optional_stop": "optional stop", "dwell": "dwell"}
@@ -46,6 +47,7 @@ class PathEvents:
     def __init__(self, run: Run, rows: Ints, *, same_machine: bool) -> None:
         names = {**_OF_ALL, **(_OF_MACHINE if same_machine else {})}
         found = [(event.before_row, text) for event, text in _texts(run, names)]
+        found += list(conditions(run)) if same_machine else []
         found += [(hole.first, _spindle_words(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
         found += [(len(run), f"left to the next program: {text}") for text in _left_on(run)] if same_machine else []
         at = np.searchsorted(rows, [row for row, _ in found])

@@ -1,6 +1,7 @@
 """Programmable frames and swivelled planes, by the facts of the programming manual."""
 
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from tests.support.reading import Runner, close
 from trunnion.arrays import Floats
 from trunnion.machines import load_machine
+from trunnion.readers import run_program
 
 
 def vector(*numbers: float) -> Floats:
@@ -150,7 +152,21 @@ def test_cycle800_with_direct_angles(run: Runner) -> None:
     machine = load_machine("yl569")
     result = run('CYCLE800(0,"",0,192,0,0,0,20,40,0,0,0,0,1)\nX0 Y0 Z1')
     assert result.joints[0, list(machine.rotary)].tolist() == [20.0, 40.0]
+    assert ["only the swivel data say which" in error.text for error in result.errors] == [True]
     close(result.tip[-1], result.axis[-1], atol=1e-12)
+
+
+@pytest.mark.parametrize(("order", "rotary"), [("first", [20.0, 40.0]), ("second", [40.0, 20.0])])
+def test_a_definition_names_the_axes_of_direct_angles(order: str, rotary: list[float], tmp_path: Path) -> None:
+    yl569 = load_machine("yl569")
+    names = [yl569.names[k] for k in yl569.rotary]
+    axes = names if order == "first" else names[::-1]
+    (tmp_path / "own.toml").write_text(f'extends = "yl569"\n[control.reading]\nswivel_axes = {axes}\n')
+    (tmp_path / "part.mpf").write_text('D1\nCYCLE800(0,"",0,192,0,0,0,20,40,0,0,0,0,1)\nX0 Y0 Z1\nM30\n')
+    machine = load_machine(str(tmp_path / "own.toml"))
+    result = run_program(tmp_path / "part.mpf", machine)
+    assert result.errors == ()
+    assert result.joints[0, list(machine.rotary)].tolist() == rotary
 
 
 def test_cycle800_accepts_fifteen_values_and_names_what_it_cannot_do(run: Runner) -> None:

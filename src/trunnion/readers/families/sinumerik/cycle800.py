@@ -7,6 +7,7 @@ from trunnion.messages import Wording
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
+from trunnion.readers.families.sinumerik.settings import settings_of
 from trunnion.readers.families.sinumerik.words import SWIVEL_DIRECTIONS, SWIVEL_RETRACTS, SWIVEL_STYLES
 
 #: Larger values are mistakes of the program.
@@ -51,6 +52,11 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     for name, value, known in wanted:
         if value not in known:
             note(Wording("NC215", "cycle800_control_knows", name=name, value=value, known=known), Severity.ERROR)
+    if (plane := numbers[15] % 10) and plane != 3 - control.plane_axis:
+        note(
+            Wording("NC215", "cycle800_other_plane", plane=numbers[15], word=f"G{19 - control.plane_axis}"),
+            Severity.ERROR,
+        )
     if control.modal.edge.current == 0:
         note(Wording("NC340", "cycle800_works_tool_length_d0"), Severity.ERROR)
     if retract:
@@ -62,7 +68,11 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     axes = rotation_axes(int(mode))
     if int(mode) >> 6 == 3:
         # The values are those of the first and the second rotary axis of the swivel data.
-        direct = angles[0], angles[1]
+        names = settings_of(control.machine).swivel_axes
+        rotary = tuple(control.machine.names[k] for k in control.machine.rotary)
+        if names not in (rotary, rotary[::-1]):
+            note(Wording("NC224", "cycle800_direct_axes_unknown", mode=mode), Severity.ERROR)
+        direct = (angles[0], angles[1]) if names != rotary[::-1] else (angles[1], angles[0])
     elif axes is None:
         note(Wording("NC220", "cycle800_mode_not_simulated", mode=mode), Severity.ERROR)
         return

@@ -24,12 +24,14 @@ class Settings:
     cycles_along_tool  cycles turn the frame along the tool while TCP is on
     machine_positions  ``WITH_LENGTH`` or ``WITHOUT_LENGTH``; empty: the definition does not say
     length_along_z     the tool length counts along Z in every working plane (SD42940 = 17), not across the plane
+    swivel_axes        names of the rotary axes 1 and 2 of the swivel data; empty: the definition does not say
     variables          values of variables that the control has when a program starts
     """
 
     cycles_along_tool: bool = False
     machine_positions: str = ""
     length_along_z: bool = False
+    swivel_axes: tuple[str, ...] = ()
     variables: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -40,6 +42,7 @@ def settings_of(machine: Machine) -> Settings:
         cycles_along_tool=table.flag("cycles_along_tool", False),
         machine_positions=table.text("machine_positions", "", one_of=("", WITH_LENGTH, WITHOUT_LENGTH)),
         length_along_z=table.flag("length_along_z", False),
+        swivel_axes=table.texts("swivel_axes", ()),
         variables=read_variables(table, _VARIABLE, "R100"),
     )
     table.report_unread_keys()

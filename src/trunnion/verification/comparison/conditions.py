@@ -1,0 +1,69 @@
+"""Conditions under which a machine acts, where the path does not show them.
+
+In:     a run; the other program is for the same machine.
+Out:    rows, and in words what holds there: a tool change with the spindle turning, both senses in one block, coolant
+        after a stop, a plane that is on while rotary axes turn, lengths in units that the program does not state.
+"""
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from trunnion.model.run import Run
+
+_TURNING: Final = ("clockwise", "counter-clockwise")
+_STOPS: Final = ("stop", "optional_stop")
+_PLANES: Final = ("tilt", "plane", "cycle800")
+
+
+def conditions(run: Run) -> Iterator[tuple[int, str]]:
+    """Yield what holds, by the row before which it does."""
+    row = run.first_without_units
+    if row is not None:
+        yield row, "moves before the program says whether it counts in mm or inches"
+    yield from _of_spindle(run)
+    yield from _after_stops(run)
+    yield from _turns_in_planes(run)
+
+
+def _of_spindle(run: Run) -> Iterator[tuple[int, str]]:
+    """Yield tool changes while the spindle turns, and blocks that start it in both senses."""
+    turns, block = "", (0, 0, 0)
+    for event in run.events:
+        if event.kind == "spindle":
+            now = str(event.value) if event.value in _TURNING else ""
+            here = event.file, event.line, event.before_row
+            if turns and now and now != turns and here == block:
+                yield event.before_row, f"one block turns the spindle {turns} and {now}"
+            turns, block = now, here
+        elif event.kind == "tool_change" and turns:
+            yield event.before_row, f"tool change while the spindle turns {turns}"
+
+
+def _after_stops(run: Run) -> Iterator[tuple[int, str]]:
+    """Yield words of coolant after a stop: many machines turn it off there, and it is off without them."""
+    stopped = -1
+    for event in run.events:
+        if event.kind in _STOPS:
+            stopped = event.before_row
+        elif event.kind == "coolant" and event.before_row == stopped:
+            yield stopped, f"coolant {event.value} after a stop"
+
+
+def _turns_in_planes(run: Run) -> Iterator[tuple[int, str]]:
+    """Yield rows in machine coordinates that turn a rotary axis while a tilted plane is on."""
+    begins, on = [0], [False]
+    for event in run.events:
+        if event.kind in _PLANES:
+            value = str(event.value or "")
+            begins.append(event.before_row)
+            on.append(bool(value) and not value.startswith("RESET"))
+    rows = run.state.machine_frame.rows_with(True)
+    if not any(on) or not len(rows):
+        return
+    turned = np.diff(np.concatenate((run.start[None, list(run.machine.rotary)], run.rotary)), axis=0)
+    rows = rows[np.abs(turned[rows]).max(axis=1) > 0.0]
+    for row, k in zip(rows.tolist(), np.searchsorted(begins, rows, side="right").tolist(), strict=True):
+        if on[k - 1]:
+            yield row, "rotary axes turn while a tilted plane is on"
