@@ -250,7 +250,8 @@ def test_tolerance_and_dwell(run: Runner) -> None:
     found = run(tolerance + "CYCL DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5")
     assert found.diagnostics == ()
     assert [(e.kind, e.value) for e in found.events] == [
-        ("tolerance", 0.02), ("cycle32", "T0.02"), ("cycle32", "HSC-MODE:0 TA0.5"), ("dwell", 5.0),
+        ("tolerance", 0.02), ("cycle32", "T0.02"), ("orientation_tolerance", 0.5), ("cycle32", "HSC-MODE:0 TA0.5"),
+        ("dwell", 5.0),
     ]  # fmt: skip
 
 

@@ -14,7 +14,7 @@ def test_form(run: Runner) -> None:
     close(found.tip, [[1.5, -2, 0], [1.5, -2, 0.5], [9, -2, 0.5], [7, -2, 0.5]])
     assert found.block_number.tolist() == [10, -1, -1, 20]
     assert [c.text for c in found.comments] == ["all", "there", "end", "MSG, look"]
-    assert [(e.kind, e.value) for e in found.events] == [("block_skip", None), ("message", "look")]
+    assert [(e.kind, e.value) for e in found.events] == [("block_skip", 1.0), ("message", "look")]
     assert run(text, skip=True).tip[:, 0].tolist() == [1.5, 1.5, 7]
 
 
