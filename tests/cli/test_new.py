@@ -208,3 +208,11 @@ def test_a_definition_of_ones_own_has_no_name_of_a_shipped_machine(
     assert main(["new", "yl569", "--like", "yl569"]) == 2
     assert "is the name of a shipped machine" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_the_next_command_can_be_pasted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "our mill", "--like", "yl569"]) == 0
+    assert "next: trunnion check 'our mill.toml'" in capfd.readouterr().out

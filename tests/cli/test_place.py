@@ -206,8 +206,9 @@ def test_a_set_up_of_a_project_is_placed(tmp_path: Path, capsys: pytest.CaptureF
     project = "examples/project/part.toml"
     assert main(["place", project, "--setup", "top", "--turn", "0"]) == 0
     out = capsys.readouterr().out
-    assert "present zero 0.000,0.000,-160.000: 118.000 mm to the limits" in out
-    assert "may be anywhere within X -185.000 to 185.000, Y -118.000 to 118.000, Z -354.000 to 120.000" in out
+    assert "best zero 0.000,0.000,133.000, turned 0 degrees: 118.000 mm to the limits" in out
+    assert "present zero 0.000,0.000,-5.000: 99.000 mm to the limits; the best place has 19.000 mm more" in out
+    assert "may be anywhere within X -185.000 to 185.000, Y -118.000 to 118.000, Z -104.000 to 370.000" in out
     assert "not beyond" not in out
     assert main(["place", project]) == 2
     assert "top, bottom [PLC170]" in capsys.readouterr().err

@@ -22,6 +22,8 @@ from trunnion.output.subprograms import SubprogramOutput
 PROGRAM = YL569 / "3_blade_finish.expected.mpf"
 CL = YL569 / "3_blade_finish.cls"
 
+Capture = pytest.CaptureFixture[str]
+
 
 def verify(capfd: pytest.CaptureFixture[str], *arguments: str | Path) -> tuple[int, str, str]:
     """Exit code, stdout and stderr of ``trunnion verify`` on the YL569."""
@@ -231,7 +233,7 @@ def test_a_program_that_lacks_a_block_is_refused_with_its_place(
     assert f"{target}:60 (N610), {CL}:31: no block goes to this CL point [order]" in err
     assert err.splitlines()[-1] == (
         f"{CL}: error: the program fails its proof: N610: no block goes to this CL point (order); "
-        "no program is written; --force writes it [CTL910]"
+        "no program is written: correct the lines above, and post again; --force writes it only to look at it [CTL910]"
     )
     assert post(CL, "--machine", "yl569", "--output", "-") == 1
     assert capfd.readouterr().out == ""
@@ -317,7 +319,7 @@ def test_post_refuses_a_program_that_does_something_else_and_writes_nothing(
     out, err = capfd.readouterr()
     assert (code, out, list(target.parent.iterdir())) == (1, "", [])
     assert "tip           FAIL" in err
-    assert "no program is written; --force writes it" in err
+    assert "--force writes it only to look at it" in err
     assert f"{target}:" in err
     assert main(["post", str(CL), "--machine", str(machine), "--output", "-"]) == 1
     assert capfd.readouterr().out == ""
@@ -354,3 +356,35 @@ def test_a_program_for_another_control_is_asked_after_first(tmp_path: Path, capf
     assert code == 1
     assert err.startswith(f"{program}: is this a Sinumerik 840D sl program? ")
     assert "lines of it not understood; --machine names the machine that runs it, and yl569 has this control\n" in err
+
+
+@pytest.mark.parametrize("machine", ["yl569", "haas_umc750", "dmu65"])
+def test_a_cl_file_in_place_of_a_program_is_refused_as_one(machine: str, tmp_path: Path, capfd: Capture) -> None:
+    named = "is a CL file, and no NC program; post it, and give the program [NC112]"
+    for arguments in (
+        ["verify", str(CL), "--machine", machine],
+        ["diff", str(CL), str(CL), "--machine", machine],
+        ["convert", str(CL), "--machine", machine, "--to-machine", "yl569", "--output", str(tmp_path / "new.mpf")],
+    ):
+        assert main(arguments) == 2
+        assert capfd.readouterr().err == f"{CL}: error: {named}\n"
+
+
+def test_an_empty_file_is_refused_as_post_refuses_it(tmp_path: Path, capfd: Capture) -> None:
+    empty, page = tmp_path / "empty.mpf", tmp_path / "page.html"
+    empty.write_text("")
+    for arguments in (["verify", str(empty)], ["view", str(empty), "--output", str(page)]):
+        assert main([*arguments, "--machine", "yl569"]) == 2
+        assert capfd.readouterr().err.startswith(f"{empty}: error: the file is empty; ")
+    assert not page.exists()
+
+
+def test_places_of_checks_that_were_not_made_are_under_no_passed_check(capfd: Capture) -> None:
+    code, out, _ = verify(capfd, PROGRAM)
+    lines = out.splitlines()
+    passed, unjudged = lines.index("passed; the worst places:"), lines.index("not checked; what is known:")
+    places = [place for place in lines if place.startswith(f"{PROGRAM}:")]
+    assert code == 0
+    assert passed < unjudged
+    assert {place.endswith("[travel]") for place in places if lines.index(place) > unjudged} == {True}
+    assert not [place for place in lines[:unjudged] if place.endswith("[travel]")]

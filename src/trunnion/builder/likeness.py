@@ -9,7 +9,7 @@ from trunnion.schemas import first_line
 _HEAD = """\
 # Like {base} ({name}), which is another machine.
 # A number marked "measure:" is still that one's: measure yours, or read it from the control, write it, and take the
-# mark away. trunnion check tells which marks are left.
+# mark away. trunnion check reports which marks are left.
 """
 
 

@@ -76,8 +76,11 @@ def main(argv: Sequence[str] | None = None) -> int:
             print_result(f"trunnion {__version__}")
             return 0
         from trunnion.cli.command_line.parser import parse
+        from trunnion.cli.wording import speak_of
 
-        code = _carry_out(parse(words))
+        given = parse(words)
+        speak_of(given.job.name)
+        code = _carry_out(given)
     except TrunnionError as error:
         from trunnion.cli.wording import error_lines
 

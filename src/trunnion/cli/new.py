@@ -1,5 +1,6 @@
 """``trunnion new`` and ``trunnion schema``."""
 
+import shlex
 from pathlib import Path
 
 from trunnion.builder.likeness import definition_like
@@ -37,7 +38,7 @@ def new(given: Given) -> int:
     lines = (
         f"{file}: extends {given.like}, {counted(marks, 'number')} to measure",
         *([f"{schema}: for editors that complete and check TOML"] if schema else []),
-        f"next: trunnion check {file}",
+        f"next: trunnion check {shlex.quote(str(file))}",
     )
     data = {"schema": 1, "file": str(file), "extends": given.like, "numbers_to_measure": marks}
     show(given, lambda: data, lines)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import spoken
 from trunnion.jobs.capability.sensitivity import sensitivity
 from trunnion.jobs.capability.sensitivity_report import (
     amount_text,
@@ -22,7 +23,7 @@ def run(given: Given) -> int:
     found = sensitivity(**given.arguments(), observer=terminal)
     terminal.problems(found.remarks)
     if given.report is not None:
-        write_sensitivity_report(found, given.report, given.read)
+        write_sensitivity_report(found, given.report, given.read, spoken())
     show(given, lambda: found, sensitivity_lines(found))
     return 0
 

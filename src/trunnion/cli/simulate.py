@@ -5,7 +5,6 @@ from typing import Final
 
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.errors import Severity
 from trunnion.jobs.job import Given
 from trunnion.jobs.simulate.report import write_simulation_report
 from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines
@@ -15,7 +14,7 @@ from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
-from trunnion.wording import counted, format_duration, position
+from trunnion.wording import format_duration, position
 
 #: Findings that the text shows of each kind; the data has all.
 _MOST: Final = 20
@@ -63,9 +62,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
     yield from not_measured_lines(found)
-    errors = sum(remark.severity is Severity.ERROR for remark in found.remarks)
-    parts = [counted(len(found.findings), "finding"), *([counted(errors, "error")] if errors else [])]
-    yield "nothing found" if found.passed else f"{' and '.join(parts)}: the program must not run"
+    yield found.verdict
 
 
 def _of_setup(name: str) -> str:

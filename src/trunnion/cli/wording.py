@@ -1,6 +1,8 @@
 """Messages of the library in the words of the command line: options in place of arguments."""
 
 import re
+from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
@@ -25,12 +27,17 @@ def in_command_words(text: str) -> str:
     return _SWITCH.sub(lambda found: _option(found[1]), text)
 
 
+@dataclass(frozen=True)
 class CommandWords(Words):
-    """Options in place of settings and arguments."""
+    """Options in place of settings and arguments: of a command, where it has one for a setting."""
+
+    command: str = ""
 
     def setting(self, name: str, value: str) -> str:
         """Return a setting with a value."""
-        return f"--set {name}={value}"
+        options = JOBS[self.command].options if self.command else ()
+        flag = next((option.flag for option in options if option.setting == name and option.flag), "")
+        return f"{flag} {value}" if flag else f"--set {name}={value}"
 
     def argument(self, name: str, value: str) -> str:
         """Return an option with a value."""
@@ -41,13 +48,26 @@ class CommandWords(Words):
         return _option(name)
 
 
-_WORDS: Final = CommandWords()
+_PLAIN: Final = CommandWords()
+
+#: The words of the command that runs.
+_SPOKEN: Final[ContextVar[Words]] = ContextVar("spoken", default=_PLAIN)
+
+
+def speak_of(command: str) -> None:
+    """Have messages name the options of a command from here on."""
+    _SPOKEN.set(CommandWords(command))
+
+
+def spoken() -> Words:
+    """Return the words of the command that runs."""
+    return _SPOKEN.get()
 
 
 def problem_line(problem: Problem) -> str:
     """Return a problem as the command line prints it."""
     called = _option(problem.argument) if problem.argument else ""
-    return in_command_words(problem.line_of_text(_WORDS, called))
+    return in_command_words(problem.line_of_text(spoken(), called))
 
 
 def painted_line(problem: Problem) -> str:

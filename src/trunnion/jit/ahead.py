@@ -12,7 +12,7 @@ from typing import Any
 
 import numba
 
-from trunnion.jit.kernels import Kernel
+from trunnion.jit.kernels import Kernel, say_once
 from trunnion.jit.store import cache_folder
 
 _log = logging.getLogger("trunnion.jit")
@@ -41,8 +41,7 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
     missing = [one for one in kernels if isinstance(one, Kernel) and not (one.announced or one.is_kept)]
     if not missing:
         return
-    names = ", ".join(one.name.rpartition(".")[2] for one in missing)
-    _log.info("compiling %d kernels for this computer, once; this takes some seconds: %s", len(missing), names)
+    say_once(f"{len(missing)} kernel{'s' if len(missing) > 1 else ''}")
     for one in missing:
         one.announced = True
     folder = cache_folder()

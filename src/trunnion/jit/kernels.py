@@ -20,8 +20,18 @@ _log = logging.getLogger("trunnion.jit")
 
 _config: Any = numba.config
 
+#: What has been said of compiling in this process, which is one line.
+_said: list[str] = []
+
 #: Held while ``numba.config.CACHE_DIR``, which is the process's, is that of one kernel.
 _enabling = threading.Lock()
+
+
+def say_once(what: str) -> None:
+    """Say that kernels are compiled: the first time in this process only."""
+    if not _said:
+        _said.append(what)
+        _log.info("compiling %s for this computer, once; this takes some seconds", what)
 
 
 def inner(function: Function) -> Function:
@@ -142,7 +152,7 @@ class Kernel:
     def _announce(self) -> None:
         if not self.announced:
             self.announced = True
-            _log.info("compiling the kernel %s, once", self.name)
+            say_once("kernels")
 
     @cached_property
     def _store(self) -> Store | None:

@@ -19,8 +19,8 @@ from trunnion.reporting.plot_series import Curve, Plot, PlotSeries
 MAX_TOOL_MARKS = 100
 
 #: Explains the dotted lines, if there are any.
-FLOATING_NOTE = """ Dotted ones are as far apart as the limits of the slide, but stand around the motion: where the
-limits really are is not known: no workpiece zero is given, or for a slide along the tool no tool length."""
+FLOATING_NOTE = """ Dotted ones are as far apart as the limits of the linear axis, but stand around the motion: where
+the limits really are is not known: no workpiece zero is given, or for a linear axis along the tool no tool length."""
 
 
 def plot_section(series: PlotSeries, levels: Sequence[DetailLevel]) -> str:

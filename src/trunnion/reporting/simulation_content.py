@@ -43,6 +43,7 @@ class SimulationContent:
 
     facts    names and values of what it is about
     remarks  what was taken for granted or broken off, each thing once with its count
+    not_checked  that collisions with the machine were not checked, and why; empty: they were
     data     all of it, as the command prints it as data
     """
 
@@ -55,3 +56,4 @@ class SimulationContent:
     states: tuple[StockState, ...]
     remarks: tuple[str, ...]
     data: Mapping[str, object]
+    not_checked: str = ""

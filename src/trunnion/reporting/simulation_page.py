@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
-from trunnion.reporting.html_text import escape, format_number, page_head, source_hash
+from trunnion.reporting.html_text import capitalised, escape, format_number, page_head, source_hash
 from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
 from trunnion.reporting.text import clean
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
@@ -51,7 +51,7 @@ def simulation_section(content: SimulationContent) -> str:
     """Return what a simulation found, in tables and pictures."""
     near = _findings(content.near, "#Apart mm") if content.near else ""
     parts = (
-        ("Simulation: findings", _findings(content.findings, "#Deep mm") or '<p class="note">Nothing was found.</p>'),
+        ("Simulation: findings", _findings(content.findings, "#Deep mm") + _unfound(content)),
         ("Near misses", near),
         ("Finished stock", "".join(map(_state, content.states))),
         ("Material removed", _operations(content.operations)),
@@ -60,11 +60,21 @@ def simulation_section(content: SimulationContent) -> str:
     return "".join(f"<section>\n<h2>{title}</h2>\n{body}\n</section>\n" for title, body in parts if body)
 
 
+def _unfound(content: SimulationContent) -> str:
+    """Return that nothing was found, and what was not checked."""
+    told = "" if content.findings else "Nothing was found."
+    if content.not_checked:
+        told = f"{told} {capitalised(content.not_checked)}."
+    return f'<p class="note">{told.strip()}</p>' if told else ""
+
+
 def _verdict(content: SimulationContent) -> str:
     if content.passed:
-        return "nothing found"
-    found = counted(len(content.findings), "finding") if content.findings else "see below"
-    return f"{found}; the program must not run as it is"
+        found = "nothing found"
+    else:
+        count = counted(len(content.findings), "finding") if content.findings else "see below"
+        found = f"{count}; the program must not run as it is"
+    return "; ".join(filter(None, (found, escape(content.not_checked))))
 
 
 def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:

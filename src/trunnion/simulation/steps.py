@@ -16,6 +16,7 @@ from trunnion.simulation.remarks import of_setup, part_remarks, simulation_remar
 from trunnion.simulation.simulator import CuttingModel, SimulatedProgram, Simulation, cut_share, simulate
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.stock.turning import turned_stock
+from trunnion.simulation.sunk_bodies import sunk_bodies
 from trunnion.simulation.tool_deltas import as_the_tool_goes
 from trunnion.simulation.turned_parts import as_clamped, places_of_drawing
 
@@ -131,6 +132,14 @@ class SetupSteps:
             _bodies(replace(program, run=run), number, solid, around, remarks, machines)
             for number, (program, run) in enumerate(zip(programs, clamped, strict=True))
         ]
+        if around or _lengths_known(programs[0]):
+            # What an earlier set-up has left has no surface of its own yet.
+            blank: tuple[TriangleMesh, ...] = (
+                () if model.stock.kept is not None else (model.stock.as_mesh().named("stock"),)
+            )
+            if turn is not None:
+                blank = tuple(as_clamped(mesh, turn) for mesh in blank)
+            remarks += sunk_bodies(clamped[0].machine, (*blank, *around))
         machines = [each for each in dict.fromkeys(machines) if each not in self._of_machines]
         self._of_machines += machines
         self._watcher.problems(machines)

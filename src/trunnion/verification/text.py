@@ -44,15 +44,15 @@ def stand_lines(asked: Sequence[Check]) -> Iterator[str]:
 def place_lines(verification: Verification, *, failed_only: bool = False) -> Iterator[str]:
     """Yield the worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``.
 
-    A line says where those of checks that passed begin.
+    Lines say where those of checks that passed, and of those that were not made, begin.
     """
-    tells_passed = False
-    for check in sorted(verification.checks, key=lambda check: check.passed):
+    heads = {State.OK: "passed; the worst places:", State.NOT_CHECKED: "not checked; what is known:"}
+    order = [State.FAIL, *heads]
+    for check in sorted(verification.checks, key=lambda check: order.index(check.state)):
         if check.passed and failed_only:
             continue
-        if check.passed and check.places and not tells_passed:
-            tells_passed = True
-            yield "passed; the worst places:"
+        if check.places and check.state in heads:
+            yield heads.pop(check.state)
         for place in check.places[:_MOST_PLACES]:
             yield f"{place_line(verification.program, place)} [{check.key}]"
 

@@ -199,3 +199,13 @@ def test_nothing_is_written_over_the_program(tmp_path: Path) -> None:
     program.write_bytes(BLADE.read_bytes())
     assert main(["sensitivity", str(program), "--machine", "yl569", "--report", str(program)]) == 2
     assert program.read_bytes() == BLADE.read_bytes()
+
+
+def test_the_page_of_the_command_names_its_options(tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    assert (
+        main(["sensitivity", str(YL569 / "2_hub_rough.expected.mpf"), "--machine", "yl569", "--report", str(page)]) == 0
+    )
+    text = page.read_text(encoding="utf-8")
+    assert "give --zero X,Y,Z" in text
+    assert "argument zero" not in text

@@ -18,7 +18,7 @@ def test_an_operation_that_leans_more_is_refused(tmp_path: Path, capsys: pytest.
     (said,) = [line for line in capsys.readouterr().err.splitlines() if "PLN340" in line]
     assert said.startswith(f"{BLADE}:")
     assert "the tool axis leans" in said
-    assert "degrees from Z, over 10; allow it with --set max_tilt=…, or lean" in said
+    assert "degrees from Z, over 10; allow it with --max-tilt …, or lean" in said
     assert not output.exists()
 
 

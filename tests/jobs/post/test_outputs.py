@@ -200,7 +200,7 @@ def test_a_file_that_nobody_named_is_replaced_only_as_it_was_written(
         program.write(b"; tried on the machine\n")
     for output in ([], ["--output", "part.mpf"]):
         assert main(["post", "part.cls", "--machine", "yl569", *output]) == 2
-        assert "write --set edited=keep to keep it as NAME.edited-DATE" in capfd.readouterr().err
+        assert "write --edited keep to keep it as NAME.edited-DATE" in capfd.readouterr().err
     assert main(["post", "part.cls", "--machine", "yl569", "--output", "part.mpf", "--edited", "replace"]) == 0
 
 

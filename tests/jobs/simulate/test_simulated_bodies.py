@@ -7,7 +7,16 @@ import pytest
 
 import trunnion
 from tests.support.simulating import SLOT, cuboid, simulate
+from trunnion.cli.simulate import simulation_lines
+from trunnion.jobs.simulate.report import simulation_content
+from trunnion.reporting.simulation_page import render_simulation_page
+from trunnion.results import to_data
 from trunnion.simulation.meshes import save_mesh
+
+#: The slot for a control of the YL569.
+SLOT_OF_YL569 = (
+    "G17 G40 G90 G710 G94\nTRAFOOF\nT=1\nM6\nG54\nG0 X-20 Y0 Z20 D1 S1000 M3\nZ-5\nG1 X70 F500\nG0 Z20\nM30\n"
+)
 
 
 def near_stock(found: trunnion.SimulationResult) -> list[tuple[str, int, float]]:
@@ -141,3 +150,45 @@ def test_fixtures_are_called_by_their_files(tmp_path: Path) -> None:
     assert {one.between[0] for one in found.findings} == {
         "fixture vice.stl", "fixture 2 jaw.stl", "fixture 3 jaw.stl", "fixture 4",
     }  # fmt: skip
+
+
+def test_what_is_sunk_in_the_table_is_a_warning_without_a_gauge_point(tmp_path: Path) -> None:
+    """The rotary table of the YL569 ends at Z -50 of the machine, its cradle is at Z -230 to -115."""
+    vice = cuboid((-60, -30, -45), (60, 30, -15))
+    given: dict[str, object] = {"machine": "yl569", "tool_length": 110, "fixtures": vice}
+
+    def sunk(zero: str, **more: object) -> list[str]:
+        found = simulate(tmp_path, SLOT_OF_YL569, **(given | more), zero=zero)
+        assert found.not_checked == ("no gauge point stated",)
+        return [each.what for each in found.remarks if each.code == "SIM313"]
+
+    assert sunk("0,0,-5") == []  # it stands on the table
+    assert sunk("0,0,-5.05") == []
+    (low,) = sunk("0,0,-7")
+    assert low == "is 2.0 mm deep inside of rotary table, a body of the machine"
+    assert len(sunk("0,0,-160")) == 2  # the stock is in the cradle as well
+    assert len(sunk("0,0,-160", fixtures=[])) == 1
+
+
+def test_the_verdict_says_that_collisions_with_the_machine_were_not_checked(tmp_path: Path) -> None:
+    folder = Path("examples/simulation")
+    unstated = trunnion.simulate(
+        folder / "plate_top.mpf", machine="yl569", stock="box:100,80,30,-50,-40,-30", zero=(0, 0, -160),
+        tool_libraries=[folder / "tools.toml"], tool_length=110, cell=1.0,
+    )  # fmt: skip
+    assert unstated.passed
+    why = "collisions with the machine: not checked (no gauge point stated)"
+    assert unstated.verdict == f"nothing found; {why}"
+    assert list(simulation_lines(unstated))[-1] == unstated.verdict
+    page = b"".join(render_simulation_page(simulation_content(unstated))).decode()
+    assert page.count(why) == 1
+    assert "Nothing was found. Collisions with the machine: not checked (no gauge point stated)." in page
+    assert to_data(unstated)["not_checked"] == ["no gauge point stated"]
+    unknown = simulate(tmp_path, SLOT)
+    assert unknown.verdict.endswith("not checked (workpiece zero or tool length not stated)")
+
+
+@pytest.mark.parametrize("project", ["examples/project/part.toml", "examples/simulation/plate.toml"])
+def test_the_example_stands_on_the_table_and_is_checked_with_the_machine(project: str) -> None:
+    found = trunnion.simulate(project)
+    assert (found.verdict, found.remarks, found.not_checked) == ("nothing found", (), ())

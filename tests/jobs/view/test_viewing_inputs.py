@@ -46,7 +46,7 @@ def test_a_set_up_of_a_project_states_all() -> None:
     with pytest.raises(InputError, match="choose one of top, bottom"):
         prepare_view(PLATE)
     content = prepare_view(PLATE, setup="top", cell=4.0)
-    assert content.scene["machine"]["key"] == "yl569"
+    assert content.scene["machine"]["key"] == "machine"
     assert content.stock is not None
     assert Path(content.scene["files"][0]).name == "plate_top.mpf"
     second = prepare_view(PLATE, setup="2")

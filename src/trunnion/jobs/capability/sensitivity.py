@@ -11,7 +11,7 @@ from trunnion.capability.tip_errors import joints_at_zero
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.arguments import SensitivityArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
@@ -83,24 +83,8 @@ def sensitivity(
     with observer.progress("sensitivity", len(run), "motions") as advance:
         found = program_sensitivity(run, pose, *off, tuple(_remarks(run)), advance)
     if not found.motions:
-        raise InputError(_without_cuts(run))
+        raise InputError(Problem(run.files[0] if run.files else "nc", 0, Wording("RCH110", "nothing_cut")))
     return found
-
-
-def _without_cuts(run: Run) -> Problem:
-    """Why there is nothing to judge: no cut, or a CL file in place of a program."""
-    name = run.files[0] if run.files else "nc"
-    if run.errors and _is_cl_file(name):
-        return Problem(name, 0, Wording("RCH115", "cl_file_judged"))
-    return Problem(name, 0, Wording("RCH110", "nothing_cut"))
-
-
-def _is_cl_file(name: str) -> bool:
-    try:
-        found = read_toolpaths(name, SILENT)
-    except InputError:
-        return False
-    return any(len(operation.moves) for toolpath in found for operation in toolpath.operations)
 
 
 def _check_amount(name: str, value: object) -> None:

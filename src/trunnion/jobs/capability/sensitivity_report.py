@@ -16,6 +16,7 @@ from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sens
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
+from trunnion.messages import LIBRARY, Words
 from trunnion.model.run import Run
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, SingleFloats
 from trunnion.reporting.sensitivity_page import ErrorCells, NumberRow, SensitivityContent, render_sensitivity_page
@@ -30,14 +31,18 @@ _DECIMALS: Final = 9
 _NONE: Final = 5e-6
 
 
-def write_sensitivity_report(found: Sensitivity, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
+def write_sensitivity_report(
+    found: Sensitivity, file: FilePath, inputs: Iterable[FilePath] = (), words: Words = LIBRARY
+) -> None:
     """Write a sensitivity as a page that works offline, with the errors of the worst numbers over the program.
+
+    ``words`` are those of who reads it: the library, or the command line.
 
     Raises ``InputError`` when the name does not end in ``.html``, the file cannot be written, or it is one of
     ``inputs``.
     """
     with atomic_file(declared_output("sensitivity", "report", file), inputs=inputs) as sink:
-        sink.writelines(render_sensitivity_page(_content(found), _series(found)))
+        sink.writelines(render_sensitivity_page(_content(found, words), _series(found)))
 
 
 def amount_text(each: NumberSensitivity) -> str:
@@ -59,7 +64,7 @@ def zero_text(pose: Mapping[str, float] | None) -> str:
     return "not set" if pose is None else "at " + " ".join(f"{name}{value:g}" for name, value in pose.items())
 
 
-def _content(found: Sensitivity) -> SensitivityContent:
+def _content(found: Sensitivity, words: Words) -> SensitivityContent:
     run, machine = found.run, found.run.machine
     zero = machine.workpiece_zero
     length = machine.tool_length
@@ -81,7 +86,9 @@ def _content(found: Sensitivity) -> SensitivityContent:
         for each in found.numbers
     ]
     idle = ", ".join(number.name for number in found.idle)
-    notes = [clean(f"{remark.what}; {remark.cure}") for remark in found.remarks]
+    notes = [
+        clean(f"{remark.wording.text('what', words)}; {remark.wording.text('cure', words)}") for remark in found.remarks
+    ]
     notes += [clean(f"Without effect, so left out: {idle}.")] if idle else []
     return SensitivityContent(clean(Path(run.files[0]).name), facts, rows, notes)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import BinaryIO, Final, TypeAlias
 
 from trunnion import machines, readers
-from trunnion.cl import DIALECTS, not_one_file, other_system
+from trunnion.cl import DIALECTS, is_cl_file, not_one_file, other_system
 from trunnion.cl.read import AS_IT_SAYS, ClReading
 from trunnion.cl.watched import read_watched
 from trunnion.controls.definition_files import is_control_file
@@ -189,7 +189,7 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     Raises
     ------
     InputError
-        If a file cannot be read, or if no reader knows the control.
+        If a file cannot be read, is empty or a CL file, or if no reader knows the control.
 
     Notes
     -----
@@ -203,7 +203,29 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     ((30, 3), ())
     """
     program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
-    return readers.run_program(program, as_machine(machine), readers.RunOptions(subprograms=others))
+    on = as_machine(machine)
+    if program.is_file() and not program.stat().st_size:
+        raise InputError(Problem(str(program), 0, Wording("NC112", "file_empty")))
+    try:
+        run = readers.run_program(program, on, readers.RunOptions(subprograms=others))
+    except InputError:
+        _refuse_cl_file(program)
+        raise
+    if run.errors:
+        _refuse_cl_file(program)
+    return run
+
+
+def _refuse_cl_file(program: Path) -> None:
+    """Refuse a CL file in place of a program, by what moves in it: words of a program may look like those of one."""
+    if not is_cl_file(program):
+        return
+    try:
+        found = read_toolpaths(program, SILENT)
+    except InputError:
+        return
+    if any(len(operation.moves) for toolpath in found for operation in toolpath.operations):
+        raise InputError(Problem(str(program), 0, Wording("NC112", "cl_file_for_program")))
 
 
 def run_without_blocks(nc: FilePath, machine: Machine, subprograms: Sequence[FilePath], levels: frozenset[int]) -> Run:

@@ -237,6 +237,7 @@ def _check(
         summary = f"{found.removed:.0f} mm³ removed by turning cutters at feed, and by nothing else"
     elif found.pairs:
         summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
+        summary += f"; {found.not_checked_line}" if found.not_checked else ""
     else:
         summary, missing = "", (phrase("no_bodies"),)
     places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))

@@ -69,7 +69,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         ("Removed", f"{found.removed:.1f} mm³"),
         ("Cells", f"{cell} mm"),
         ("Motions and tools within", f"{found.accuracy:.4g} mm"),
-        ("Not told below", f"{found.limit:.4g} mm"),
+        ("Not listed below", f"{found.limit:.4g} mm"),
         ("Set-ups", ", ".join(each.setup for each in found.setups)),
         ("Clamped", "; ".join(filter(None, map(_clamped, found.setups or (found,))))),
     )
@@ -83,6 +83,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         states=tuple(_state(each) for each in found.setups or (found,)),
         remarks=(*map(str, remark_groups(found.remarks)), *not_measured_lines(found)),
         data=_cleaned(to_data(found)),
+        not_checked=found.not_checked_line,
     )
 
 

@@ -17,10 +17,16 @@ from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.tools.profile import ToolShape
+from trunnion.wording import counted
 
 #: Air cuts that are told, the longest ones.
 _MOST_AIR: Final = 20
 
+
+#: Why bodies of the machine were not checked, by the variants of ``SIM310`` that say so.
+_WHY_NOT_CHECKED: Final = {
+    "no_spindle_gauge": "gauge_point_unstated", "bodies_machine_not": "zero_or_length_unstated",
+}  # fmt: skip
 
 #: What data says of each of several set-ups.
 _OF_SETUP: Final = (
@@ -47,6 +53,7 @@ class SimulationResult:
     gouge      what of the part is missing; None without a part. Both are those of the last set-up
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
+    not_checked  why collisions with the machine were not checked, in words; empty: they were
     not_measured  values of the definition that the distances of bodies stand on, though nobody has measured them
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     setup      its name, where this is one of several
@@ -82,6 +89,30 @@ class SimulationResult:
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
+
+    @property
+    @Figure(after="remarks")
+    def not_checked(self) -> tuple[str, ...]:
+        """Why collisions with the machine were not checked."""
+        variants = [each.wording.variant for each in self.remarks if each.code == "SIM310"]
+        why = dict.fromkeys(_WHY_NOT_CHECKED[each] for each in variants if each in _WHY_NOT_CHECKED)
+        return tuple(str(phrase(each)) for each in why)
+
+    @property
+    def verdict(self) -> str:
+        """What was found, and what nothing was found of because nobody could check it."""
+        if self.passed:
+            found = "nothing found"
+        else:
+            errors = sum(remark.severity is Severity.ERROR for remark in self.remarks)
+            parts = [counted(len(self.findings), "finding"), *([counted(errors, "error")] if errors else [])]
+            found = f"{' and '.join(parts)}: the program must not run"
+        return "; ".join(filter(None, (found, self.not_checked_line)))
+
+    @property
+    def not_checked_line(self) -> str:
+        """That collisions with the machine were not checked, and why; empty: they were."""
+        return str(phrase("collisions_not_checked", why=self.not_checked)) if self.not_checked else ""
 
     @property
     @Figure("remarks", after="operations")

@@ -68,6 +68,8 @@ def with_stock(
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))
     warnings = [_short(each) for each in found.remarks if each.severity is not Severity.ERROR]
+    if found.not_checked_line:
+        warnings.insert(0, f"{found.not_checked_line}.")
     warnings += [f"{kind}: {_MOST} of {count} are shown" for kind, count in _counts(found) if count > _MOST]
     checks = (*verification.checks, *simulation_checks(found))
     scene = {
