@@ -234,7 +234,7 @@ def test_missing_keys_are_told_at_the_line_of_their_table(tmp_path: Path) -> Non
 def test_a_schema_of_the_future_is_not_guessed_at(tmp_path: Path) -> None:
     line, what, cure = told_once(tmp_path, "schema = 1", "schema = 2")
     assert (line, what) == (1, "schema is 2")
-    assert cure == "write a whole number of at least 1 and of at most 1"
+    assert cure == "write 1"
 
 
 def test_several_mistakes_are_reported_at_once_in_the_order_of_lines(tmp_path: Path) -> None:

@@ -22,6 +22,9 @@ PROGRAMS = [
     ("dmu65", f"{BEGIN}{CUT}{END}{BEGIN}{CUT}{END}", 5),
     ("dmu65", f"{BEGIN}{CUT}{BEGIN}{CUT}{END}", 4),
     ("dmu65", f"{BEGIN}{CUT}END PGM B MM\n", 4),
+    ("dmu65", f"{BEGIN}{CUT}3 M30\n9 END PGM B MM\n", 5),
+    ("dmu65", f"{BEGIN}{CUT}3 M30\n9 END PGM MM\n", 5),
+    ("dmu65", f"{BEGIN}{CUT}3 M30\n9 END PGM a MM ; done\n", 0),
     ("dmu65", f"{CUT}3 M30\n", 3),
     ("dmu65", CUT, 2),
     ("dmu65", f"{CUT}3 M30\n{END}", 4),
@@ -48,6 +51,14 @@ def test_what_stands_outside_of_a_program_is_an_error(machine: str, text: str, l
     program.write_text(text)
     errors = trunnion.read_program(program, machine=machine).errors
     assert [error.line for error in errors] == ([line] if line else []), errors
+
+
+def test_the_end_of_a_klartext_program_ends_it(tmp_path: Path) -> None:
+    program = tmp_path / "part.h"
+    for m30 in ("", "3 M30\n"):
+        program.write_text(f"{BEGIN}{CUT}{m30}{END}")
+        run = trunnion.read_program(program, machine="dmu65")
+        assert [event.value for event in run.events if event.kind == "end"] == ["M30" if m30 else "END PGM"]
 
 
 def test_sizes_of_a_tool_count_when_it_is_in_the_spindle(tmp_path: Path) -> None:

@@ -100,6 +100,7 @@ FAULTS = [
     ("dmu65", "BEGIN PGM PART MM", "BEGIN PGM PART", "words"),
     ("dmu65", " M128\n", " M3\n", "turns"),
     ("dmu65", " PLANE SPATIAL SPA-36.87 SPB+0.0 SPC+0.0 TURN FMAX SEQ-", " M3", "turns"),
+    ("dmu65", "END PGM PART MM", "END PGM OTHER MM", "words"),
     # Fanuc
     ("matsuura_mx330", " G53.1\n", "\n", "words"),
     ("matsuura_mx330", "G43.4 H2", "G43.5 H2", "words"),

@@ -79,3 +79,16 @@ def test_the_holes_of_a_run_are_searched_for_once(tmp_path: Path, monkeypatch: p
     assert trunnion.post(cl, machine="xyzac_trt", output=program).passed
     assert trunnion.verify(program, machine="xyzac_trt", cl=cl).passed
     assert len(searched) == len(set(searched)) == 2
+
+
+@pytest.mark.parametrize(("rounding", "passes"), [("0.04", True), ("0.4", False)])
+def test_rounding_is_held_to_what_any_work_wants_without_a_tolerance(
+    rounding: str, passes: bool, tmp_path: Path
+) -> None:
+    cl, program = tmp_path / "part.cls", tmp_path / "part.nc"
+    head = CL_HEAD.replace("INTOL/0.01\nOUTTOL/0.01\n", "")
+    cl.write_text(head + HOLES.format(cycle=DRILL) + CL_FOOT, encoding="utf-8")
+    assert trunnion.post(cl, machine="haas_umc750", output=program).passed
+    text = program.read_text(encoding="utf-8").replace(" G54\n", f" G54\nG187 E{rounding}\n", 1)
+    program.write_text(text, encoding="utf-8")
+    assert trunnion.verify(program, machine="haas_umc750", cl=cl).passed is passes

@@ -36,7 +36,8 @@ def _project(path: Path) -> tuple[str, tuple[Problem, ...]]:
     from trunnion.jobs.project.file import load_project, read_project
 
     table = load_table(path, machine_library(), kind="project")
-    if not _has_key(table.content, "output"):
+    posts = _has_key(table.content, "cl") and not _has_key(table.content, "programs")  # a typo of output is a mistake
+    if not (posts or _has_key(table.content, "output")):
         simulated = read_project(path)
         return f"a project: {counted(len(simulated.setups), 'set-up')} to simulate", ()
     found = load_project(path)
@@ -83,7 +84,7 @@ _KINDS: Final[dict[str, tuple[Callable[[Path], tuple[str, tuple[Problem, ...]]],
     "impeller": (_impeller, frozenset({"hub", "blade"})),
     "batch": (_batch, frozenset({"job"})),
     "nodes": (_nodes, frozenset({"columns", "namespace"})),
-    "project": (_project, frozenset({"setup", "simulation", "programs", "output", "stock"})),
+    "project": (_project, frozenset({"setup", "simulation", "programs", "output", "stock", "machine"})),
     "tools": (_tools, frozenset({"tool"})),
 }
 

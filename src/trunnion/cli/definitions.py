@@ -114,11 +114,13 @@ def _check_control_file(file: str) -> None:
 
 
 def _check_is_known(name: str) -> None:
-    """Raise ``InputError`` for a name that is neither a file's nor that of a shipped definition."""
+    """Raise ``InputError`` for a name of no shipped definition, and of no file of a kind that is checked."""
     known = [*shipped_machines(), *shipped_controls()]
-    if name in known or name.endswith(".toml") or Path(name).exists():
+    if name in known or name.endswith(".toml"):
         return
-    near = meant_word(name, known)
+    if Path(name).exists():
+        raise InputError(Problem(name, 0, Wording("DEF140", "nothing_to_check")))
+    near = f"{name}.toml" if Path(f"{name}.toml").is_file() else meant_word(name, known)
     raise InputError(
         Problem(
             name,

@@ -263,7 +263,7 @@ def load_table(
                 raise InputError(
                     Problem(text, 0, Wording("DEF110", "file_not_found", with_article=_with_article(kind)))
                 )
-            near = meant_word(text, names)
+            near = f"{text}.toml" if Path(f"{text}.toml").is_file() else meant_word(text, names)
             raise InputError(
                 Problem(
                     text,

@@ -54,6 +54,8 @@ def a_whole_number(
     unit: str = "", above: float | None = None, at_least: float | None = None, at_most: float | None = None
 ) -> Wording:
     """Return what to write where a whole number is wanted: a phrase."""
+    if at_least is not None and at_least == at_most:
+        return phrase("this_number", number=at_least)
     bounds = _bounds(above, at_least, at_most)
     if unit and bounds:
         return phrase("whole_number_in_unit_within", unit=unit, bounds=bounds)

@@ -86,7 +86,8 @@ longest_s = 0
         ('until = 10\nchecks = { simulate = "warn" }\n' + SETUPS, 1, "ends the simulation early"),
         ('machine = "yl569"\ncl = ["top.cls"]\nprograms = ["top.cls"]\n', 1, "posts nothing"),
         (PROJECT + 'divide = "operations"\nreport = "top.html"\n', 6, "is one report, and every operation"),
-        ('[[axis]]\nname = "C"\n', 0, "is no project: it has none of the keys"),
+        ('[[axis]]\nname = "C"\n', 0, "is a machine definition; give a project"),
+        ('name = "C"\n', 0, "is no project: it has none of the keys"),
         (PROJECT.replace('["top.cls"]', f"{['top.cls'] * 1001}"), 2, "names 1001 files; name at most 1000"),
     ],
 )  # fmt: skip

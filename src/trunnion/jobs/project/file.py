@@ -24,6 +24,7 @@ from trunnion.jobs.project.keys import KEYS, OF_PROJECT
 from trunnion.jobs.project.project import Judgement, Project, ProjectChecks
 from trunnion.jobs.project.setups import OF_ONE_PROGRAM, Purpose, SetupReader, places_of, try_value
 from trunnion.jobs.project.stated_values import StatedValues
+from trunnion.machines import shipped_machines
 from trunnion.messages import Wording
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 
@@ -73,15 +74,21 @@ def read_whole(path: Path, elsewhere: Collection[str] = (), *, is_posted: bool) 
         raise InputError(Problem(str(path), 0, Wording("SIM112", "project_of_other_ending")))
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
-    return read_project_table(
-        load_table(path, files(__package__), kind="project"), path, elsewhere, is_posted=is_posted
-    )
+    try:
+        root = load_table(path, files(__package__), kind="project")
+    except InputError as error:
+        if any(problem.wording.parameter("name") in shipped_machines() for problem in error.problems):
+            raise InputError(Problem(str(path), 0, Wording("SIM112", "machine_for_project"))) from None
+        raise
+    return read_project_table(root, path, elsewhere, is_posted=is_posted)
 
 
 def read_project_table(root: Table, path: Path, elsewhere: Collection[str] = (), *, is_posted: bool = True) -> Project:
     """Read the table of a project that stands, or would stand, in the file ``path``; errors as ``load_project``."""
     if "simulation" not in root and not any(key in root for key in _KEYS_OF_PROJECTS):
-        raise InputError(Problem(str(path), 0, Wording("SIM112", "no_project", keys=_KEYS_OF_PROJECTS)))
+        is_machine = "axis" in root or "spindle" in root or "control" in root
+        wording = Wording("SIM112", "no_project", keys=_KEYS_OF_PROJECTS)
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "machine_for_project") if is_machine else wording))
     found = _Reader(Purpose(path, elsewhere, is_posted)).project(root)
     root.report_unread_keys()
     root.raise_problems()

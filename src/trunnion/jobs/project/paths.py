@@ -23,6 +23,10 @@ class ProjectPaths:
         self._folder = folder
         self._count = 0
 
+    def has_beside(self, name: str) -> bool:
+        """Whether a file lies in the folder of the project; never asked of another folder."""
+        return PurePosixPath(name).name == name and "\\" not in name and _answer(Path.is_file, self._folder / name)
+
     def files(self, table: Table, key: str, *, required: bool = False) -> tuple[str, ...]:
         names = table.texts(key) if required else table.texts(key, ())
         if required and key in table and not names:

@@ -39,7 +39,9 @@ class StatedValues:
         name = table.text(key) if required else table.text(key, "")
         if name.endswith(".toml"):
             return self.paths.file(table, key, name)
-        return table.text(key, "", one_of=shipped_machines()) if name else ""
+        file = f"{name}.toml"
+        meant = {"".join(filter(str.isalpha, name.lower())): file} if self.paths.has_beside(file) else {}
+        return table.text(key, "", one_of=shipped_machines(), other_names=meant) if name else ""
 
     def stock(self, table: Table, key: str) -> str:
         """Return a text of a stock, or the file of one."""

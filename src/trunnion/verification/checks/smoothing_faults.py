@@ -39,6 +39,6 @@ def _limit(context: Context, row: int) -> float:
     if k >= len(matching.nc):
         return max(WIDEST, asked)
     operation = context.expected.section_at(matching.cl[k]).operation
-    if operation.intol is None or operation.outtol is None:
-        return max(WIDEST, asked)
-    return max(CAM_TOLERANCES * (operation.intol + operation.outtol), LEAST, asked)
+    # An operation without them is held to what any work wants.
+    stated = (operation.intol or 0.0) + (operation.outtol or 0.0)
+    return max(CAM_TOLERANCES * stated, LEAST, asked)

@@ -98,8 +98,8 @@ class HeidenhainControl(PlaneControl):
         if self.shortest_path:
             self._shortest_path_left_on.append((self.line, Wording("NC363", variant)))
 
-    def end_program(self) -> None:
-        """Note every M126 that was left on.
+    def end_program(self, word: str) -> None:
+        """End the program by a word, and note every M126 that was left on.
 
         The manuals say that the end of a program cancels it, so that programs without any M127 are sound; one
         that cancels it elsewhere has lost a block. What cycles 7, 8, 10, 11 and 26 have set ends with it on some
@@ -116,6 +116,7 @@ class HeidenhainControl(PlaneControl):
                 self.line = line
                 self.note(left_on, Severity.ERROR)
             self.line = end
+        self.add_event("end", word)
 
     def feed_at_tip(self, on: bool) -> None:
         """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""

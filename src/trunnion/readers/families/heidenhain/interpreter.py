@@ -239,7 +239,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._block_parts.clear()
         program_frame.end(active, rest.split(), self._note)
         if len(self._stack) == 1:
-            self.control.end_program()
+            self.control.end_program("END PGM")
         self._check_behind_return(active)
         self._leave_program()
 

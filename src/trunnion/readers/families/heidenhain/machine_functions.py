@@ -107,8 +107,7 @@ class MFunctions:
         elif code == M_CALL_MODAL:
             self.modal_call = True
         elif code in M_PROGRAM_ENDS:
-            control.end_program()
-            control.add_event("end", f"M{code}")
+            control.end_program(f"M{code}")
             raise ProgramEnd
         elif code in M_NOT_SIMULATED:
             text, changes_path = M_NOT_SIMULATED[code]

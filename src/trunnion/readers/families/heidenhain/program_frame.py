@@ -14,7 +14,7 @@ _UNITS: Final = ("MM", "INCH")
 _LABEL: Final = re.compile(r"[ \t]*(?:/[ \t]*)?(?:[0-9]+[ \t]*)?LBL(?![A-Z])", re.IGNORECASE)
 _SKIPPED: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?/")
 _PROGRAM_END: Final = re.compile(r"(?<![A-Z])M0*(?:2|30)(?![0-9])", re.IGNORECASE)
-_END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+PGM(?![A-Z])", re.IGNORECASE)
+_END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+(PGM(?![A-Z]).*)", re.IGNORECASE)
 
 
 def begin(active: ActiveProgram, words: list[str], row: int, note: Note) -> None:
@@ -46,18 +46,18 @@ def check_end_of_file(active: ActiveProgram, note: Note) -> None:
         note(Wording("NC160", "program_no_end_pgm_no"), Severity.ERROR)
 
 
-def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) -> None:
-    """Look for END PGM behind the block ``end`` of the run; report blocks before it, up to a label, and behind it."""
+def check_rest(active: ActiveProgram, source: SourceText, note: Note, last: str) -> None:
+    """Look for END PGM behind the block ``last`` of the run; report blocks before it, up to a label, and behind it."""
     # An error ends the run too; what follows it would run if that were not there.
-    ends = _PROGRAM_END.search(end) is not None and _SKIPPED.match(end) is None
+    ends = _PROGRAM_END.search(last) is not None and _SKIPPED.match(last) is None
     reachable = active.name is None or not ends
     while source.fill():
         raw = source.next_line()
         if not active.ended:
             active.source.pass_label(raw, source.line - 1)
-            active.ended = _END.match(raw) is not None
-            if active.ended and active.name is None:
-                note(Wording("NC160", "program_no_begin_pgm_no"), Severity.ERROR)
+            match = _END.match(split_line(raw).statement)
+            if match is not None:
+                end(active, match[1].split(), note)
             if active.ended or reachable or not split_line(raw).statement:
                 continue
             reachable = True

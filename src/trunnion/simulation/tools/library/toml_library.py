@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from trunnion.definitions import Table, load_table
+from trunnion.definitions.messages import meant_word
 from trunnion.messages import Wording
 from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary
 from trunnion.simulation.tools.shapes import shape_faults
@@ -72,7 +73,8 @@ def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]
     before = len(table.problems)
     description = table.text("description", "")
     word = table.text("kind", one_of=list(ToolKind), other_names=OTHER_KINDS)
-    if word not in list(ToolKind):
+    word = word if word in list(ToolKind) else meant_word(str(table.to_dict().get("kind")), ToolKind, OTHER_KINDS)
+    if not word:  # which keys it should have, nobody knows
         table.mark_read(*table.keys())
         return []
     kind = ToolKind(word)
