@@ -47,6 +47,7 @@ class ExpectedValues:
     feed_limit             greatest feed of cuts then, in place of those of the CL files, mm/min; None: theirs
     feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
+    swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
     demands                what the proof must stand on besides what the machine's definition demands
     """
 
@@ -72,6 +73,7 @@ class ExpectedValues:
     feed_limit: float | None = None
     feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
+    swivel_data: tuple[str, ...] = ()
     demands: tuple[str, ...] = ()
 
     def for_operation(self, name: str) -> OperationSettings:

@@ -36,6 +36,9 @@ def expected_values(
         edge=every.edge,
         radius_offset=every.radius_offset,
         by_operation={name: _operation_settings(own, machine) for name, own in own_settings.items()},
+        swivel_data=tuple(
+            {each["swivel_data"] for each in (settings, *own_settings.values()) if "swivel_data" in each}
+        ),
         rapid_feed=rapid_feed,
         below_rapid_feed=slower,
         coolant=control.coolant if control else {},

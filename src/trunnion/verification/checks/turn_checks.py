@@ -19,6 +19,7 @@ from trunnion.verification.kinematics.positioning_moves import (
     only_positions_rotary_axes,
 )
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,10 +47,11 @@ def check_turns(context: Context) -> Check:
     changes = _plane_changes(context.run)
     turns = rotary_moves_at_part(context)
     places = [*turns.places, *_turns_in_a_plane(context, changes), *_planes_left_on(context, changes)]
+    places += _other_swivel_data(context)
     unplaced = _turned_without_plane(context) if isinstance(context, ComparedContext) else Faults()
     found = Faults(sorted([*places, *unplaced.places], key=lambda place: place.nc_line), len(places) + unplaced.count)
     on = sum(change.on for change in changes)
-    good = turns.summary() + (f"; {on} tilted planes, each off before the next turn" if on else "")
+    good = turns.summary() + (f"; {counted(on, 'tilted plane')}, each off before the next turn" if on else "")
     return found.check("turns", "turns and planes in a safe order", good)
 
 
@@ -142,4 +144,18 @@ def _planes_left_on(context: Context, changes: list[_PlaneChange]) -> Iterator[P
             what = "changes the tool" if event.kind == "tool_change" else "ends the program"
             state = "in a tilted plane" if tilted else "with a frame on"
             text = f"{what} {state}, which was switched on in line {last.source.line}"
+            yield context.place_of_event(event, 0.0, text)
+
+
+def _other_swivel_data(context: Context) -> Iterator[Place]:
+    """Planes by another swivel data set than the settings give: it may be of another head or table."""
+    known = context.settings.swivel_data
+    if not known or not isinstance(context, ComparedContext):
+        return
+    for event in context.run.events:
+        name = str(event.value).split(",")[1:2] if event.kind == "cycle800" else []
+        if name and name[0] not in ("", '"0"', *known):
+            text = (
+                f"CYCLE800 with the swivel data set {name[0]}, where the setting swivel_data has {' or '.join(known)}"
+            )
             yield context.place_of_event(event, 0.0, text)
