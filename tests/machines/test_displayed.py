@@ -32,12 +32,12 @@ def test_positions_are_within_the_turn_that_is_displayed(output: str, values: li
     ("output", "low", "high", "shown"),
     [
         ("0..360", -120.0, -120.0, (240.0, 240.0)), ("0..360", -130.0, -120.0, (230.0, 240.0)),
-        ("0..360", -10.0, 10.0, (0.0, 360.0)), ("0..360", -720.0, -120.0, (0.0, 360.0)),
-        ("0..360", 0.0, 360.0, (0.0, 360.0)), ("-180..180", 170.0, 190.0, (-180.0, 180.0)),
+        ("0..360", -10.0, 10.0, (350.0, 10.0)), ("0..360", -720.0, -120.0, (0.0, 360.0)),
+        ("0..360", 0.0, 360.0, (0.0, 360.0)), ("-180..180", 170.0, 190.0, (170.0, -170.0)),
         ("-180..180", 350.0, 370.0, (-10.0, 10.0)), ("none", -720.0, -120.0, (-720.0, -120.0)),
     ],
 )  # fmt: skip
-def test_a_range_that_passes_the_end_of_the_turn_is_all_of_it(
+def test_a_range_is_that_along_the_way_and_a_turn_is_all_of_it(
     output: str, low: float, high: float, shown: tuple[float, float]
 ) -> None:
     assert axis(output).displayed_range(low, high, 3) == shown

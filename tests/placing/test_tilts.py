@@ -204,7 +204,7 @@ def test_a_zero_and_a_tool_length_other_than_those_of_the_head_are_told(tmp_path
     assert [problem.code for problem in unlike_head(program, 45.0, 0.0)] == ["PLC220"]
     assert "clamped as it is drawn" in unlike_bodies(program, Clamping(45.0), machine)[0].what
     unknown = placed_notices(Clamping(), (1.0, -2.0, 3.5), None)
-    assert unknown[2] == "ZERO FOR TOOL LENGTH 0 MM: NONE WAS STATED"
+    assert unknown[2] == "ZERO FOR TOOL LENGTH 0 MM: NO LENGTH WAS STATED"
     program.write_text("\n".join(f"; {text}" for text in unknown), "utf-8")
     found = stated_place(program)
     assert found.zero == (1.0, -2.0, 3.5)

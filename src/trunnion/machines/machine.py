@@ -138,10 +138,13 @@ class Axis:
         return np.round(self.display_low + np.mod(rounded - self.display_low, 360.0), decimals) + 0.0
 
     def displayed_range(self, low: float, high: float, decimals: int) -> tuple[float, float]:
-        """Return the least and the greatest value that the machine displays on the way from ``low`` to ``high``."""
-        first, last = self.displayed(np.array([low, high]), decimals).tolist()
-        if abs((high - low) - (last - first)) > 10.0**-decimals:  # it passes the end of the turn
+        """Return what the machine displays at both ends of the way from ``low`` to ``high``.
+
+        The first is the greater one where the way passes the end of the turn; a turn or more is all of it.
+        """
+        if self.endless and self.output is not AngleOutput.NONE and high - low >= 360.0 - 10.0**-decimals:
             return self.display_low, self.display_low + 360.0
+        first, last = self.displayed(np.array([low, high]), decimals).tolist()
         return first, last
 
 

@@ -39,7 +39,9 @@ _TURNED: Final = re.compile(rf"{TURNED_NOTICE} {_NUMBER} DEG ABOUT Z, COUNTER-CL
 _DRAWN: Final = re.compile(f"{DRAWN_NOTICE}, NOT TURNED")
 _ZERO: Final = re.compile(rf"{ZERO_NOTICE}{_NUMBER} Y{_NUMBER} Z{_NUMBER} MM ON THE MACHINE, AXES AT 0")
 # Not every control has a colon.
-_LENGTH: Final = re.compile(rf"{LENGTH_NOTICE} (?:{_NUMBER} MM, FROM GAUGE POINT TO TIP|0 MM[:-] NONE WAS STATED)")
+_LENGTH: Final = re.compile(
+    rf"{LENGTH_NOTICE} (?:{_NUMBER} MM, FROM GAUGE POINT TO TIP|0 MM[:-] (?:NONE|NO LENGTH) WAS STATED)"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +77,7 @@ def zero_notices(zero: tuple[float, float, float], tool_length: float | None) ->
     x, y, z = zero
     yield f"{ZERO_NOTICE}{x:.3f} Y{y:.3f} Z{z:.3f} MM ON THE MACHINE, AXES AT 0"
     if tool_length is None:
-        yield f"{LENGTH_NOTICE} 0 MM: NONE WAS STATED"
+        yield f"{LENGTH_NOTICE} 0 MM: NO LENGTH WAS STATED"
     else:
         yield f"{LENGTH_NOTICE} {number(tool_length)} MM, FROM GAUGE POINT TO TIP"
 

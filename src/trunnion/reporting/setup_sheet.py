@@ -67,7 +67,8 @@ class SheetTool:
 class CutRanges:
     """What a run does in the cuts of one operation, and where that begins.
 
-    rotary  range of the primary and of the secondary rotary axis
+    rotary  range of the primary and of the secondary rotary axis along its way; where that passes the end of
+            the turn, the first is the greater one
     stands  where these stand in the cuts, in their order; empty for one that turns, or has many positions
     start   its first block
     """

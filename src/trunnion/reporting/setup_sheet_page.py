@@ -71,7 +71,7 @@ def _title(sheet: SetupSheet) -> str:
         why = said if standing.failed else f"refused, and written by force; {said}"
         verdict = f'<div class="verdict bad">MUST NOT RUN AS IT IS<small>{why}</small></div>'
     zero = (
-        "not told"
+        "not stated"
         if sheet.zero is None
         else " ".join(f"{name}{format_fixed(value)}" for name, value in zip("XYZ", sheet.zero, strict=True))
     )
@@ -163,7 +163,11 @@ def _degrees(turn: Range, stands: Sequence[float]) -> str:
     if stands:
         return ", ".join(f"{format_fixed(value)}°" for value in stands)
     low, high = (format_fixed(value) for value in turn)
-    return f"{low}°" if low == high else f"{low} … {high}°"
+    if low == high:
+        return f"{low}°"
+    # A way that passes the end of the turn begins at the greater value, in 0 to 360 or in -180 to 180 degrees.
+    through = "" if turn[0] <= turn[1] else f" through {180 if turn[1] < 0.0 else 0}°"
+    return f"{low} … {high}°{through}"
 
 
 def _axes(sheet: SetupSheet) -> str:

@@ -50,7 +50,7 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original:
         for k in np.flatnonzero(~near).tolist():
             text = f"moves with {feed[k]:g} mm/min; the CL file wants {wanted:g}"
             found.add(context.place_with_cl(int(segments.nc[k]), float(feed[k]), text, segments.cl))
-    good = ", ".join(map(_range_text, sorted(ranges.items()))) or "nothing is cut"
+    good = ", ".join(map(_range_text, sorted(ranges.items()))) or "no cutting motions outside of cycles"
     lowest, rows = accepted.slowed
     good += f"; lowered at {counted(rows, 'row')}, down to {lowest:.2f}, for the rotary axes" if rows else ""
     return found.check("feed", "feeds as the CL file says", good)

@@ -19,6 +19,7 @@ from trunnion.verification.kinematics.positioning_moves import (
     only_positions_rotary_axes,
 )
 from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +51,7 @@ def check_turns(context: Context) -> Check:
     unplaced = _turned_without_plane(context) if isinstance(context, ComparedContext) else Faults()
     found = Faults(sorted([*places, *unplaced.places], key=lambda place: place.nc_line), len(places) + unplaced.count)
     on = sum(change.on for change in changes)
-    good = turns.summary() + (f"; {on} tilted planes, each off before the next turn" if on else "")
+    good = turns.summary() + (f"; {counted(on, 'tilted plane')}, each off before the next turn" if on else "")
     return found.check("turns", "turns and planes in a safe order", good)
 
 

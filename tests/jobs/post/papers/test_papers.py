@@ -170,7 +170,7 @@ def test_a_sheet_tells_of_compensation_pitches_angles_and_stops(tmp_path: Path) 
     assert first["notes"] == []
     assert second["notes"] == ["optional stop (M1)", "pitch 1.25 mm"]
     assert second["method"] == ""
-    assert any(tool["kind"] == "drill, tip 118°" for tool in data["tools"]), data["tools"]
+    assert [tool["kind"] for tool in data["tools"]] == ["mill", ""]  # the tap is no drill, whatever the CL file says
 
 
 def test_a_sheet_tells_of_blocks_to_skip_left_hands_and_where_axes_stand(tmp_path: Path) -> None:
@@ -466,3 +466,19 @@ def test_the_sheet_has_title_library_coolant_and_what_compensation_means(tmp_pat
     (note,) = [note for each in data["operations"] for note in each["notes"] if "radius compensation" in note]
     assert note.startswith("radius compensation with the radius of the tool: the path is that of the tool's centre")
     assert "Our &lt;hub&gt;" in page.read_text("utf-8")
+
+
+def test_a_sheet_has_the_way_of_a_rotary_axis_and_no_kind_that_is_not_known(tmp_path: Path) -> None:
+    """The finishing turns C from 319.355 through 0 to 11.045; a tap and a reamer are drills in the CL file."""
+
+    def sheet(cl: Path) -> str:
+        output = tmp_path / f"{cl.stem}.mpf"
+        settings = {"zero": "-30,0,-80", "tool_length": "120"}
+        trunnion.post(cl, machine="yl569", settings=settings, output=output, sheet=tmp_path / "x.html")
+        return (tmp_path / "x.html").read_text("utf-8")
+
+    assert "C 319.355 … 11.045° through 0°" in sheet(TESTS / "golden/yl569/3_blade_finish.cls")
+    holes = sheet(TESTS / "data/cases/holes.cls")
+    assert "<bdi>DR5</bdi><br><small>drill, tip 118°</small>" in holes
+    assert "<bdi>TAP6</bdi></td>" in holes
+    assert "<bdi>REAM8</bdi></td>" in holes

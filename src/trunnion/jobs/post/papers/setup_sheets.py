@@ -242,7 +242,7 @@ def _tools(
         yield SheetTool(
             call=clean(call),
             name=clean(tool.name),
-            kind=_kind(tool),
+            kind=_kind(tool, [calls[number][2] for number in used]),
             diameter=tool.diameter,
             corner_radius=tool.corner_radius,
             length=tool.length,
@@ -256,8 +256,14 @@ def _tools(
         )
 
 
-def _kind(tool: Tool) -> str:
-    """Return what a tool is, in words; empty where the CL file does not say."""
+def _kind(tool: Tool, operations: Sequence[Operation]) -> str:
+    """Return what a tool is, in words; empty where the CL file does not say.
+
+    CL files call taps and reamers drills as well: one that does not only drill is of unknown kind.
+    """
+    modes = {event.mode[:1] for each in operations for event in each.events if isinstance(event, CycleOn)}
+    if tool.kind == "DRILL" and modes - {("DRILL",)}:
+        return ""
     if tool.kind == "MILL" and tool.diameter > 0.0 and abs(2.0 * tool.corner_radius - tool.diameter) < 1e-6:
         return "ball mill"
     words = {"MILL": "mill", "TCUTTER": "T-cutter", "BARREL": "barrel cutter", "DRILL": "drill"}
