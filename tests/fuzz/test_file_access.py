@@ -26,7 +26,7 @@ import json, sys
 from pathlib import Path
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
-from trunnion.readers import run_program
+from trunnion.readers import RunOptions, run_program
 
 folder = Path(sys.argv[1])
 machine = load_machine("yl569")
@@ -41,7 +41,7 @@ def watch(event, values):
 def run(path):
     try:
         named = [folder / "L10.SPF"]
-        run = run_program(path, machine, subprograms=named, family="sinumerik_840d", step_limit=2000)
+        run = run_program(path, machine, RunOptions(subprograms=named, step_limit=2000), family="sinumerik_840d")
         return len(run.diagnostics)
     except InputError:
         return -1

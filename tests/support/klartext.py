@@ -98,7 +98,9 @@ def proven(toolpath: Toolpath, machine: Machine, control: Control, folder: Path,
     assert not failures(found), [(check.key, check.summary) for check in failures(found)]
     # A CUTCOM has a DR of its own. The proof judges what DL and DR add; the run only says that its path is without.
     added = ("DR adds", *(["DL adds"] if given.get("delta_length") else []))
-    assert [finding.text for finding in found.run.diagnostics if not finding.text.startswith(added)] == []
+    # Random circles may end beside their start, which is remarked upon.
+    told = [finding.text for finding in found.run.diagnostics if finding.code != "NC323"]
+    assert [text for text in told if not text.startswith(added)] == []
     return found
 
 

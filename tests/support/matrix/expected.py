@@ -107,8 +107,8 @@ digit. What a control does not support is refused with a reason; the tests keep 
 """
 
 _FOOT: Final = """
-The slides have room enough in these definitions; their limits have tests of their own. Without TCP the workpiece zero
-and the tool's length are set. On machines whose head turns the tool, a program without TCP is for one length, and
+The linear axes have room enough in these definitions; their limits have tests of their own. Without TCP the workpiece
+zero and the tool's length are set. On machines whose head turns the tool, a program without TCP is for one length, and
 `verify` with another finds the tip off; on machines whose tables do all the turning the length makes no difference.
 """
 
