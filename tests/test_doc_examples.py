@@ -44,7 +44,9 @@ def test_the_python_of_a_page_runs(
         exec(compile(block, page, "exec"), {"__name__": "page"})
     shown = re.findall(r"^[a-z]+ +(?:ok  |FAIL)  .+$", text, re.MULTILINE)
     printed = capsys.readouterr().out.splitlines()
-    assert set(shown) <= set(printed)
+    for line in shown:
+        beginning = line.removesuffix("…")
+        assert any(each == line or (line.endswith("…") and each.startswith(beginning)) for each in printed), line
     assert shown or page != "README.md"
 
 

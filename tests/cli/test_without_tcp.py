@@ -93,8 +93,8 @@ def test_a_rotary_axis_goes_past_zero_by_the_shorter_way(shop: Shop) -> None:
 
 
 REFUSED: dict[str, tuple[tuple[str, ...], str, str]] = {
-    "no workpiece zero": (("yl569", "tcp=off"), "", "--set zero=X,Y,Z"),
-    "no tool length": ((*HEAD, "tcp=off"), "", "--set tool_length=MM"),
+    "no workpiece zero": (("yl569", "tcp=off"), "", "--zero X,Y,Z"),
+    "no tool length": ((*HEAD, "tcp=off"), "", "--tool-length MM"),
     "two tools": (
         (*HEAD, "tcp=off", "tool_length=120"),
         CL + CL.replace("OP1", "OP2").replace("TOOL,1", "TOOL,2").replace("D10", "D8"),

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="shared/data/sinumer
 #: Words of these files that belong to another machine or to nobody, by file.
 EXPECTED = {
     "edge_cases": {"A0 ", "E=", "ELX", "E_MULTIPLIER", "F_MULTI", "MATERIAL_UPDATE"},
-    "simple": {"no centre", "X is written twice"},
+    "simple": {"no centre", "X is twice in this block"},
     "arc": {"K has no meaning"},
     "multiple_m_codes": {f"M{code} belongs" for code in (101, 102, 103)},
 }
