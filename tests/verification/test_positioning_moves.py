@@ -37,6 +37,7 @@ def run_of(rows: list[tuple[int, bool, bool, bool]]) -> Any:
             return len(rows)
 
     return Run(
+        machine=SimpleNamespace(linear=(), workpiece_zero=None, tool_length=None),
         programmed=np.array([words for words, *_ in rows], np.uint8),
         kind=np.where([rapid for _, rapid, *_ in rows], Kind.RAPID, Kind.LINEAR).astype(np.uint8),
         state=SimpleNamespace(machine_frame=frame.steps(len(rows), np.bool_), tcp=tcp),

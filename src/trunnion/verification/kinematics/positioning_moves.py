@@ -107,7 +107,6 @@ def approach_rows(run: Run) -> Ints:
 
     Where a head tilts the tool in a plane, it is a leg of linear axes (``is_leg_of_axes``).
 
-
     The tool was retracted before, comes from a machine position, or is where the operator has left it: a program may
     begin so. How high it is then is not known where the machine's travel is not known.
     """
