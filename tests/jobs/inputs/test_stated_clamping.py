@@ -217,14 +217,14 @@ def test_a_view_with_bodies_warns(folder: Path, tmp_path: Path) -> None:
 
 
 def test_a_program_that_moves_nothing_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for text in ("", "N10 G71\nN20 M30\n"):
+    for text, codes in (("", ("NC112", "NC112")), ("N10 G71\nN20 M30\n", ("SIM148", "NC185"))):
         program = tmp_path / "still.mpf"
         program.write_text(text, "utf-8")
         body = ["--stock", "box:10,10,10", "--tool", "1=ball:8,length=50"]
-        assert main(["simulate", str(program), "--machine", "yl569", *body]) == 1
-        assert "SIM148" in capsys.readouterr().err
+        assert main(["simulate", str(program), "--machine", "yl569", *body]) == (1 if text else 2)
+        assert codes[0] in capsys.readouterr().err
         main(["verify", str(program), "--machine", "yl569"])
-        assert "NC185" in capsys.readouterr().err
+        assert codes[1] in capsys.readouterr().err
 
 
 def test_a_work_offset_of_the_program_asks_for_the_zero(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -91,7 +91,7 @@ def test_what_is_missing_of_the_part_fails(tmp_path: Path) -> None:
         (["--simulate", "--project", str(CL)], "is no project"),
         (["--simulate", "--project", "two.toml"], "has 2 set-ups"),
         (["--simulate", "--project", "other.toml"], "other.toml:2: error: simulation.machine is dmu65"),
-        (["--simulate", "--project", "zero.toml"], "give --set zero=0,0,120"),
+        (["--simulate", "--project", "zero.toml"], "give --zero 0,0,120"),
         (["--simulate", "--project", "until.toml"], "until.toml:4: error: simulation.until is 400"),
         (["--simulate", "--stock", "hub.stl", "--output", "hub.stl"], "hub.stl"),
         (["--simulate", "--stock", STOCK, "--tool", "2=bal:3"], "bal"),
