@@ -98,8 +98,8 @@ def machine_content(machine: MachineLike, title: str, **given: Any) -> ViewConte
     """
     named = as_machine(machine)
     with tempfile.TemporaryDirectory() as folder:
-        nothing = Path(folder) / "no program"  # a control that has been given nothing
-        nothing.write_bytes(b"")
+        nothing = Path(folder) / "no program"  # a control that has been given a blank line
+        nothing.write_bytes(b"\n")
         content = prepare_view(nothing, machine=named, **given)
     scene = {**content.scene, "title": title, "files": [""], "findings": [], "checks": [], "standing": "", "stands": []}
     return replace(content, scene=scene)
