@@ -353,7 +353,6 @@ HEIDENHAIN = Language(
         "no TCP": r"\bM128\b.*",
         "no plane": r"^.*\bPLANE SPATIAL\b.*$",
         "no call of the cycle": r"\bM99\b",
-        "no end": r"^.*\bM30\b.*$",
         "no centre": r"^\d+ CC .*$",
     },
     cut_word={
