@@ -88,6 +88,7 @@ class Interpreter(ABC, Generic[A]):
         self._machine = machine
         self._options = options
         self._subprograms = Subprograms(options.subprograms, self.suffixes, self.prefix)
+        self._source_of_line: SourceText | None = None  # a block that calls a subprogram is a line of its own file
         self._counter = StepCounter(options.step_limit, self._open_sources, self._limit_error, self._positions_from)
         self._diagnostics: list[Diagnostic] = []
         self._unlisted = 0
@@ -183,6 +184,7 @@ class Interpreter(ABC, Generic[A]):
             if not source.fill():
                 self._end_of_source()
                 continue
+            self._source_of_line = source
             if self._lines_without_scan:
                 self._lines_without_scan -= 1
             elif not control.preconditions and self._may_scan(source):
@@ -264,7 +266,8 @@ class Interpreter(ABC, Generic[A]):
         return [self._stack[0].source, *(source for source, _ in self._sources.values())]
 
     def _limit_error(self, wording: Wording) -> InputError:
-        return self._stack[-1].source.problem(self.control.line, wording)
+        source = self._source_of_line or self._stack[-1].source
+        return source.problem(self.control.line, wording)
 
     def _check_depth(self) -> None:
         if len(self._stack) >= MAX_CALL_DEPTH:
