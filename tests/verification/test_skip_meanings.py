@@ -7,7 +7,6 @@ import pytest
 
 import trunnion
 from tests.support.locations import TESTS
-from trunnion.errors import InputError
 
 CASES = TESTS / "data" / "cases"
 MACHINES = ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "xyzac_trt", "hs664rt"]
@@ -50,11 +49,12 @@ def test_the_same_blocks_in_another_form_may_be_skipped(tmp_path: Path) -> None:
     assert trunnion.diff(program, other, machine="yl569").same
 
 
-def test_what_has_been_read_needs_its_path(tmp_path: Path) -> None:
+def test_what_has_been_read_knows_its_meanings(tmp_path: Path) -> None:
     program = skipping(posted("yl569", tmp_path), " M9")
     run = trunnion.read_program(program, machine="yl569")
-    with pytest.raises(InputError, match="give the path of the program"):
-        trunnion.diff(run, run, machine="yl569")
+    assert [sorted(each.levels) for each in run.skipped] == [[0]]
+    assert trunnion.diff(run, run, machine="yl569").same
+    assert not trunnion.diff(run, tmp_path / "one.nc", machine="yl569").same
 
 
 HEAD = "%\nO0001\nG21 G17 G40 G80 G90 G94\nG49 G53 G0 Z0.\nT1 M6\nG54\nS1500 M3\n"

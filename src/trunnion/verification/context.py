@@ -48,6 +48,7 @@ class ExpectedValues:
     feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
+    without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     demands                what the proof must stand on besides what the machine's definition demands
     """
 
@@ -74,6 +75,7 @@ class ExpectedValues:
     feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
     swivel_data: tuple[str, ...] = ()
+    without_skipped: bool = False
     demands: tuple[str, ...] = ()
 
     def for_operation(self, name: str) -> OperationSettings:

@@ -6,8 +6,8 @@ Out:    the blocks without which the program would do something else than the CL
 
 from collections.abc import Iterator
 
-from trunnion.model.toolpath import BlockSkip
 from trunnion.verification.context import ComparedContext
+from trunnion.verification.expected.skipped import skipped_stretches
 from trunnion.verification.results import Place
 
 
@@ -29,14 +29,5 @@ def skip_faults(context: ComparedContext) -> Iterator[Place]:
 def _regions(context: ComparedContext) -> Iterator[tuple[int, int]]:
     """Yield the points of the CL file that may be skipped: the first, and the one after the last."""
     for section in context.expected.sections:
-        begin = -1
-        for event in section.operation.events:
-            if isinstance(event, BlockSkip):
-                row = section.first + event.row
-                if event.on and begin < 0:
-                    begin = row
-                elif not event.on and begin >= 0:
-                    yield begin, row
-                    begin = -1
-        if begin >= 0:
-            yield begin, section.first + len(section.operation.moves)
+        for begin, end in skipped_stretches(section.operation):
+            yield section.first + begin, section.first + end
