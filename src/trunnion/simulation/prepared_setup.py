@@ -70,18 +70,19 @@ def _program_of(run: Run, shapes: dict[str, ToolShape], until: str | int | None)
         end = int(later[0]) if len(later) else len(run)
         why = Wording("SIM142", "cut_up_to_fault", line=first.line, fault=first.wording)
     if until is not None:
-        row = _row_of_block(run, until)
+        row = row_of_block(run, until)
+        if row is None:
+            raise InputError(argument_problem("until", Wording("SIM114", "no_block", files=run.files[0], until=until)))
         if row < end:
             end, why = row, None
     return SimulatedProgram(run, shapes, end, why)
 
 
-def _row_of_block(run: Run, until: str | int) -> int:
+def row_of_block(run: Run, until: str | int) -> int | None:
+    """Return the first row of a block of the program, by its N number; None: it has no such block, nor one behind it."""
     text = str(until).strip().upper().removeprefix("N")
     number = int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else -1
     own = np.flatnonzero((run.block_number >= number) & (run.file == 0)) if number >= 0 else np.zeros(0, np.int64)
     # A block without motion is followed by the next number, not by what runs next: subprograms may stand behind it.
     rows = own[run.block_number[own] == run.block_number[own].min()] if len(own) else own
-    if not len(rows):
-        raise InputError(argument_problem("until", Wording("SIM114", "no_block", files=run.files[0], until=until)))
-    return int(rows[0])
+    return int(rows[0]) if len(rows) else None

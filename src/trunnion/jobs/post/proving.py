@@ -9,8 +9,9 @@ from dataclasses import replace
 from functools import partial
 
 from trunnion.errors import Problem, Severity, warning
+from trunnion.jobs.observer import Untold
 from trunnion.jobs.post.expected_values import Expectation
-from trunnion.jobs.post.forced_program import Untold, write_forced
+from trunnion.jobs.post.forced_program import write_forced
 from trunnion.jobs.post.machining_times import operation_times
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram
