@@ -132,7 +132,12 @@ def named_verification(found: Verification, name: str, kept: Iterable[Path]) -> 
     names = _names(found.run, name) | {str(file): str(file) for file in kept} | {"": ""}
 
     def named(check: Check) -> Check:
-        return replace(check, places=tuple(replace(each, nc_file=names.get(each.nc_file, Path(each.nc_file).name)) for each in check.places))
+        return replace(
+            check,
+            places=tuple(
+                replace(each, nc_file=names.get(each.nc_file, Path(each.nc_file).name)) for each in check.places
+            ),
+        )
 
     return replace(found, program=name, run=named_run(found.run, name), checks=tuple(map(named, found.checks)))
 

@@ -67,9 +67,7 @@ def _joined(one: SimulationResult, other: SimulationResult, words: str) -> Simul
     return _with_remarks(result, other.remarks, words)
 
 
-def _new(
-    one: SimulationResult, known: Sequence[_Found], others: Iterable[_Found], words: str
-) -> Iterator[_Found]:
+def _new(one: SimulationResult, known: Sequence[_Found], others: Iterable[_Found], words: str) -> Iterator[_Found]:
     """Yield what is found at another place, or is deeper or nearer there, with its row in the run of no skipped
     block.
     """

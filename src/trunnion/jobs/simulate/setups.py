@@ -31,7 +31,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION
-from trunnion.simulation.prepared_setup import PreparedSetup, row_of_block
+from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
@@ -95,8 +95,7 @@ def skipping_setup(
         remarks += _other_offsets(runs, given.work_offset, own.machine)
     if NO_CALL not in own.tools and any(_cuts_without_call(run) for run in runs):
         raise InputError(argument_problem("tools", Wording("SIM150", "cuts_before_first_tool")))
-    until = own.until if own.until is not None and row_of_block(runs[-1], own.until) is not None else None
-    return replace(own, runs=runs, until=until)
+    return replace(own, runs=runs, until_line=own.line_of_end(), until=None)
 
 
 def _tools(runs: Sequence[Run], known: KnownTools) -> dict[str, ToolShape]:

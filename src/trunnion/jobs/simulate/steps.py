@@ -55,7 +55,12 @@ def simulate_setups(given: SimulationInput, observer: Observer, shares: JoinedSh
 
 
 def _cut(
-    steps: SetupSteps, shape: StockShape, setups: Sequence[PreparedSetup], remarks: Sequence[list[Problem]], *, stops: bool
+    steps: SetupSteps,
+    shape: StockShape,
+    setups: Sequence[PreparedSetup],
+    remarks: Sequence[list[Problem]],
+    *,
+    stops: bool,
 ) -> Iterator[SimulationResult]:
     """Yield what cutting in each set-up comes to, up to the one with the first finding if it ``stops`` there."""
     for own, told in zip(setups, remarks, strict=True):

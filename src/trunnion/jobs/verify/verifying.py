@@ -134,9 +134,7 @@ def verify(
     return verification.with_recording(proof, recording, found["recorded_tolerance"])
 
 
-def _skipping(
-    on: VerifiedMachine, read: ReadProgram, given: VerifyArguments, run: Run, compared: bool
-) -> Verification:
+def _skipping(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments, run: Run, compared: bool) -> Verification:
     """Return the proof of the program with its blocks skipped."""
     read = replace(read, run=run, toolpaths=read.toolpaths if compared else [])
     settings = replace(expected(on, read, given), without_skipped=compared)
