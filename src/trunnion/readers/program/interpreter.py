@@ -180,7 +180,9 @@ class Interpreter(ABC, Generic[A]):
         while self._stack:
             active = self._stack[-1]
             source = active.source
-            if control.modal.file.current != active.file:  # only now: the block that called is of its own file to its end
+            if (
+                control.modal.file.current != active.file
+            ):  # only now: the block that called is of its own file to its end
                 control.modal.file.set(control.row, active.file)
             if not source.fill():
                 self._end_of_source()
