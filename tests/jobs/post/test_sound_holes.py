@@ -48,7 +48,9 @@ def test_the_cure_of_a_cycle_that_goes_on_makes_all_holes(tmp_path: Path, capfd:
     assert posted(text, tmp_path) == 2
     assert "need the whole CYCLE" in capfd.readouterr().err
     cycle = next(line for line in text.splitlines() if line.startswith("CYCLE/DRILL"))
-    cured = text.replace("20.,30.,0\n", "20.,30.,0\nCYCLE/OFF\n").replace("GOTO/140.,50.,0\n", f"{cycle}\nGOTO/140.,50.,0\n")
+    cured = text.replace("20.,30.,0\n", "20.,30.,0\nCYCLE/OFF\n").replace(
+        "GOTO/140.,50.,0\n", f"{cycle}\nGOTO/140.,50.,0\n"
+    )
     assert posted(cured, tmp_path) == 0
     assert "3 holes" in capfd.readouterr().err
 
@@ -79,3 +81,12 @@ def test_a_tool_that_drills_or_taps_does_not_mill(post: Post, cycle: str) -> Non
     code, _, err = post.all(f"{head}{hole}FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\n{FOOT}")
     assert code == 1
     assert "moves sideways" in err
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_a_dwell_that_is_too_short_is_rounded_up(
+    machine: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    text = f"{CLEAR}FEDRAT/MMPM,500.0\nGOTO/10.0,0.0,5.0\nDELAY/0.0004\nGOTO/20.0,0.0,5.0\n{FOOT}"
+    assert posted(text, tmp_path, machine=machine) == 0
+    assert "a dwell of 0.0004 is shorter than the control can wait" in capfd.readouterr().err

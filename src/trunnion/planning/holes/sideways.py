@@ -41,7 +41,9 @@ def sideways_problems(toolpaths: Sequence[Toolpath]) -> list[Problem]:
     for number, operation in zip(loaded, operations, strict=True):
         row = _first_sideways(operation) if _cuts_along_its_axis(operation, used[number]) else None
         if row is not None:
-            wording = Wording("PLN350", "tool_sideways", operation=operation.name, tool=operation.tool.name or f"T{number}")
+            wording = Wording(
+                "PLN350", "tool_sideways", operation=operation.name, tool=operation.tool.name or f"T{number}"
+            )
             problems.append(Problem(operation.file, int(operation.moves.line[row]), wording))
     return problems
 
