@@ -84,6 +84,8 @@ class ContourControl(CoordinateControl):
         self._last: tuple[Place, Element] | None = None
         self._scan: tuple[Place, int, Floats] | None = None
         self._awaited: Awaited | None = None
+        # The first row that programs an axis, by axis.
+        self._first_rows: dict[int, int] = {}
         super().__init__(machine, note)
 
     # Elements
@@ -96,8 +98,25 @@ class ContourControl(CoordinateControl):
         """Whether nothing has moved since, and coordinates mean the same."""
         return place.row == self.row and place.position_map is self.position_map
 
+    def _knows_start(self) -> bool:
+        """Whether the program has said where the last row begins in the working plane."""
+        for axis in (axis for axis in range(3) if axis != self.plane_axis):
+            if axis not in self._first_rows:
+                found = np.flatnonzero(self.columns.programmed[: self.row] & (1 << axis))
+                if not len(found):
+                    return False
+                self._first_rows[axis] = int(found[0])
+            if self._first_rows[axis] >= self.row - 1:
+                return False
+        return True
+
     def last_element(self) -> Element | None:
-        """Return the element that the last row is; None if it was another motion, or its coordinates are others."""
+        """Return the element that the last row is; None if it was another motion, or its coordinates are others.
+
+        None as well if nobody knows where it begins.
+        """
+        if not self._knows_start():
+            return None
         if self._last is not None and self._is_here(self._last[0]):
             return self._last[1]
         if self._scan is None or not self._is_here(self._scan[0]):
@@ -160,6 +179,10 @@ class ContourControl(CoordinateControl):
     def end_contour(self) -> None:
         """Do what is due where no element comes that a block waits for."""
         self._settle(None)
+
+    def forget_contour(self) -> None:
+        """Let nothing wait for the next element."""
+        self._awaited = None
 
     def _settle(self, element: Element | None) -> None:
         """Do what waits for an element, at the place of its block."""

@@ -37,8 +37,8 @@ LINEAR: Final = 1
 #: How far tool axis and drilling axis may differ without a warning, as the length of their difference.
 MAX_DRILLING_AXIS_ERROR: Final = 2e-4
 
-#: Makes the circle of a block from its start and end, programmed positions; raises ``arcs.ArcError``.
-Circle = Callable[[Floats, Floats], arcs.Arc]
+#: Makes the circle of a block from its start and end, programmed positions; None: it is a line. Raises ``ArcError``.
+Circle = Callable[[Floats, Floats], arcs.Arc | None]
 
 
 #: G93: F is one over the minutes of a block.
@@ -203,8 +203,8 @@ class VirtualControl(ContourControl, ABC):
         if circle is not None and within_limits(end):
             try:
                 arc = circle(self.programmed_position.copy(), end)
-                end = arc.end
-                gap = arcs.gap_of_turn(self.programmed_position, arc)
+                end = end if arc is None else arc.end
+                gap = 0.0 if arc is None else arcs.gap_of_turn(self.programmed_position, arc)
                 if gap:
                     self.note(Wording("NC323", "end_beside_start", gap=gap), Severity.WARNING)
             except arcs.ArcError as error:
