@@ -41,6 +41,7 @@ class OperationSettings:
     tool         tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
     work_offset  54..59, 505..599, or 600 plus the P of G54.1; None: any, but the same throughout
     edge         number of the cutting edge (D); None: any
+    last_edge    ADJUST of LOAD/TOOL up to this number is the cutting edge; 0: it is not
     radius_offset  what is added to the tool's number for the register of the radius
     """
 
@@ -48,6 +49,7 @@ class OperationSettings:
     work_offset: int | None = None
     edge: int | None = None
     radius_offset: int = 0
+    last_edge: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
