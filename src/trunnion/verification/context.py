@@ -49,6 +49,7 @@ class ExpectedValues:
     feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
+    without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     stop_between           an optional stop stands between operations
     demands                what the proof must stand on besides what the machine's definition demands
     """
@@ -77,6 +78,7 @@ class ExpectedValues:
     feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
     swivel_data: tuple[str, ...] = ()
+    without_skipped: bool = False
     stop_between: bool = False
     demands: tuple[str, ...] = ()
 
