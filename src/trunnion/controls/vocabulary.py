@@ -93,8 +93,9 @@ PROGRAM_MEANINGS: Final = {
 RUN_ONLY_SETTINGS: Final = frozenset(
     {
         "cl_units", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance",
-        "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "tool_retract", "limit_margin",
-        "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number", "listing",
+        "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways", "tool_retract",
+        "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number",
+        "listing",
         *(option.setting for option in POSTING),
     }
 )  # fmt: skip

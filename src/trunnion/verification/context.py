@@ -53,6 +53,7 @@ class ExpectedValues:
     clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
     in_turn                axes move one group after the other from home to an operation
     between_operations     the tool goes home, or above all operations, from one to the next
+    without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     stop_between           an optional stop stands between operations
     demands                what the proof must stand on besides what the machine's definition demands
     """
@@ -81,6 +82,7 @@ class ExpectedValues:
     feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
     swivel_data: tuple[str, ...] = ()
+    without_skipped: bool = False
     stop_between: bool = False
     clearance: float | None = None
     in_turn: bool = False

@@ -22,8 +22,8 @@ from trunnion.wording import counted, format_duration
 
 _NAMES: Final = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional stops"}
 
-#: Half of the last digit of dwells, seconds.
-_TOLERANCE: Final = 5.1e-4
+#: Dwells are the same if they differ by no more than the shortest that controls print, seconds.
+_TOLERANCE: Final = 1.01e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
