@@ -61,6 +61,7 @@ class CornerWord(NamedTuple):
     feed        its own; None: none
     feed_of     ``FEED_BEFORE`` or ``FEED_BEHIND``: whose feed it has otherwise; empty: nobody has said
     left_out    the control makes none where an element leaves the working plane, or none follows; else it stops there
+    least_turn  radians: a contour that turns by less has no corner
     modal       it is in force until it is switched off, so that nobody has asked for a corner here
     """
 
@@ -70,12 +71,16 @@ class CornerWord(NamedTuple):
     by_length: bool = False
     feed: float | None = None
     feed_of: str = FEED_BEFORE
+    least_turn: float = 0.0
     left_out: bool = False
     modal: bool = False
 
 
 class ContourControl(CoordinateControl):
     """Knows the last element of the path, and adds elements."""
+
+    #: What is said of a corner whose feed nobody knows: a variant of NC224.
+    unknown_corner_feed = "corner_feed"
 
     def __init__(self, machine: Machine, note: Note) -> None:
         # Rotary positions, and the map (3, 4) from slide positions to the tip at these positions.
@@ -245,7 +250,7 @@ class ContourControl(CoordinateControl):
         if compensation.current != compensation.part(self.row - 1, self.row)[0]:
             raise ContourError(Wording("NC324", "compensation_changes"))
         angle = contours.corner_turn(before, behind, plane)
-        if not angle:
+        if not angle or abs(angle) < word.least_turn:
             return None
         if not word.chamfer:
             return contours.rounding(before, behind, word.size, plane)
@@ -265,9 +270,8 @@ class ContourControl(CoordinateControl):
             return word.feed
         behind = self.programmed_feed
         if not word.feed_of and feed_before != behind:
-            self.note(
-                Wording("NC224", "corner_feed", word=word.word, before=feed_before, behind=behind), Severity.ERROR
-            )
+            said = Wording("NC224", self.unknown_corner_feed, word=word.word, before=feed_before, behind=behind)
+            self.note(said, Severity.ERROR)
         return behind if word.feed_of == FEED_BEHIND else feed_before
 
     def _add(self, end: Floats, arc: arcs.Arc | None = None, kind: Kind = Kind.LINEAR) -> None:

@@ -31,6 +31,8 @@ class FanucControl(Rs274Control):
     plane_of_pose  the tilted plane is that of the rotary position
     """
 
+    unknown_corner_feed = "corner_feed_in_no_manual"
+
     # A reset, and with it the end of a program, keeps units and stroke limits in any case (docs/reader-fanuc.md).
     kept_modes = frozenset({"units", "limits"})
     doubtful_modes = frozenset({"distances", "plane", "feed", "compensation", "offset", "length"})

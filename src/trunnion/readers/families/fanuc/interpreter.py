@@ -13,6 +13,7 @@ from trunnion.machines import Machine, Mount
 from trunnion.messages import Wording
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import PositionMode
+from trunnion.readers.control.contour_control import CornerWord
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR
 from trunnion.readers.families.fanuc import words
@@ -37,6 +38,7 @@ class FanucInterpreter(CycleInterpreter):
     """Runs one Fanuc program on one machine."""
 
     table = words.TABLE
+    corner_letters = ("R", "C")
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
@@ -149,7 +151,10 @@ class FanucInterpreter(CycleInterpreter):
         self._leave_program()
 
     def _execute_words(self, block: Block) -> None:
+        waits, row = self.control.awaits_element, self.control.row
         super()._execute_words(block)
+        if waits and row == self.control.row:
+            self.control.end_contour()  # the motion that makes a corner must be in the next block (PS0051)
         self._report_unused_words(block)  # behind the M codes after the motion, which take some
 
     def _scale_words(self, block: Block) -> None:
@@ -342,7 +347,28 @@ class FanucInterpreter(CycleInterpreter):
             control.move(axes, vector, feed_written=self._check_feed(block))
         else:
             self._move(block, axes)
+            self._cut_corner(block)
         self._call_modal_macro()
+
+    def _cut_corner(self, block: Block) -> None:
+        """Round or chamfer the corner at the end of a block: ,R and ,C."""
+        sizes = {word: size for word in words.CORNERS if (size := block.take(word)) is not None}
+        if len(sizes) > 1:
+            self._note(Wording("NC216", "several_corners", words=tuple(sizes)), Severity.ERROR)
+            return
+        for word, size in sizes.items():
+            if not size > 0.0:
+                self._note(Wording("NC210", "corner_needs_size", word=word), Severity.ERROR)
+                return
+            self.control.cut_corner(
+                CornerWord(
+                    word,
+                    size * self.control.length_unit,
+                    chamfer=word == words.CHAMFER,
+                    feed_of="",
+                    least_turn=words.LEAST_TURN,
+                )
+            )
 
     def _vector(self, block: Block) -> Floats | None:
         """G43.5: return the tool axis I J K; components that are not written are 0."""

@@ -1,5 +1,6 @@
 """The words of a Fanuc, by their meaning in its manuals."""
 
+import math
 from typing import Final
 
 from trunnion.readers.program.word_values import one_of, whole
@@ -172,6 +173,12 @@ TILT: Final = TABLE.code("G68.2")
 
 #: Smooth interpolation and nano smoothing, which round the path within a tolerance of the control.
 SMOOTHING: Final = ("G5.1 Q2", "G5.1 Q3")
+
+#: Words that round or chamfer the corner at the end of their block. A contour that turns by less, radians, has none.
+ROUNDING: Final = ",R"
+CHAMFER: Final = ",C"
+CORNERS: Final = (ROUNDING, CHAMFER)
+LEAST_TURN: Final = math.radians(1.0)
 
 #: Threads.
 THREADS: Final = frozenset({TABLE.code("G74"), TABLE.code("G84")})
