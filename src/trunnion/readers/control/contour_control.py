@@ -79,9 +79,6 @@ class CornerWord(NamedTuple):
 class ContourControl(CoordinateControl):
     """Knows the last element of the path, and adds elements."""
 
-    #: What is said of a corner whose feed nobody knows: a variant of NC224.
-    unknown_corner_feed = "corner_feed"
-
     def __init__(self, machine: Machine, note: Note) -> None:
         # Rotary positions, and the map (3, 4) from slide positions to the tip at these positions.
         self._slide_map: tuple[float, float, Floats] | None = None
@@ -270,7 +267,8 @@ class ContourControl(CoordinateControl):
             return word.feed
         behind = self.programmed_feed
         if not word.feed_of and feed_before != behind:
-            said = Wording("NC224", self.unknown_corner_feed, word=word.word, before=feed_before, behind=behind)
+            variant = "corner_feed" if word.left_out else "corner_feed_in_no_manual"
+            said = Wording("NC224", variant, word=word.word, before=feed_before, behind=behind)
             self.note(said, Severity.ERROR)
         return behind if word.feed_of == FEED_BEHIND else feed_before
 
