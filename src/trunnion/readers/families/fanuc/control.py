@@ -103,7 +103,7 @@ class FanucControl(Rs274Control):
         return np.asarray(self.offset_of(self.system) - self.zero + self.preset + self.local)
 
     def left_on(self) -> Wording | None:
-        """Return the mirror image, rotation or shift without use that the end of the program leaves on; None if nothing.
+        """Return the mirror image, rotation or unused shift that the end of the program leaves on; None if nothing.
 
         The plane of the rotary position (G254 of a Haas) ends with M2 and M30.
         """
