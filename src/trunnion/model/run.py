@@ -115,6 +115,19 @@ class RunEvent:
     tcp: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class ModeWord:
+    """A mode that holds from row ``before_row`` on because the program says so.
+
+    mode  what it is of, such as ``plane``
+    word  the word that holds; empty where the path shows which one: then it matters only that there is one
+    """
+
+    before_row: int
+    mode: str
+    word: str = ""
+
+
 #: ``Run.work_offset`` where work offsets are suppressed and positions count from the machine's zero (G500).
 NO_OFFSET = 500
 
@@ -228,6 +241,7 @@ class Run:
     spindle_holes: tuple[SpindleHole, ...] = ()
     compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     planes: Floats = field(default_factory=lambda: np.zeros((0, 3, 4)))
+    mode_words: tuple[ModeWord, ...] = ()
 
     def __post_init__(self) -> None:
         for each in fields(self):

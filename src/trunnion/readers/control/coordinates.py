@@ -32,6 +32,9 @@ INCH: Final = 25.4
 #: What of the next program a stored work offset changes, for messages.
 OFFSET: Final = "the work offset of"
 
+#: Modes whose words a comparison sees without knowing whether the program says them.
+_SHOWN_ANYHOW: Final = frozenset({"units", "offset"})
+
 
 class CoordinateControl(RowRecorder):
     """Knows the coordinate systems in force, and keeps the maps of the rows up to date.
@@ -180,6 +183,7 @@ class CoordinateControl(RowRecorder):
         plane    from the plane to the work offset, None for no tilted plane
         program  the programmable frame from now on, none by default
         """
+        self.say_mode("tilted plane")
         with self.frame_change():
             self._plane = plane or AffineMap()
             self._program = program or AffineMap()
@@ -258,6 +262,8 @@ class CoordinateControl(RowRecorder):
 
     def set_mode(self, name: str, word: str, before: Hashable, after: Hashable) -> None:
         """Remember a word that sets a mode, for ``report_trailing_modes``; ``name`` is that of the mode."""
+        if name not in _SHOWN_ANYHOW:
+            self.say_mode(name)
         self._trailing.set(name, word, WordPlace(self.row, self.line, self.modal.file.current), before, after)
 
     def usual(self, name: str) -> Hashable:
@@ -319,6 +325,7 @@ class CoordinateControl(RowRecorder):
 
     def set_tcp(self, on: bool) -> None:
         """Switch tool centre point control."""
+        self.say_mode("TCP")
         if on != self.tcp:
             with self.frame_change():
                 self.tcp = on

@@ -140,6 +140,9 @@ class WordInterpreter(Rs274Interpreter[A]):
             self._note(Wording(word.problem or code, "not_simulated", word=word.text, does=word.does), severity)
         elif word.effect is Effect.UNKNOWN:
             self._execute_unknown(word)
+        if word.mode:
+            letters = (f" {letter}{block.words[letter].value:g}" for letter in word.letters if letter in block.words)
+            self.control.say_mode(word.mode, "" if word.shows else "".join((word.text, *letters)))
         if word.act:
             self._acts[word.act](word, block)
 

@@ -23,17 +23,20 @@ from trunnion.readers.families.sinumerik.words import (
     FRAMES,
     G_FEEDS,
     G_MACHINE,
+    G_MODES,
     G_NOT_SIMULATED,
     G_OFFSETS,
     G_PLANES,
     G_RADIUS_COMPENSATION,
     G_RESERVED,
+    G_SHOWN_MODES,
     G_SURFACE,
     G_UNITS,
     G_WITHOUT_PATH_EFFECT,
     M_AXIS_MODE,
     M_GEARS,
     M_RETURN,
+    MODES,
     TOOL_FRAMES,
     WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT,
@@ -53,6 +56,10 @@ class WordInterpreter(CallInterpreter):
 
     def _g_code(self, code: int) -> None:
         control = self.control
+        if code in G_SHOWN_MODES:
+            control.say_mode(G_SHOWN_MODES[code])
+        elif code in G_MODES:
+            control.say_mode(G_MODES[code], f"G{code}")
         if code in G_RADIUS_COMPENSATION:
             control.compensate(G_RADIUS_COMPENSATION[code])
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER_CLOCKWISE):
@@ -90,6 +97,8 @@ class WordInterpreter(CallInterpreter):
 
     def _word(self, word: str, block: Block) -> None:
         control = self.control
+        if word in MODES:
+            control.say_mode(MODES[word], word)
         match word:
             case "TRAORI":
                 if fault := _fault_of_traori(block.traori):
