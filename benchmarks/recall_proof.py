@@ -22,11 +22,13 @@ from typing import TypeAlias
 from tests.support.locations import DOCS
 from tests.support.recall_proof.bases import MACHINES, Base, bases
 from tests.support.recall_proof.edits import Edit, harmful
-from tests.support.recall_proof.judges import JUDGES, is_convertible
+from tests.support.recall_proof.judges import convert, diff, is_convertible, proof
+from tests.support.recall_proof.removal import removal_bases, removal_edits, simulate
 from tests.support.recall_proof.sound_edits import sound
 
 PAGE = DOCS / "checks.md"
 BEGIN, END = "<!-- recall: made by benchmarks/recall_proof.py -->", "<!-- end of recall -->"
+JUDGES = {"proof": proof, "diff": diff, "convert": convert, "simulate": simulate}
 TITLES = {
     "proof": "Proof against the CL file",
     "diff": "`diff` with the sound program",
@@ -76,8 +78,13 @@ def chosen(edits: Iterable[Edit], each: int, seed: str) -> Iterator[Edit]:
 def edits_of(base: Base, arguments: argparse.Namespace) -> Iterator[tuple[bool, Edit]]:
     """Yield the edits of a program, and whether they harm."""
     seed = f"{arguments.seed} {base.family} {base.name}"
-    for harms, edits in ((True, harmful(base.text, base.family)), (False, sound(base.text, base.family))):
-        yield from ((harms, edit) for edit in chosen(edits, arguments.each, seed))
+    is_cut = arguments.judge == "simulate"
+    harms = removal_edits(base) if is_cut else harmful(base.text, base.family)
+    # The proof refuses points that nothing asks for.
+    left_out = {"a line in two"} if arguments.judge == "proof" else set()
+    yield from ((True, edit) for edit in chosen(harms, arguments.each, seed))
+    sounds = (edit for edit in sound(base.text, base.family) if edit.kind not in left_out)
+    yield from ((False, edit) for edit in chosen(sounds, arguments.each, seed))
 
 
 def outcomes(arguments: argparse.Namespace, known: set[Key], folder: Path) -> Iterator[Outcome]:
@@ -85,7 +92,7 @@ def outcomes(arguments: argparse.Namespace, known: set[Key], folder: Path) -> It
     part, parts = (int(number) for number in arguments.part.split("/"))
     count, judge = 0, JUDGES[arguments.judge]
     mutant = folder / "mutant.nc"
-    for base in bases(folder, arguments.family):
+    for base in (removal_bases if arguments.judge == "simulate" else bases)(folder, arguments.family):
         if arguments.base not in (None, base.name):
             continue
         if arguments.judge == "convert" and not is_convertible(base, folder):

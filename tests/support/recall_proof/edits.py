@@ -84,7 +84,7 @@ def blocks_of(text: str, language: Language) -> list[Block]:
         block.cycle = cycle
         tcp = (tcp or bool(re.search(language.tcp, code))) and not re.search(language.no_tcp, code)
         plane = (plane or bool(re.search(language.plane, code))) and not re.search(language.no_plane, code)
-        away = re.search(language.away, code) is not None
+        away = re.search(language.away, code) is not None or re.search(language.pole, code) is not None
         if re.search(language.feed, code):
             moving = "feed"
         if re.search(language.rapid, code):
@@ -92,7 +92,7 @@ def blocks_of(text: str, language: Language) -> list[Block]:
         linear = [word for word in block.words if word[1] in "XYZ"]
         if linear and not away:
             block.cuts, block.rapids = moving == "feed", moving == "rapid"
-        for word in block.words:
+        for word in block.words if not re.search(language.pole, code) else ():
             if away:
                 at.pop(word[1], None)
             else:
@@ -205,6 +205,8 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 "coolant off in the cut": block.coolant,
                 "a lift in the cut": "Z" not in values,
                 "home in the cut": "Z" not in values and not block.cycle,
+                "a jump home in the cut": "Z" not in values and not block.cycle,
+                "a rotation in the cut": bool({"X", "Y"} & values.keys()),
                 "another feed in the cut": not re.search(r"\bF\d", block.code),
                 "compensation in the cut": not is_arc and not compensated,
                 "an offset over another": abs(block.before.get("X", 9e9)) > 0.01,
@@ -281,6 +283,7 @@ def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
             if without != text:
                 yield Edit(kind, 1, without)
             continue
+        pole = ""
         for k, block in enumerate(blocks):
             match = re.search(pattern, block.code, re.MULTILINE)
             if match is None or (kind == "no start of the spindle" and block.spindle):
@@ -288,8 +291,12 @@ def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
             if kind == "no coolant" and block.coolant:
                 continue
             following = next((b.code for b in blocks[k + 1 :] if b.words), "")
-            if kind == "no end of the cycle" and re.search(r"\bG0?[01]\b|\bG[78]\d\b", following):
+            next_line = blocks[k + 1].code if k + 1 < len(blocks) else ""
+            if kind == "no end of the cycle" and re.search(r"\bG0?[01]\b|\bG[78]\d\b|\bMCALL\b", f"{following} {next_line}"):
                 continue
+            if kind == "no centre" and match[0].split(" ", 1)[1] == pole:
+                continue
+            pole = match[0].split(" ", 1)[1] if kind == "no centre" else pole
             line = block.line[: match.start()] + block.line[match.end() :]
             yield Edit(kind, k + 1, with_lines(blocks, k, line) if line.strip() else with_lines(blocks, k))
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import trunnion
 from tests.support.recall_proof.bases import Base
@@ -44,7 +44,7 @@ def proof(base: Base, program: Path) -> Told:
 def diff(base: Base, program: Path) -> Told:
     """Whether it differs from the sound program."""
     try:
-        found = trunnion.diff(_sound_file(base, program.parent), program, machine=base.machine)
+        found = trunnion.diff(sound_file(base, program.parent), program, machine=base.machine)
     except trunnion.TrunnionError as refused:
         return Told(True, type(refused).__name__)
     return Told(not found.same, found.first.text if found.first else "")
@@ -52,7 +52,7 @@ def diff(base: Base, program: Path) -> Told:
 
 def convert(base: Base, program: Path) -> Told:
     """Whether a CL file of it is refused, comes with other warnings or settings, or is not what the sound one does."""
-    sound = _sound_file(base, program.parent)
+    sound = sound_file(base, program.parent)
     known = _converted(base, sound)
     if not isinstance(known, tuple):
         raise ValueError(f"{base.name} cannot be converted: {known}")
@@ -92,9 +92,9 @@ def _suffix(base: Base) -> str:
     return "h" if base.family == "Heidenhain" else "nc"
 
 
-def _sound_file(base: Base, folder: Path) -> Path:
+def sound_file(base: Base, folder: Path) -> Path:
     """The file of the sound program."""
-    return _written(base.name.replace("/", "_"), base.text, _suffix(base), folder)
+    return _written(f"{base.family}_{base.name.replace('/', '_')}", base.text, _suffix(base), folder)
 
 
 @cache
@@ -103,5 +103,3 @@ def _written(name: str, text: str, suffix: str, folder: Path) -> Path:
     path.write_bytes(text.encode())
     return path
 
-
-JUDGES: Final[dict[str, Callable[[Base, Path], Told]]] = {"proof": proof, "diff": diff, "convert": convert}
