@@ -56,6 +56,7 @@ class PathEvents:
         ]
         found += [(hole.first, _spindle_words(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
         found += [(len(run), f"left to the next program: {text}") for text in _left_on(run)] if same_machine else []
+        found += [(len(run), text) for text in _switched_behind(run)]
         at = np.searchsorted(rows, [row for row, _ in found])
         self._events: dict[int, list[str]] = {}
         for motion, (_, text) in zip(at.tolist(), found, strict=True):
@@ -77,23 +78,26 @@ class PathEvents:
 
 
 def _texts(run: Run, names: Mapping[str, str]) -> Iterator[tuple[RunEvent, str]]:
-    """Yield the events that are compared, in words; stops and the end say whether the spindle turns there."""
-    turns = coolant = ""
+    """Yield the events that are compared, in words; a stop says whether the spindle turns there."""
+    turns = ""
     for event in run.events:
         if event.kind == "spindle":
             turns = str(event.value) if event.value in ("clockwise", "counter-clockwise") else ""
-        elif event.kind == "coolant":
-            coolant = "" if event.value == "off" else str(event.value)
         elif event.kind in names:
             text = _words(names[event.kind], event)
-            text += f" while the spindle turns {turns}" if turns and event.kind in ("stop", "end") else ""
-            yield event, f"{text} with coolant {coolant}" if coolant and event.kind == "end" else text
+            yield event, f"{text} while the spindle turns {turns}" if turns and event.kind == "stop" else text
+
+
+def _switched_behind(run: Run) -> list[str]:
+    """Return what becomes of spindle and coolant behind the last motion: no row shows it."""
+    found = {event.kind: event.value for event in run.events if event.before_row == len(run)}
+    return [f"{kind} {found[kind]} behind the last motion" for kind in ("spindle", "coolant") if kind in found]
 
 
 def _left_on(run: Run) -> list[str]:
     """Return what the program leaves on at its end, or sets behind its last motion, each once."""
     found = [each.wording.what for each in run.diagnostics if each.code == _LEFT_ON]
-    modes = {each.mode: each.word for each in run.mode_words}
+    modes = {each.mode: each.word for each in run.mode_words if each.before_row == len(run)}
     found += [f"{mode} {word}" for mode, word in modes.items() if word]
     frames = [event.value for event in run.events if event.kind == "frame"]
     found += [f"a frame, by {frames[-1]}"] if frames and frames[-1] else []
