@@ -63,7 +63,9 @@ def test_a_mode_that_only_one_program_says_is_a_difference(
 ) -> None:
     text = posted(machine, cl, folder)
     # A plane may be reset twice before the first cut.
-    changed = re.sub(re.escape(found) if found.startswith("CYCLE") else found, new, text, count="RESET" not in new + found)
+    changed = re.sub(
+        re.escape(found) if found.startswith("CYCLE") else found, new, text, count="RESET" not in new + found
+    )
     assert changed != text
     result = compared(folder, machine, text, changed)
     assert not result.same

@@ -1,4 +1,4 @@
-"""The sound programs that are edited: parts and cases posted for a machine of each language, and the golden programs."""
+"""The sound programs that are edited: parts and cases posted for a machine of each language, and golden programs."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

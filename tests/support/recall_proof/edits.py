@@ -144,7 +144,9 @@ def _numbers(blocks: list[Block], language: Language) -> Iterator[Edit]:
                     and not (letter == "C" and abs(float(new) - value) % 360 == 0)
                 ):
                     sign = "+" if number[0] in "+-" and new[0] not in "+-" else ""
-                    yield Edit(f"{letter}: {what}", k + 1, with_lines(blocks, k, _changed(block, word, letter + sign + new)))
+                    yield Edit(
+                        f"{letter}: {what}", k + 1, with_lines(blocks, k, _changed(block, word, letter + sign + new))
+                    )
             known = block.before.get(letter)
             if known is not None and abs(known - value) > 0.01 and not re.search(language.arc, block.code):
                 yield Edit(f"{letter}: left out", k + 1, with_lines(blocks, k, _changed(block, word, "")))
@@ -292,7 +294,9 @@ def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 continue
             following = next((b.code for b in blocks[k + 1 :] if b.words), "")
             next_line = blocks[k + 1].code if k + 1 < len(blocks) else ""
-            if kind == "no end of the cycle" and re.search(r"\bG0?[01]\b|\bG[78]\d\b|\bMCALL\b", f"{following} {next_line}"):
+            if kind == "no end of the cycle" and re.search(
+                r"\bG0?[01]\b|\bG[78]\d\b|\bMCALL\b", f"{following} {next_line}"
+            ):
                 continue
             if kind == "no centre" and match[0].split(" ", 1)[1] == pole:
                 continue

@@ -60,7 +60,9 @@ def equivalent_arcs(blocks: list[Block], family: str) -> Iterator[Edit]:
         if family in _RADIUS and not arc.is_full and not math.radians(170) < abs(arc.sweep) < math.radians(190):
             line = re.sub(r" [IJ][-+]?[\d.]+", "", block.line)
             signed = arc.radius if abs(arc.sweep) < math.pi else -arc.radius
-            yield Edit("an arc by its radius", k + 1, with_lines(blocks, k, _behind(line, f"{_RADIUS[family]}{signed:.6f}")))
+            yield Edit(
+                "an arc by its radius", k + 1, with_lines(blocks, k, _behind(line, f"{_RADIUS[family]}{signed:.6f}"))
+            )
         if family == "Sinumerik":
             line = re.sub(r" [IJ][-+]?[\d.]+", "", block.line)
             centre = f"I=AC({arc.centre[0]:.6f}) J=AC({arc.centre[1]:.6f})"
@@ -100,9 +102,7 @@ def _two_pieces(block: Block, arc: _Arc, centres: str) -> list[str]:
     return [first, *numbered(block, _iso_words((mx, my), arc.end, arc, 1.0, centres))]
 
 
-def _iso_words(
-    start: tuple[float, float], end: tuple[float, float], arc: _Arc, part: float, centres: str
-) -> str:
+def _iso_words(start: tuple[float, float], end: tuple[float, float], arc: _Arc, part: float, centres: str) -> str:
     x, y = arc.centre
     i, j = (x, y) if centres == _ABSOLUTE else (x - start[0], y - start[1])
     z = "" if arc.z is None else f" Z{arc.z[0] + part * (arc.z[1] - arc.z[0]):.6f}"
@@ -136,7 +136,9 @@ def _klartext(blocks: list[Block], k: int) -> Iterator[Edit]:
     if not match:
         return
     end = tuple(float(given) if given else at for given, at in zip(match.group(2, 3), start, strict=True))
-    arc = _Arc(start, (end[0], end[1]), centre, None, _swept(start, (end[0], end[1]), centre, 1 if match[4] == "+" else -1))
+    arc = _Arc(
+        start, (end[0], end[1]), centre, None, _swept(start, (end[0], end[1]), centre, 1 if match[4] == "+" else -1)
+    )
     rest = block.line[match.end() :]
     name = "a full circle as two halves" if arc.is_full else "an arc in two"
     pieces = [f"{match[1]}C X{x:+.6f} Y{y:+.6f} DR{match[4]}{rest}" for x, y in (arc.middle, arc.end)]

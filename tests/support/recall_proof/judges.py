@@ -102,4 +102,3 @@ def _written(name: str, text: str, suffix: str, folder: Path) -> Path:
     path = folder / f"sound_{name}.{suffix}"
     path.write_bytes(text.encode())
     return path
-

@@ -151,9 +151,13 @@ def _reamed() -> list[str]:
 
 def _two_tools() -> list[str]:
     """A step, cut by one tool and finished by another."""
+
     def step(name: str, tool: int, speed: int, feed: float, offset: float) -> list[str]:
         x, z = 20.0 + offset, -5.0 + offset
-        path = [*to_feed(0.5 * feed, (x, -40.0, z)), *to_feed(feed, (x, 40.0, z), (x + 6.0, 40.0, z), (x + 6.0, -40.0, z))]
+        path = [
+            *to_feed(0.5 * feed, (x, -40.0, z)),
+            *to_feed(feed, (x, 40.0, z), (x + 6.0, 40.0, z), (x + 6.0, -40.0, z)),
+        ]
         lines = [*rapid((x, -40.0, 40.0), (x, -40.0, 2.0), axis=_UP), *path, *rapid((x + 6.0, -40.0, 40.0))]
         return operation(name, tool, speed, lines)
 
@@ -173,7 +177,12 @@ def _coolants() -> list[str]:
     """Coolant off and on again between cuts, and other speeds."""
     lines = [*rapid((-25.0, 0.0, 40.0), (-25.0, 0.0, 3.0), axis=_UP), *to_feed(180, (-25.0, 0.0, -1.0))]
     lines += [*to_feed(600, (-5.0, 4.0, -1.0), (-5.0, 4.0, 3.0)), "COOLNT/OFF", *rapid((5.0, -6.0, 3.0))]
-    lines += ["SPINDL/RPM,3300,CLW", *to_feed(190, (5.0, -6.0, -2.0)), *to_feed(640, (25.0, -9.0, -2.0)), "COOLNT/FLOOD"]
+    lines += [
+        "SPINDL/RPM,3300,CLW",
+        *to_feed(190, (5.0, -6.0, -2.0)),
+        *to_feed(640, (25.0, -9.0, -2.0)),
+        "COOLNT/FLOOD",
+    ]
     lines += ["SPINDL/RPM,2900,CLW", *to_feed(560, (25.0, 11.0, -2.0), (12.0, 17.0, -2.5), (12.0, 17.0, 4.0))]
     return operation("COOLANTS", 15, 2100, [*lines, *rapid((12.0, 17.0, 40.0))])
 

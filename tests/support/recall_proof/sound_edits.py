@@ -1,4 +1,4 @@
-"""Edits that change nothing of what a program does: respaced, renumbered, said again, turned by 360 degrees, other arcs."""
+"""Edits that change nothing: respaced, renumbered, said again, turned by 360 degrees, other words of arcs."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -129,4 +129,3 @@ def _lines_in_two(blocks: list[Block], language: Language) -> Iterator[Edit]:
         rest = " ".join(word[0] for word in block.words)
         second = numbered(block, f"L {rest}" if " L " in f" {block.code}" else rest)
         yield Edit("a line in two", k + 1, with_lines(blocks, k, first, *second))
-

@@ -32,8 +32,8 @@ INCH: Final = 25.4
 #: What of the next program a stored work offset changes, for messages.
 OFFSET: Final = "the work offset of"
 
-#: Modes whose words a comparison sees without knowing whether the program says them.
-_SHOWN_ANYHOW: Final = frozenset({"units", "offset"})
+#: Modes without whose words a program goes elsewhere when the one before it has left them otherwise.
+_NEEDED: Final = frozenset({"plane", "distances", "feed", "compensation", "length", "centres"})
 
 
 class CoordinateControl(RowRecorder):
@@ -262,7 +262,7 @@ class CoordinateControl(RowRecorder):
 
     def set_mode(self, name: str, word: str, before: Hashable, after: Hashable) -> None:
         """Remember a word that sets a mode, for ``report_trailing_modes``; ``name`` is that of the mode."""
-        if name not in _SHOWN_ANYHOW:
+        if name in _NEEDED:
             self.say_mode(name)
         self._trailing.set(name, word, WordPlace(self.row, self.line, self.modal.file.current), before, after)
 

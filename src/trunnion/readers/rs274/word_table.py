@@ -22,7 +22,6 @@ _SHOWN: Final = {
     "rotation": "tilted plane",
     "plane of the tool": "tilted plane",
     "plane of the rotary position": "plane of the rotary position",
-    "end of cycles": "end of cycles",
 }
 
 #: Groups whose words are no modes for themselves, or say theirs where they act.

@@ -124,7 +124,9 @@ def _offset_column(run: Run) -> StepColumn:
     events = [event for event in run.events if event.kind == "offset"]
     if not events:
         return column
-    lost = _column(run, [0, *(each.before_row for each in events)], [False, *(each.value == "TRAORI" for each in events)])
+    lost = _column(
+        run, [0, *(each.before_row for each in events)], [False, *(each.value == "TRAORI" for each in events)]
+    )
     rows = np.unique(np.concatenate((column.rows, lost.rows)))
     rows = rows[rows < len(run)]
     return StepColumn(len(run), rows, np.where(lost.at(rows), _LOST, column.at(rows).astype(np.int64)))

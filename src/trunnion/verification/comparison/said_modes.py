@@ -32,7 +32,7 @@ def said_modes(one: Run, two: Run) -> Iterator[ComparedState]:
 
 
 def _by_mode(run: Run) -> dict[str, list[tuple[int, str]]]:
-    """The words of each mode, and from which row on they hold."""
+    """Return the words of each mode, and from which row on they hold."""
     found: dict[str, list[tuple[int, str]]] = {}
     for each in run.mode_words:
         found.setdefault(each.mode, []).append((each.before_row, each.word))
@@ -67,6 +67,6 @@ def _state(
 
 
 def _column(run: Run, words: list[tuple[int, str]], texts: list[str]) -> StepColumn:
-    """The word in force by its number in ``texts``; -1 where the program has said none."""
+    """Return the word in force by its number in ``texts``; -1 where the program has said none."""
     last = dict([(0, -1), *((row, texts.index(word)) for row, word in words)])
     return StepColumn(len(run), np.array(list(last), np.int64), np.array(list(last.values()), np.int64))
