@@ -20,6 +20,7 @@ from trunnion.readers.families.sinumerik.control import (
 from trunnion.readers.families.sinumerik.expressions import Value
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement, state_of_frame
 from trunnion.readers.families.sinumerik.words import (
+    DRIVING_MODES,
     EXACT_STOPS,
     FRAMES,
     G_FEEDS,
@@ -37,7 +38,6 @@ from trunnion.readers.families.sinumerik.words import (
     M_AXIS_MODE,
     M_GEARS,
     M_RETURN,
-    MODES,
     TOOL_FRAMES,
     WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT,
@@ -98,8 +98,8 @@ class WordInterpreter(CallInterpreter):
 
     def _word(self, word: str, block: Block) -> None:
         control = self.control
-        if word in MODES:
-            control.say_mode(MODES[word], word)
+        if word in DRIVING_MODES:
+            control.say_mode(DRIVING_MODES[word], word)
         match word:
             case "TRAORI":
                 if fault := _fault_of_traori(block.traori):

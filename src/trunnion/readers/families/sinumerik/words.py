@@ -97,7 +97,7 @@ G_MODES: Final = {
 }
 
 #: Modes by their other words; those of the tool axis show in its way.
-MODES: Final = {
+DRIVING_MODES: Final = {
     **dict.fromkeys(("SOFT", "BRISK", "DRIVE"), "acceleration"),
     **dict.fromkeys(("FFWON", "FFWOF"), "feed forward"),
     **dict.fromkeys(("COMPOF", "COMPON", "COMPCURV", "COMPCAD", "COMPSURF"), "compressor"),
