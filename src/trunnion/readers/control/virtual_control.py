@@ -76,6 +76,10 @@ class VirtualControl(CoordinateControl, ABC):
         if self.machine.workpiece_zero is None:
             self.preconditions.require(key, Wording("NC352", "offset_over_unknown_zero", word=word), self.line)
 
+    def forget_machine(self) -> None:
+        """Forget the map of the slides with the tool and the zero before."""
+        self._slide_map = None
+
     # Scans
 
     def scan_settings(self) -> ScanSettings:
