@@ -194,6 +194,7 @@ class Machine:
     tool_length         of the tool in the spindle, gauge point to tip, mm; None if it is not known, and counts as 0
     tool_lengths        those of single tools by number or name; all others have ``tool_length``
     length_sources      what has told a length that nobody stated, by tools
+    in_force            the tool and the work offset that it is set up for, in words; empty: no other differs
     zeros               the workpiece zeros of single work offsets by their ``Run.work_offset``; all others have
                         ``workpiece_zero``
     control             the ``[control]`` table of the definition, unread
@@ -216,6 +217,7 @@ class Machine:
     tool_length: float | None = None
     tool_lengths: Annotated[Mapping[str, float], NOT_DATA] = field(default_factory=dict)
     length_sources: Annotated[Mapping[str, str], NOT_DATA] = field(default_factory=dict)
+    in_force: Annotated[str, NOT_DATA] = ""
     zeros: Annotated[Mapping[int, Vector], NOT_DATA] = field(default_factory=dict)
     spindle_max_rpm: float | None = None
     description: str = ""

@@ -41,8 +41,19 @@ def with_operation_setups(toolpaths: Sequence[Toolpath], job: PostJob) -> PostJo
         offset = (offsets.value_of(own["work_offset"]) if offsets and own.get("work_offset") else None) or 0
         known = [own["tool"]] if own.get("tool") else names
         name = next((each for each in known if tool_key(each) in machine.tool_lengths), known[0] if known else "")
-        setups[operation_key(operation)] = machine.set_up_for(name, offset)
+        found = machine.set_up_for(name, offset)
+        said = _in_force(found, name, machine.length_sources.get(tool_key(name), ""))
+        if machine.zeros and own.get("work_offset"):
+            said = [*said, f"the zero of {own['work_offset']}"]
+        setups[operation_key(operation)] = replace(found, in_force=" and ".join(said))
     return replace(job, machine=machine, setups=setups)
+
+
+def _in_force(machine: Machine, name: str, source: str) -> list[str]:
+    """Return the tool whose length is in force, in words; nothing where it is not known."""
+    if machine.tool_length is None or not name:
+        return []
+    return [f"tool {name} of {machine.tool_length:g} mm{f' ({source})' if source else ''}"]
 
 
 def planned_machine(job: PostJob, operation: Operation, *, with_delta: bool) -> Machine:
@@ -53,7 +64,8 @@ def planned_machine(job: PostJob, operation: Operation, *, with_delta: bool) -> 
     delta = _delta(job, operation)
     if not (with_delta and delta) or machine.tool_length is None:
         return machine
-    return replace(machine, tool_length=machine.tool_length + delta)
+    said = machine.in_force or f"a tool of {machine.tool_length:g} mm"
+    return replace(machine, tool_length=machine.tool_length + delta, in_force=f"{said}, {delta:+g} mm by its call")
 
 
 def setup_notices(job: PostJob, toolpaths: Sequence[Toolpath]) -> Iterator[str]:
