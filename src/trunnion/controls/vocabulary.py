@@ -55,6 +55,7 @@ PROGRAM_CHOICES: Final = {
     "restart": ("off", "on"),
     "standing_spindle": ("refused", "allowed"),
     "program_from": ("setting", "file"),
+    "stop_between": ("off", "on"),
 }
 
 #: What each of them changes.
@@ -75,14 +76,16 @@ PROGRAM_MEANINGS: Final = {
     "for tools that do not turn; they are refused otherwise.",
     "program_from": "Where the number or name of the program comes from: the setting program, or the name of its "
     "file, as 1234 of O1234.nc.",
+    "stop_between": "With on, an optional stop (M1) stands between operations, where the tool is at home.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.
 RUN_ONLY_SETTINGS: Final = frozenset(
     {
         "cl_units", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance",
-        "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "tool_retract", "limit_margin",
-        "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number", "listing",
+        "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways", "tool_retract",
+        "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number",
+        "listing",
         *(option.setting for option in POSTING),
     }
 )  # fmt: skip

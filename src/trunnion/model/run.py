@@ -22,9 +22,9 @@ from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.concurrency import prefetch
 from trunnion.errors import Severity
 from trunnion.machines import Machine, forward, kinematic_parameters, tool_axes
-from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
+from trunnion.model.diagnostics import Diagnostic as Diagnostic
 from trunnion.model.run_columns import ModalState, SurfaceNormals
 from trunnion.model.run_positions import PositionChunk as PositionChunk
 from trunnion.model.run_positions import RowPositions as RowPositions
@@ -55,32 +55,6 @@ class Orientation(IntEnum):
 
     ANGLES = 0
     GREAT_CIRCLE = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
-    """Something in a program that the reader does not know, does not simulate or finds odd; ``line`` counts from 1."""
-
-    line: int
-    wording: Wording
-    severity: Severity = Severity.ERROR
-    file: str = ""
-
-    @property
-    def text(self) -> str:
-        """What it says, with its cure."""
-        what, cure = self.wording.what, self.wording.cure
-        return f"{what}; {cure}" if cure else what
-
-    @property
-    def code(self) -> str:
-        """Of what kind it is, such as ``NC211``."""
-        return self.wording.code
-
-    def __str__(self) -> str:
-        """Return ``file:line: severity: text [code]``."""
-        code = f" [{self.code}]" if self.code else ""
-        return f"{self.file}:{self.line}: {self.severity}: {self.text}{code}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +113,14 @@ def _whole(name: str, kind: type[_Item]) -> "cached_property[NDArray[_Item]]":
     return cached_property(column)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SkippedRun:
+    """What a program does while the switches of some levels of block skip (``/``) are on."""
+
+    levels: frozenset[int]
+    run: "Run"
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A program as the control of a machine ran it; columns have n rows and are read-only.
@@ -167,6 +149,8 @@ class Run:
     planes         (k, 3, 4)       tilted planes and rotated frames in which positions are tips: maps from programmed
                                    positions to the workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
+    skipped                        the program with the switches of block skip on: of all levels that it uses, and of
+                                   each alone; none where no block may be skipped. In ``Run`` itself all are off
 
     Computed on first access:
 
@@ -216,6 +200,7 @@ class Run:
     compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     planes: Floats = field(default_factory=lambda: np.zeros((0, 3, 4)))
     setups: RunSetups | None = None
+    skipped: tuple[SkippedRun, ...] = ()
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -235,6 +220,11 @@ class Run:
     def errors(self) -> tuple[Diagnostic, ...]:
         """The diagnostics that put the columns in doubt: words that are unknown or not executed."""
         return tuple(diagnostic for diagnostic in self.diagnostics if diagnostic.severity is Severity.ERROR)
+
+    def with_skips(self, levels: frozenset[int]) -> "Run":
+        """Return what the program does while the switches of some levels of block skip are on."""
+        own = levels & self.skipped[0].levels if self.skipped else frozenset()
+        return next((each.run for each in self.skipped if each.levels == own), self)
 
     # Some rows
 

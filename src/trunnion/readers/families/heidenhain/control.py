@@ -90,7 +90,7 @@ class HeidenhainControl(PlaneControl):
 
     def set_shortest_path(self, on: bool) -> None:
         """M126, M127."""
-        self._cancels_shortest_path |= not on
+        self._cancels_shortest_path |= self.shortest_path and not on
         self.shortest_path = on
 
     def end_operation(self, variant: str) -> None:

@@ -18,7 +18,7 @@ from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
 from trunnion.readers.families.heidenhain.flow import ActiveProgram, FlowInterpreter
 from trunnion.readers.families.heidenhain.fn_functions import ASSIGNED, assign
-from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, Line, split_line, words
+from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, split_line, words
 from trunnion.readers.families.heidenhain.machine_functions import MFunctions, tool_block
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
 from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
@@ -62,6 +62,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._block_parts: list[str] = []
         self._block_length = 0
         self._block_start = 0, -1
+        self._skips_block = False
         # The first corner of the stock (BLK FORM 0.1).
         self._stock_corner: dict[str, float] = {}
         # The last block that was split into words: of which program, and its number.
@@ -120,12 +121,11 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._note(Wording("NC210", "block_before_goes_new_begins"), Severity.ERROR)
             self._finish_block(active)
             self.control.line = line
-        if parts.block_skip and not self._options.skips(1):
-            self.control.add_event("block_skip", 1.0)
-        elif parts.block_skip:
-            parts = Line(parts.number, True, "", parts.comment, False)
         if not self._block_parts:
             self._block_start, self._block_length = (line, parts.number), 0
+            self._skips_block = parts.block_skip and self._options.skips(1)
+        if parts.block_skip and not self._skips_block:
+            self.control.add_event("block_skip", 1.0)
         if parts.statement:
             self._block_parts.append(parts.statement)
             self._block_length += len(parts.statement)
@@ -144,7 +144,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         """Execute the block of the lines so far."""
         statement = " ".join(self._block_parts)
         self._block_parts.clear()
-        if not statement:
+        if not statement or self._skips_block:
             return
         self.control.line, self.control.block_number = self._block_start
         if not statement.startswith("BEGIN"):

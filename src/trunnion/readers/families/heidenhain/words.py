@@ -108,7 +108,7 @@ M_NOT_SIMULATED: Final = {
     98: ("ends an open contour corner: not simulated", True),
     104: ("takes the last datum again: not simulated", True),
     109: ("arcs have another feed: not simulated", True),
-    110: ("arcs have another feed: not simulated", True),
+    110: ("lowers the feed at compensated inner arcs: not simulated", False),
     112: ("contour transitions are not simulated", True),
     114: ("compensates the tilt by itself: not simulated, M128 is", True),
     115: ("ends M114, which is not simulated", False),
