@@ -147,10 +147,10 @@ def test_a_length_of_the_cl_file_is_used_and_named(tmp_path: Path) -> None:
         "SPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,20,0,0,1\nFEDRAT/500,MMPM\nGOTO/10,0,5,0,0,1\nRAPID\nGOTO/10,0,20,0,0,1\nFINI\n"
     )
     zero, out = near_low_end("matsuura_mx330"), tmp_path / "part.nc"
-    given = {"zero": zero, "dialect": "catia"}
+    given: dict[str, str | tuple[float, float, float]] = {"zero": zero, "dialect": "catia"}
     with pytest.raises(trunnion.RefusedError, match=r"with tool 3 of 85 mm \(CL file\), below its limit"):
         trunnion.post(cl, machine="matsuura_mx330", output=out, settings=given)
-    assert trunnion.post(cl, machine="matsuura_mx330", output=out, settings={**given, "tool_length": 110}).passed
+    assert trunnion.post(cl, machine="matsuura_mx330", output=out, settings={**given, "tool_length": "110"}).passed
     found = travel(trunnion.verify(out, machine="matsuura_mx330", cl=cl, dialect="catia", zero=zero))
     assert " with tool 3 of 85 mm (CL file), its limit is" in found.summary
 

@@ -83,4 +83,4 @@ def _of_cl_files(toolpaths: Sequence[Toolpath]) -> Iterator[tuple[str, float, st
             found.setdefault(name, set()).add(operation.tool.set_length)
     for name, lengths in found.items():
         if len(lengths) == 1 and 0.0 not in lengths:
-            yield name, *lengths, OF_CL_FILE
+            yield name, max(lengths), OF_CL_FILE

@@ -5,7 +5,7 @@ are the positions of the slides, counted from the work offset: with the rotary a
 programmed position, with the axes turned the kinematics of the machine determine where it is.
 """
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable
 from dataclasses import replace
 from typing import Final
 
@@ -17,14 +17,13 @@ from trunnion.machines import Machine, forward
 from trunnion.machines.inverse import kinematic_parameters
 from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
-from trunnion.model.run import Comment, Diagnostic, Orientation, Run
+from trunnion.model.run import Orientation
 from trunnion.model.run_columns import BY_PARAMETER
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION, RowRecorder
 from trunnion.readers.control.rows_in_use import RowsInUse
-from trunnion.readers.control.setup_recorder import SetupRecorder
 from trunnion.readers.control.trailing_modes import TrailingModes, WordPlace
 
 #: Millimetres of an inch.
@@ -55,9 +54,11 @@ class CoordinateControl(RowRecorder):
     #: What decides whether the latter do, for messages.
     reset_by = ""
 
+    #: Work offsets have zeros of their own: those without one are not known.
+    knows_zeros = False
+
     def __init__(self, machine: Machine, note: Note) -> None:
-        super().__init__(machine.set_up_for("", 0), note)
-        self._setups = SetupRecorder(machine)
+        super().__init__(machine, note)
         self._zero_slides, self._zero_tip = self._zero_positions()
         self.absolute = True
         self.plane_axis = 2
@@ -333,46 +334,13 @@ class CoordinateControl(RowRecorder):
             return
         if code != self.no_offset:
             self._offsets.add(code)
-            if len(self._offsets) > 1 and not self._setups.knows_zeros():
+            if len(self._offsets) > 1 and not self.knows_zeros:
                 self.note(Wording("NC331", "work_offsets_not_known_here", name=name), Severity.WARNING)
         if self.no_offset in (code, offset.current):
             with self.frame_change():
                 offset.set(self.row, code)
         else:
             offset.set(self.row, code)
-        self._take_setup()
-
-    def change_tool(self) -> None:
-        """Change to the selected tool, which may be longer."""
-        super().change_tool()
-        self._take_setup()
-
-    def take_length(self, length: float | None, word: str = "") -> None:
-        """Take a length of the program in place of that of the tool, mm; None: that of the tool again."""
-        self._setups.take_length(length, word)
-        self._take_setup()
-
-    def stated_length(self) -> float | None:
-        """Return the length that is stated for the tool in the spindle, mm."""
-        return self._setups.length_of(self.tool_in_spindle)
-
-    def _take_setup(self) -> None:
-        """Take the length of the tool in the spindle, and the zero of the work offset in force; the axes stay."""
-        offset = int(self.modal.work_offset.current)
-        machine = self._setups.machine_of(self.row, self.tool_in_spindle, None if offset == self.no_offset else offset)
-        if machine is None or machine is self.machine:
-            return
-        with self.frame_change():
-            self.machine, self._kinematics = machine, kinematic_parameters(machine)
-            self._zero_slides, self._zero_tip = self._zero_positions()
-            self.forget_machine()
-
-    def forget_machine(self) -> None:
-        """Forget what was worked out with the tool and the zero before."""
-
-    def finish(self, files: Sequence[str], comments: list[Comment], diagnostics: Sequence[Diagnostic]) -> Run:
-        """Return the run, with the set-ups of its rows."""
-        return self._setups.of_run(super().finish(files, comments, diagnostics))
 
     def set_orientation(self, orientation: Orientation) -> None:
         """Set how the tool axis moves within blocks."""

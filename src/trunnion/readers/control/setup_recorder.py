@@ -36,10 +36,6 @@ class SetupRecorder:
         if machine.has_single_values:
             self._column = StepColumnBuilder(self._number("", 0))
 
-    def knows_zeros(self) -> bool:
-        """Whether work offsets have zeros of their own: those without one are unknown."""
-        return bool(self._machine.zeros)
-
     def length_of(self, tool: str) -> float | None:
         """Return the length that is stated for a tool, mm."""
         return self._machine.set_up_for(tool, 0).tool_length

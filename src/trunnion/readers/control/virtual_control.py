@@ -23,11 +23,11 @@ from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, AxisWord, PositionMode, RotaryTarget
-from trunnion.readers.control.coordinates import CoordinateControl
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.preconditions import Preconditions
 from trunnion.readers.control.row_recorder import ScannedRows, within_limits
+from trunnion.readers.control.setup_control import SetupControl
 from trunnion.readers.scan.buffers import ScanSettings
 
 #: Motions in force: G0 and G1.
@@ -45,7 +45,7 @@ Circle = Callable[[Floats, Floats], arcs.Arc]
 _INVERSE_TIME: Final = 93
 
 
-class VirtualControl(CoordinateControl, ABC):
+class VirtualControl(SetupControl, ABC):
     """A control that executes motions on a machine.
 
     preconditions  what the program must say before the tool moves at the part
