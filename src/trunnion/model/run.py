@@ -311,15 +311,19 @@ class Run:
         reached[xyz_is_tip] = xyz[xyz_is_tip]
         return PositionChunk(joints, tip, *tool_axes(machine, joints))
 
+    def chunk_bounds(self, rows: int) -> list[tuple[int, int]]:
+        """Return the bounds of the chunks of the first rows, each in one set-up."""
+        parts = self._in_one_setup(0, rows) if rows else []
+        return [
+            (first, min(first + CHUNK_ROWS, end)) for begin, end in parts for first in range(begin, end, CHUNK_ROWS)
+        ]
+
     def chunks(self) -> Iterator[tuple[int, int, PositionChunk]]:
         """Yield all rows, ``CHUNK_ROWS`` at a time: first row, row after the last, and their ``chunk``.
 
         Another thread computes the next chunk while the caller works on this one.
         """
-        parts = self._in_one_setup(0, len(self)) if len(self) else []
-        bounds = [
-            (first, min(first + CHUNK_ROWS, end)) for begin, end in parts for first in range(begin, end, CHUNK_ROWS)
-        ]
+        bounds = self.chunk_bounds(len(self))
         for (first, end), poses in zip(bounds, prefetch(lambda rows: self.chunk(*rows), bounds), strict=True):
             yield first, end, poses
 

@@ -40,6 +40,11 @@ class RowInterpolation:
         self._of_rows = run.machine
         self._machines: dict[tuple[int, float], Machine] = {}
 
+    def take_rows(self, first: int) -> Machine:
+        """Take the set-up of rows from ``first`` on, and return its machine."""
+        self._of_rows = self.run.machine_at(first)
+        return self._of_rows
+
     def solved(self, length: float, xyz_is_tip: Flags, xyz: Floats, rotary: Floats) -> Floats:
         """Return axis values at positions of rows, (k, 5), with a tool of this length."""
         machine = self._machine(length)
@@ -53,7 +58,7 @@ class RowInterpolation:
         length      (k,)        of the tools, mm
         least_turn  rows in which rotary axes turn by no more than this, degrees, stay whole
         """
-        self._of_rows = self.run.machine_at(first)
+        self.take_rows(first)
         counts = np.ones(len(before) - 1, np.int64)
         bent = np.flatnonzero(self._may_bend(first, before, least_turn))
         if len(bent):
@@ -65,7 +70,7 @@ class RowInterpolation:
 
         The last are those at the ends of the pieces, (m, 5). Arguments as of ``counts``, and what that returns.
         """
-        self._of_rows = self.run.machine_at(first)
+        self.take_rows(first)
         row = np.repeat(np.arange(len(counts)), counts)
         place = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
         done = (place + 1) / counts[row]
