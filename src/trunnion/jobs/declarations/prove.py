@@ -75,7 +75,7 @@ _VERIFY: Final = job(
     ),
     ZERO,
     TOOL_LENGTH,
-    TOOL_LIBRARIES.but(help="tool library that has lengths of tools: as simulate takes it"),
+    TOOL_LIBRARIES.but(help="tool library that has the lengths of tools, as of simulate"),
     TOOL_UNIT,
     FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed", key="feed"),
     Option(
