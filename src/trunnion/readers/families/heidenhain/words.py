@@ -14,10 +14,6 @@ PATHS: Final = _words("L LN LP C CR CP CT CTP")
 
 #: Blocks that are not simulated: the message.
 BLOCKS_NOT_SIMULATED: Final = {
-    "RND": "rounds the corner: not simulated, the corner stays sharp",
-    "CHF": "chamfers the corner: not simulated, the corner stays sharp",
-    "APPR": "approaches a contour: not simulated, the block is not executed",
-    "DEP": "departs from a contour: not simulated, the block is not executed",
     "FPOL": "free contour programming is not simulated",
     "FL": "free contour programming is not simulated",
     "FLT": "free contour programming is not simulated",
