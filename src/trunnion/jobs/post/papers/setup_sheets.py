@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Severity
+from trunnion.jobs.post.operation_setups import setup_notices
 from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
@@ -90,7 +91,7 @@ def setup_sheet(
         tool_length=machine.tool_length,
         system=_system(program, job),
         rotary=rotary,
-        tools=tuple(_with_bodies(_tools(calls, operations, run.uses_length_numbers), result.simulation)),
+        tools=tuple(_with_bodies(_tools(calls, operations, run.uses_length_numbers), job, result.simulation)),
         operations=operations,
         start=tuple(_start(program, run, operations, rotary)),
         to_check=tuple(clean(one_line(text)) for text in _to_check(program, job, result, run)),
@@ -191,11 +192,15 @@ def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion], codes: Mappi
     return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *others))))
 
 
-def _with_bodies(tools: Iterable[SheetTool], simulation: "SimulationResult | None") -> Iterator[SheetTool]:
-    """Yield tools with what a simulation knew of them, from libraries and arguments, where the CL file says nothing."""
-    shapes = {} if simulation is None else simulation.tools
+def _with_bodies(
+    tools: Iterable[SheetTool], job: PostJob, simulation: "SimulationResult | None"
+) -> Iterator[SheetTool]:
+    """Yield tools with what libraries and arguments say of them, where the CL file says nothing."""
     for tool in tools:
-        shape = shapes.get(tool.call)
+        if simulation is not None:
+            shape = simulation.tools.get(tool.call)
+        else:
+            shape = None if job.sheet_tools is None else job.sheet_tools.find(tool.call)
         if shape is None:
             yield tool
             continue
@@ -295,7 +300,6 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
 
 def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> Iterator[str]:
     """Yield what the proof cannot see."""
-    machine = program.machine
     offsets = ", ".join(_offsets(run)) or "the machine's zero"
     is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
     turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
@@ -303,7 +307,10 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     for notice in job.notices:
         if notice.startswith(PLACED_NOTICES):
             yield f"{notice}."
-    if machine.workpiece_zero is None:
+    single = list(setup_notices(job, result.toolpaths)) if job.setups or job.settings.get("delta_length") else []
+    for notice in dict.fromkeys(single):
+        yield f"Check that this is so: {notice}."
+    if run.machine.workpiece_zero is None:
         yield "Check the travel: nobody said where the workpiece zero is, and it is only proven to fit somewhere."
     else:
         yield "Check that the workpiece zero is where the sheet says: the limits of the linear axes were proven for it."
