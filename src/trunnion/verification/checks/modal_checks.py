@@ -86,8 +86,8 @@ def _odd_spindle_words(context: Context) -> Iterator[Place]:
     """Yield blocks with both senses of the spindle, and the start of a spindle that nothing needs and nothing stops."""
     for before, event in both_senses(context.run):
         yield context.place_of_event(event, 0.0, f"turns the spindle {before.value} and {event.value} in one block")
-    if (event := started_behind_cuts(context.run)) is not None:
-        yield context.place_of_event(event, 0.0, "starts the spindle behind the last cut, and nothing stops it")
+    if (start := started_behind_cuts(context.run)) is not None:
+        yield context.place_of_event(start, 0.0, "starts the spindle behind the last cut, and nothing stops it")
 
 
 def _without_feed_or_spindle(context: Context) -> list[Place]:
