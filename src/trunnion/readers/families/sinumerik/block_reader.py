@@ -30,6 +30,7 @@ from trunnion.readers.families.sinumerik.words import (
     WAITS,
     WITHOUT_PATH_EFFECT,
     WITHOUT_PATH_EFFECT_CALLS,
+    WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT_VALUES,
 )
 
@@ -304,6 +305,8 @@ class BlockReader:
             block.deltas[name] = _number(value)
         elif name in TOLERANCES:
             block.tolerances.append(_number(value))
+        elif name in WITHIN_COMPENSATION and value != 0.0:
+            block.words.append(name)
         elif name == FEED_RADIUS:
             block.feed_radius = _number(value)
         elif name in OTHER_FEEDS and value != OTHER_FEEDS[name]:
