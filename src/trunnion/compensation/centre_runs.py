@@ -5,8 +5,8 @@ Out:    the run as the tool's centre goes, with rows for what the control insert
 Units:  mm.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -131,9 +131,7 @@ def _path(run: Run, rows: Ints, start: Points, end: Points, plane: _Plane) -> tu
     return PlanePath(start, end, centre, sense), flat
 
 
-def _placed(
-    found: CentrePath, rows: Ints, at: Ints, programmed: tuple[Points, Floats], plane: _Plane
-) -> Insertion:
+def _placed(found: CentrePath, rows: Ints, at: Ints, programmed: tuple[Points, Floats], plane: _Plane) -> Insertion:
     """Return a path of the centre as rows; ``at`` are the rows with an element, ``programmed`` their points."""
     points, heights = programmed
     last_own = np.flatnonzero(found.own)

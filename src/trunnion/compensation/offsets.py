@@ -132,9 +132,7 @@ def _part(path: PlanePath, part: slice) -> PlanePath:
     return PlanePath(path.start[part], path.end[part], path.centre[part], path.sense[part])
 
 
-def _with_bounds(
-    path: PlanePath, joints: _Joints, left: float, style: CompensationStyle, *, leaves: bool
-) -> _Joints:
+def _with_bounds(path: PlanePath, joints: _Joints, left: float, style: CompensationStyle, *, leaves: bool) -> _Joints:
     """Return the joints with those behind the first line and before the last one as the control makes them."""
     begin, end = path.directions()
     ends, begins, corners = joints.ends.copy(), joints.begins.copy(), joints.corners.copy()
@@ -153,7 +151,7 @@ def _misfits(
 ) -> list[tuple[int, Fault]]:
     """Return elements along which the centre cannot go: circles smaller than the tool, and ways that turn round."""
     starts, ends = np.append(beside.start[0], joints.begins), np.append(joints.ends, beside.end[-1])
-    begin, end = path.directions()
+    begin, _ = path.directions()
     lost = np.isnan(starts) | np.isnan(ends)
     with np.errstate(invalid="ignore"):
         backwards = ((ends - starts) * np.conj(begin)).real < -_BACK

@@ -34,7 +34,7 @@ class PlanePath:
         return np.abs(self.start - self.centre)
 
     def directions(self) -> tuple[Points, Points]:
-        """Unit tangents at the starts and the ends of the elements."""
+        """Return unit tangents at the starts and the ends of the elements."""
         way = self.end - self.start
         straight = way / np.maximum(np.abs(way), 1e-300)
         return (

@@ -8,11 +8,12 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import tool_additions
 
 #: Words that add to the radius by which the control compensates.
-_ADDED: Final = frozenset({"DR", "TOFFR", "TOFFLR"})
+ADDED_RADII: Final = frozenset({"DR", "TOFFR", "TOFFLR"})
 
 
 class RegisterValue(StrEnum):
@@ -37,6 +38,10 @@ class Stretch:
     plane: int
     style: int
 
+
+#: Words of compensation in a plane, and the variants of what readers say of them.
+_WORDS: Final = frozenset({"G41", "G42", "G41.1", "G42.1", "RL", "RR"})
+_FINDINGS: Final = frozenset({"radius_compensation", "not_simulated"})
 
 #: Gives the radius of the tool of a row, mm; None where nobody knows it.
 RadiusOf = Callable[[int], float | None]
@@ -68,11 +73,16 @@ def _of(stretch: Stretch) -> tuple[int, int, int]:
     return stretch.side, stretch.plane, stretch.style
 
 
+def is_of_compensation(wording: Wording) -> bool:
+    """Whether a reader's warning says that it reads the path as programmed, which ``run_of_centre`` answers."""
+    return wording.variant in _FINDINGS and wording.parameter("word") in _WORDS
+
+
 def offset_of(run: Run, stretch: Stretch, holds: RegisterValue, radius_of: RadiusOf) -> float | None:
     """Return how far the control goes beside the programmed path, mm; None where nobody knows it."""
     row = stretch.first
     added = {
-        sum(each.value for each in tool_additions(run) if each.name in _ADDED and each.first <= at < each.end)
+        sum(each.value for each in tool_additions(run) if each.name in ADDED_RADII and each.first <= at < each.end)
         for at in (row, stretch.end - 1)
     }
     base = _base(run, row, holds, radius_of)

@@ -6,6 +6,7 @@ from itertools import islice
 
 import numpy as np
 
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.verification.expected.path import ExpectedPath, OperationSettings
@@ -27,6 +28,7 @@ class ExpectedValues:
     work_offset            as in ``Run.work_offset``; None: any, but the same throughout
     edge                   number of the cutting edge (D); None: any
     radius_offset          what is added to the tool's number for the register of the radius
+    register_holds         what radius compensation works with
     span                   how far the tool axis may be off between points, degrees; None: ``axis_tolerance``
     span_tip               how far the tip may be off its line between points without TCP, mm; None: reported, not
                            checked
@@ -55,6 +57,7 @@ class ExpectedValues:
     work_offset: int | None = None
     edge: int | None = None
     radius_offset: int = 0
+    register_holds: RegisterValue = RegisterValue.UNKNOWN
     span: float | None = None
     span_tip: float | None = None
     absolute: bool = False

@@ -13,6 +13,7 @@ from trunnion.options.groups import (
     JSON,
     MACHINE,
     OTHER_MACHINE,
+    RADIUS_REGISTER,
     READING,
     REPORT,
     SETUP,
@@ -73,6 +74,7 @@ _VERIFY: Final = job(
     ),
     ZERO,
     TOOL_LENGTH.but(help="length of the tool, for programs without TCP"),
+    RADIUS_REGISTER,
     FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed", key="feed"),
     Option(
         "feed_limit", "--feed-limit", length(phrase("kind_feed"), "2000", "MM_MIN"),
@@ -140,6 +142,7 @@ _SIMULATE: Final = job(
     READING.but(strict={"key": ""}),
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that they call; no others are opened"),
+    RADIUS_REGISTER,
     SETUP,
     CLAMPING.but(
         turn={
@@ -177,6 +180,7 @@ _REACH: Final = job(
     Option("part", "--part", FileIn("MESH"), "part whose facets the tip is to reach along their normals"),
     Option("lean", "--lean", _NUMBER, "how far the tool may lean from a normal", default=0.0),
     SETUP,
+    RADIUS_REGISTER,
     READING,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option("step", "--step", _NUMBER, "degrees between tilts, and between azimuths", default=5.0),
@@ -206,6 +210,7 @@ _FIT: Final = job(
     SUBPROGRAMS.but(help="files of the subprograms that the NC program calls; no others are opened"),
     ZERO.but(help="workpiece zero of the NC program on its own machine, mm"),
     TOOL_LENGTH.but(help="length of the tool on all machines, gauge point to tip"),
+    RADIUS_REGISTER,
     READING,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option(

@@ -52,6 +52,7 @@ class SetupInput:
     zero: str | Iterable[float] | None = None
     tool_length: str | float | None = None
     until: str | int | None = None
+    radius_register: str | None = None
     turn: float | None = None
     tilt: float | None = None
     cl_is_turned: bool = False

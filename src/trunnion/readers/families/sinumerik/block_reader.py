@@ -28,9 +28,9 @@ from trunnion.readers.families.sinumerik.words import (
     TOOL_FRAMES,
     TYPES,
     WAITS,
+    WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT,
     WITHOUT_PATH_EFFECT_CALLS,
-    WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT_VALUES,
 )
 
