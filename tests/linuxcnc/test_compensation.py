@@ -1,11 +1,16 @@
 """Radius compensation in LinuxCNC's own interpreter: its tool goes where ours says that it goes."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tests.compensation.figures import Piece, figure
+from tests.compensation.test_offsets import turning_paths
+from tests.support.examples import examples
 from tests.support.linuxcnc.interpreter import RefusedByLinuxcncError, interpret, needs_linuxcnc
 from trunnion.compensation.offsets import CentrePath, centre_path
 from trunnion.compensation.plane_path import PlanePath
@@ -59,3 +64,17 @@ def test_its_interpreter_goes_the_same_way(name: str, left: float, tmp_path: Pat
     canon = interpret(program(path, left), tmp_path)
     its = [complex(*move.end[:2]) for move in canon.moves[1:]]
     assert its == pytest.approx(ends(found), abs=1e-4), (name, left)
+
+
+@needs_linuxcnc
+@settings(max_examples=examples(30), deadline=None)
+@given(turning_paths(), st.sampled_from([-1.0, 1.0]))
+def test_it_goes_the_same_way_along_any_path(contour: list[Piece], left: float) -> None:
+    path = figure(START, *contour, contour[-1][0] + OUT)
+    found = centre_path(path, left, LINUXCNC, leaves=True)
+    with TemporaryDirectory() as folder:
+        if found.faults:
+            return
+        canon = interpret(program(path, left), Path(folder))
+    its = [complex(*move.end[:2]) for move in canon.moves[1:]]
+    assert its == pytest.approx(ends(found), abs=1e-3)

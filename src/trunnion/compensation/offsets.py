@@ -18,8 +18,8 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.compensation.plane_path import PlanePath, Points, meetings
 from trunnion.compensation.styles import CompensationStyle, Corner, Entry
 
-#: Directions that differ by less are one, radians.
-_SMOOTH: Final = 1e-6
+#: A path that turns round by less than this short of half a turn goes back where it came from, radians.
+_ROUNDING: Final = 1e-6
 
 #: An element may be run backwards by so much, mm: what is lost in rounding.
 _BACK: Final = 1e-3
@@ -104,9 +104,9 @@ def _joints(path: PlanePath, beside: PlanePath, left: float, style: Compensation
     begin, end = path.directions()
     turn = np.angle(begin[1:] * np.conj(end[:-1]))
     ends, begins = beside.end[:-1].copy(), beside.start[1:].copy()
-    smooth = np.abs(turn) <= _SMOOTH
+    smooth = np.abs(turn) <= style.smooth
     # A path that goes back where it came from is rounded on the side of the tool.
-    outer = ~smooth & ((turn * left < 0.0) | (np.abs(turn) >= np.pi - _SMOOTH))
+    outer = ~smooth & ((turn * left < 0.0) | (np.abs(turn) >= np.pi - _ROUNDING))
     inner = ~smooth & ~outer & (left != 0.0)
     begins[smooth] = ends[smooth]
     met = meetings(_part(beside, slice(None, -1)), _part(beside, slice(1, None)))
@@ -114,7 +114,7 @@ def _joints(path: PlanePath, beside: PlanePath, left: float, style: Compensation
     corners = np.full((len(turn), 2), complex(np.nan, np.nan))
     rounded = outer & (left != 0.0)
     if style.corner is not Corner.ARC:
-        meet = rounded & (np.abs(turn) <= style.sharpest + _SMOOTH)
+        meet = rounded & (np.abs(turn) <= style.sharpest + _ROUNDING)
         straight = (path.sense[:-1] == 0) & (path.sense[1:] == 0)
         if style.corner is Corner.MEET:
             meet &= straight

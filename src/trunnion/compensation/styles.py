@@ -35,11 +35,13 @@ class CompensationStyle:
     """How a control compensates.
 
     sharpest  greatest change of direction at which equidistants go on to where they meet, radians
+    smooth    a change of direction that is no corner: the next element begins where the one before it ends, radians
     """
 
     corner: Corner = Corner.ARC
     entry: Entry = Entry.SQUARE
     sharpest: float = 0.5 * math.pi
+    smooth: float = 1e-6
 
 
 #: ``ModalState.compensation_style`` of a control of which no manual says it, or of modes that are not simulated.
@@ -57,5 +59,5 @@ STYLES: Final = {
     CIRCLES: CompensationStyle(),
     MEETINGS: CompensationStyle(Corner.MEET, sharpest=math.radians(100.0)),
     TYPE_A: CompensationStyle(Corner.CHAMFER),
-    OWN_ENTRY: CompensationStyle(Corner.ARC, Entry.OWN),
+    OWN_ENTRY: CompensationStyle(Corner.ARC, Entry.OWN, smooth=0.05),
 }

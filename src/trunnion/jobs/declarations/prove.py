@@ -180,7 +180,6 @@ _REACH: Final = job(
     Option("part", "--part", FileIn("MESH"), "part whose facets the tip is to reach along their normals"),
     Option("lean", "--lean", _NUMBER, "how far the tool may lean from a normal", default=0.0),
     SETUP,
-    RADIUS_REGISTER,
     READING,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option("step", "--step", _NUMBER, "degrees between tilts, and between azimuths", default=5.0),
@@ -210,7 +209,6 @@ _FIT: Final = job(
     SUBPROGRAMS.but(help="files of the subprograms that the NC program calls; no others are opened"),
     ZERO.but(help="workpiece zero of the NC program on its own machine, mm"),
     TOOL_LENGTH.but(help="length of the tool on all machines, gauge point to tip"),
-    RADIUS_REGISTER,
     READING,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option(
