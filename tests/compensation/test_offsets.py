@@ -7,17 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.compensation.figures import figure, pieces, spaced
 from tests.support.examples import examples
+from tests.support.plane_figures import figure, line, pieces, spaced, turning_paths
 from trunnion.compensation.offsets import Fault, centre_path
 from trunnion.compensation.styles import CIRCLES, MEETINGS, OWN_ENTRY, STYLES, TYPE_A
 
 #: Clockwise around a square, from outside and back.
 SQUARE = figure(-10 - 10j, 0j, 20j, 20 + 20j, 20, 0j, -10 - 10j)
-
-
-def line(end: complex) -> tuple[complex, complex, int]:
-    return end, 0j, 0
 
 
 def test_outer_corners_get_circles_and_bounds_are_square() -> None:
@@ -84,26 +80,6 @@ def test_no_offset_is_the_path_itself() -> None:
         found = centre_path(SQUARE, 0.0, style, leaves=True)
         assert pieces(found.path) == pieces(SQUARE)
         assert found.faults == ()
-
-
-@st.composite
-def turning_paths(draw: st.DrawFn) -> list[tuple[complex, complex, int]]:
-    """Lines and circles that turn by 150 degrees at most, each long enough for the tool beside it."""
-    place, heading = 0j, 0.0
-    found = [line(0j)]
-    for _ in range(draw(st.integers(2, 5))):
-        heading += draw(st.floats(-2.6, 2.6))
-        way = complex(math.cos(heading), math.sin(heading))
-        if sense := draw(st.sampled_from((0, 0, 1, -1))):
-            radius, angle = draw(st.floats(5.0, 30.0)), draw(st.floats(1.0, 2.5))
-            centre = place + 1j * sense * way * radius
-            place = centre + (place - centre) * complex(math.cos(angle), math.sin(sense * angle))
-            heading += sense * angle
-            found.append((place, centre, sense))
-        else:
-            place += way * draw(st.floats(10.0, 40.0))
-            found.append(line(place))
-    return found
 
 
 @settings(max_examples=examples(60))

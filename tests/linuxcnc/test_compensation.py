@@ -8,10 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.compensation.figures import Piece, figure
-from tests.compensation.test_offsets import turning_paths
 from tests.support.examples import examples
 from tests.support.linuxcnc.interpreter import RefusedByLinuxcncError, interpret, needs_linuxcnc
+from tests.support.plane_figures import Piece, figure, turning_paths
 from trunnion.compensation.offsets import CentrePath, centre_path
 from trunnion.compensation.plane_path import PlanePath
 from trunnion.compensation.styles import STYLES
@@ -69,7 +68,7 @@ def test_its_interpreter_goes_the_same_way(name: str, left: float, tmp_path: Pat
 @needs_linuxcnc
 @settings(max_examples=examples(30), deadline=None)
 @given(turning_paths(), st.sampled_from([-1.0, 1.0]))
-def test_it_goes_the_same_way_along_any_path(contour: list[Piece], left: float) -> None:
+def test_it_goes_the_same_way_along_any_path(contour: list[tuple[complex, complex, int]], left: float) -> None:
     path = figure(START, *contour, contour[-1][0] + OUT)
     found = centre_path(path, left, LINUXCNC, leaves=True)
     with TemporaryDirectory() as folder:

@@ -1,6 +1,7 @@
 """What the control makes of radius compensation, by what its register holds: a difference, or the radius."""
 
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from trunnion.verification import Check
 
 #: A pocket of 92 by 60 mm finished along the path of the centre of a cutter of 12 mm, with CUTCOM.
 POCKET = Path(__file__).parents[1] / "golden/compensation/pocket.cls"
+Holds: TypeAlias = Literal["difference", "radius"]
+
 MACHINES = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "linuxcnc_5axis", "hs664rt")
 
 
@@ -25,11 +28,12 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         found[machine] = folder / f"{machine}.nc"
         settings = {"radius_register": "difference"}
         posted = trunnion.post(POCKET, machine=machine, output=found[machine], settings=settings)
+        assert posted.verification is not None
         assert check(posted.verification, "compensation").state == "ok"
     return found
 
 
-def compensation(program: Path, machine: str, holds: str | None) -> Check:
+def compensation(program: Path, machine: str, holds: Holds | None) -> Check:
     found = trunnion.verify(program, machine=machine, cl=POCKET, radius_register=holds)
     return check(found, "compensation")
 
@@ -76,7 +80,7 @@ def test_a_side_that_is_wrong_and_an_end_that_is_lost_fail(programs: dict[str, P
 def test_travel_is_that_of_the_centre(programs: dict[str, Path]) -> None:
     """Six millimetres inside the pocket, which is 80 by 48 mm for the centre."""
 
-    def travel(holds: str) -> str:
+    def travel(holds: Holds) -> str:
         found = trunnion.verify(programs["yl569"], machine="yl569", cl=POCKET, radius_register=holds)
         return check(found, "travel").summary
 
@@ -119,7 +123,7 @@ def test_a_path_with_g41_1_states_its_radius(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("holds", "wide"), [("difference", 46.0), ("radius", 40.0)])
-def test_a_simulation_cuts_along_the_path_of_the_centre(holds: str, wide: float, programs: dict[str, Path]) -> None:
+def test_a_simulation_cuts_along_the_path_of_the_centre(holds: Holds, wide: float, programs: dict[str, Path]) -> None:
     found = trunnion.simulate(
         programs["yl569"], machine="yl569", stock="box:120,80,10,-60,-40,-9", radius_register=holds, cell=2.0,
         tools=["1=flat:12,length=75,flutes=30"],

@@ -32,6 +32,15 @@ from trunnion.simulation.tools.profile import ToolShape, cutting_width
 #: Words that add to the radius, which counts only where the control compensates it.
 _RADII: Final = frozenset({"DR", "DR2", "TOFFR", "TOFFLR"})
 
+#: Where a control cannot compensate, or nobody knows how it does.
+_FAULTS: Final = {
+    Fault.TIGHT: Wording("SIM164", "tight"),
+    Fault.ON_CIRCLE: Wording("SIM164", "on_circle"),
+    Fault.SHORT_ENTRY: Wording("SIM164", "short_entry"),
+    Fault.NO_CONTOUR: Wording("SIM164", "no_contour"),
+    Fault.UNSURE: Wording("SIM164", "unsure"),
+}
+
 
 def as_the_tool_goes(run: Run, shapes: Mapping[str, ToolShape], holds: RegisterValue) -> tuple[Run, list[Problem]]:
     """Return the run of the tool's centre with the lengths that its program adds, and what cannot be simulated.
@@ -67,7 +76,7 @@ def _compensation_problems(
         row = unknown[0]
         yield warning(file_of_row(run, row), run.lines[row], Wording("SIM147", "radius_compensation_programmed"))
     for row, fault in faults:
-        yield Problem(file_of_row(run, row), run.lines[row], Wording("SIM164", fault.value))
+        yield Problem(file_of_row(run, row), run.lines[row], _FAULTS[fault])
 
 
 def is_told_of_length(run: Run, line: int, wording: Wording) -> bool:
