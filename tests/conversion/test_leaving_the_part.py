@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from tests.support.locations import TESTS
 from tests.support.posting import FOOT, HEAD
 from trunnion.controls import load_control
 from trunnion.conversion import Conversion, convert
@@ -209,6 +210,8 @@ def test_a_cut_at_a_position_that_follows_from_the_machine_is_refused(
         (["G0 X0 Y0 Z5", "G1 X1 F10", "SUPA G1 Z0", "G0 X9 Y0 Z5", "G1 X8"], False),
         (["G0 X0 Y0 Z5", "G1 X1 F10", "SUPA G1 Z-200", "G1 X9 Y0 Z5", "G1 X8"], True),
         (["G0 X0 Y0 Z5", "G1 X1 F10", "SUPA G1 X0", "G0 X9 Y0 Z5", "G1 X8"], True),
+        (["G0 X0 Y0 Z5", "G1 X1 F10", "G0 Z50", "SUPA G1 X0 Y0"], False),
+        (["G0 X0 Y0 Z5", "G1 X1 F10", "G0 Z50", "G0 Z4", "SUPA G1 X0 Y0"], True),
     ],
 )
 def test_cuts_in_machine_positions_are_refused_and_retracts_at_feed_are_not(
@@ -290,3 +293,9 @@ def test_a_retract_of_which_no_row_tells_divides_operations_of_one_tool(tmp_path
         for path in (first, second)
     )
     assert one[one.index("M306 T.1") :] == two[two.index("M306 T.1") :]
+
+
+def test_a_program_that_leaves_at_feed_in_machine_positions_goes_over() -> None:
+    machine = load_machine("dmu65")
+    run = run_program(TESTS / "data" / "cases" / "pile" / "R7_m91_at_feed.h", machine)
+    assert convert(run, load_control(machine.control.unread_copy())).errors == ()

@@ -29,9 +29,9 @@ PRINT = "write a feed that the control can print"
 
 ONE_DIGIT_TOO_FEW = [
     ("matsuura_mx330", "MMPR,0.0143", f"error: a feed of 0.0143 prints as 0.014, which is 2.1 % off; {REV}"),
-    ("matsuura_mx330", "MMPR,0.1254", f"error: a feed of 0.1254 prints as 0.125, which is 0.32 % off; {REV}"),
+    ("matsuura_mx330", "MMPR,0.1254", f"warning: a feed of 0.1254 prints as 0.125, which is 0.32 % off; {REV}"),
     ("yl569", "MMPR,0.000004", f"error: a feed of 4e-06 is below the least that the control reads; {REV}"),
-    ("yl569", "MMPR,0.0014321", f"error: a feed of 0.0014321 prints as 0.00143, which is 0.15 % off; {REV}"),
+    ("yl569", "MMPR,0.0014321", f"warning: a feed of 0.0014321 prints as 0.00143, which is 0.15 % off; {REV}"),
     ("xyzac_trt", "MMPR,0.0001", f"error: a feed of 0.0001 is below the least that the control reads; {REV}"),
     ("hs664rt", "MMPM,0.2", f"error: a feed of 0.2 is below the least that the control reads; {PRINT}"),
     ("hs664rt", "MMPM,2.5", f"error: a feed of 2.5 prints as 2, which is 20 % off; {PRINT}"),

@@ -54,14 +54,6 @@ def test_a_transfer_header_in_the_midst_begins_another_program(rest: str, codes:
     assert set(found) <= set(codes)
 
 
-@pytest.mark.parametrize("words", ["RND=2", "RNDM=2", "CHF=1", "CHR=1"])
-def test_corners_that_a_sinumerik_rounds_are_refused_by_name(words: str, tmp_path: Path) -> None:
-    program = tmp_path / "part.mpf"
-    program.write_text(f"G17 G90 G71\nG0 X0 Y0 Z0\nG1 X9 {words} F9\nY9\nM30\n")
-    name, said = words.partition("=")[0], [each.text for each in trunnion.read_program(program, machine="yl569").errors]
-    assert any(text.startswith(name) and "known but not simulated" in text for text in said), said
-
-
 def test_g23_that_is_left_on_is_reported(tmp_path: Path) -> None:
     head = "%\nO0001\nG21 G90 G17 G54\n"
     cut = "G0 X0. Y0. Z0.\nG1 X9. F90.\n"

@@ -85,7 +85,7 @@ def test_a_word_has_the_meaning_that_the_control_gives_it(tmp_path: Path) -> Non
 
 def test_a_word_that_the_control_does_not_have_is_an_error(tmp_path: Path) -> None:
     run = read(tmp_path, 'G81 = "unknown"\nM97 = "unknown"', "G81 X0. Y0. Z-5. R2. F100.\nG80\nM97 P5")
-    assert {error.text for error in run.errors} >= {"unknown word G81", "unknown word M97"}
+    assert {error.wording.what for error in run.errors} >= {"unknown word G81", "unknown word M97"}
 
 
 @pytest.mark.parametrize(

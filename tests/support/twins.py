@@ -17,12 +17,16 @@ BLADE_FINISH = YL569 / "3_blade_finish.expected.mpf"
 
 @dataclass(frozen=True)
 class ServedTwin:
-    """A command ``trunnion twin`` that serves; its addresses, its process, and the fingerprint if it is secured."""
+    """A command ``trunnion twin`` that serves; its addresses, its process, and the fingerprint if it is secured.
+
+    ``agent``: address of its own MTConnect agent; empty: it has none.
+    """
 
     opcua: str
     mtconnect: tuple[str, int]
     fingerprint: str
     process: subprocess.Popen[str]
+    agent: str = ""
 
 
 @contextmanager
@@ -48,7 +52,9 @@ def served(program: Path, *options: str, home: Path | None = None, within: Seque
         assert opcua is not None, text
         place = (agents[1], int(agents[2])) if agents else ("", 0)
         certificate = re.search(r"certificate ([0-9A-F]{40})", text)
-        yield ServedTwin(opcua[0], place, certificate[1] if certificate else "", process)
+        documents = re.search(r"(http://\S+)/probe", text)
+        agent = documents[1] if documents else ""
+        yield ServedTwin(opcua[0], place, certificate[1] if certificate else "", process, agent)
     finally:
         process.terminate()
         process.communicate()

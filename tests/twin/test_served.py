@@ -8,6 +8,7 @@ import shutil
 import socket
 import struct
 import subprocess
+import urllib.request
 from pathlib import Path
 from typing import Any
 
@@ -141,7 +142,9 @@ NONSENSE = {
 
 
 def test_clients_who_mean_harm_do_none(tmp_path: Path) -> None:
-    with served(BLADE_FINISH, "--speed", "50", "--hold", "--no-mtconnect", home=tmp_path) as twin:
+    with served(BLADE_FINISH, "--speed", "50", "--hold", "--agent-port", "0", home=tmp_path) as twin:
+        with urllib.request.urlopen(f"{twin.agent}/probe") as answer:
+            assert b"<Device " in answer.read()
         for name, sent in NONSENSE.items():
             assert is_ended_by_server(sent, address_of(twin)), name
         asyncio.run(flood(twin))

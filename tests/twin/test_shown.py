@@ -14,7 +14,7 @@ from trunnion import load_machine
 from trunnion.jobs.twin.serving import twin_program
 from trunnion.machines import Machine
 from trunnion.machines.machine import MachineFacts
-from trunnion.twin.mtconnect.adapter import _EXECUTION
+from trunnion.twin.mtconnect.observations import _EXECUTION
 from trunnion.twin.opcua.columns import columns_of
 from trunnion.twin.opcua.states import _predicted
 from trunnion.twin.playback import Playback, PlayState

@@ -30,7 +30,7 @@ def run(given: Given) -> int:
         return 0
     settings = given.arguments()
     if given.no_mtconnect:
-        settings["adapter_port"] = None
+        settings |= {"adapter_port": None, "agent_port": None}
     serve_twin(**settings, ready=lambda addresses: _announce(addresses, given))
     return 0
 
@@ -44,6 +44,8 @@ def _announce(addresses: "TwinAddresses", given: Given) -> None:
     lines = [f"OPC UA: {addresses.opcua} ({how})"]
     if addresses.mtconnect:
         lines.append(f"MTConnect: an agent connects to {addresses.mtconnect} (SHDR); --device-xml writes its devices")
+    if addresses.agent:
+        lines.append(f"MTConnect: http://{addresses.agent}/probe, /current and /sample (from this computer)")
     if addresses.not_measured:
         lines.append(f"positions and times: {phrase('stands_on', values=addresses.not_measured)}")
     if given.hold:

@@ -59,6 +59,7 @@ PROGRAM_CHOICES: Final = {
     "standing_spindle": ("refused", "allowed"),
     "program_from": ("setting", "file"),
     RADIUS_REGISTER_SETTING: ("unknown", "difference", "radius"),
+    "stop_between": ("off", "on"),
 }
 
 #: What each of them changes.
@@ -82,14 +83,16 @@ PROGRAM_MEANINGS: Final = {
     RADIUS_REGISTER_SETTING: "What radius compensation works with: a difference (by how much the tool is larger than "
     "in the CL file, in the register D or as the radius in the tool table), or the radius itself. The proof and the "
     "simulation follow the path that the control makes of it; with unknown they say that nobody has stated it.",
+    "stop_between": "With on, an optional stop (M1) stands between operations, where the tool is at home.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.
 RUN_ONLY_SETTINGS: Final = frozenset(
     {
         "cl_units", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance",
-        "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "tool_retract", "limit_margin",
-        "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number", "listing",
+        "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways", "tool_retract",
+        "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number",
+        "listing",
         *(option.setting for option in POSTING),
     }
 )  # fmt: skip

@@ -119,14 +119,30 @@ def _refuse_unknown(run: Run, row: int, warn: Warnings) -> None:
 
 
 def _refuse_machine_cuts(run: Run, rows: Ints, warn: Warnings) -> None:
-    """Refuse motion at feed to positions of the machine, unless Z alone is drawn back before a rapid."""
+    """Refuse motion at feed to positions of the machine, unless no cut follows it, and Z alone is drawn back or it
+    begins above all cuts.
+    """
     at_feed = rows[run.machine_frame[rows] & (run.kind[rows] != Kind.RAPID) & ((run.programmed[rows] & _XYZ) != 0)]
     for row in at_feed.tolist():
         following = np.flatnonzero(~run.machine_frame[row : rows[-1] + 1])
         cuts_then = len(following) > 0 and run.kind[row + int(following[0])] != Kind.RAPID
-        if int(run.programmed[row]) & int(_XYZ) != ProgrammedWord.Z or cuts_then:
+        leaves = int(run.programmed[row]) & int(_XYZ) == ProgrammedWord.Z or _is_above_cuts(run, rows, row)
+        if not leaves or cuts_then:
             warn.refuse(int(run.line[row]), Wording("CNV170", "moves_feed_position"), int(run.file[row]))
             return
+
+
+def _is_above_cuts(run: Run, rows: Ints, row: int) -> bool:
+    """Whether the tool is away from the part when a row to a position of the machine begins: home, or at rapid to a
+    height above those of all cuts.
+    """
+    before = np.flatnonzero(~run.machine_frame[rows[0] : row])
+    if not len(before) or run.kind[last := int(rows[0] + before[-1])] != Kind.RAPID:
+        return not len(before)
+    cuts = rows[~run.machine_frame[rows] & (run.kind[rows] != Kind.RAPID)]
+    away = run.positions(np.array([last]))
+    heights = run.positions(cuts).tip @ away.axis[0]
+    return bool((heights < float(away.tip[0] @ away.axis[0]) - _AT_REST).all())
 
 
 def _swings(run: Run, rows: Ints) -> Flags:

@@ -47,6 +47,17 @@ class Observer:
         return nullcontext(_ignore)
 
 
+class Untold(Observer):
+    """Passes on progress, and nothing else."""
+
+    def __init__(self, observer: Observer) -> None:
+        self._observer = observer
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        """As ``Observer`` has it."""
+        return self._observer.progress(stage, total, unit)
+
+
 class Remembering(Observer):
     """Hands on what it hears to another one, and keeps the problems."""
 

@@ -154,6 +154,14 @@ def _whole(name: str, kind: type[_Item]) -> "cached_property[NDArray[_Item]]":
     return cached_property(column)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SkippedRun:
+    """What a program does while the switches of some levels of block skip (``/``) are on."""
+
+    levels: frozenset[int]
+    run: "Run"
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A program as the control of a machine ran it; columns have n rows and are read-only.
@@ -180,6 +188,8 @@ class Run:
     planes         (k, 3, 4)       tilted planes and rotated frames in which positions are tips: maps from programmed
                                    positions to the workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
+    skipped                        the program with the switches of block skip on: of all levels that it uses, and of
+                                   each alone; none where no block may be skipped. In ``Run`` itself all are off
 
     Computed on first access:
 
@@ -228,6 +238,7 @@ class Run:
     spindle_holes: tuple[SpindleHole, ...] = ()
     compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     planes: Floats = field(default_factory=lambda: np.zeros((0, 3, 4)))
+    skipped: tuple[SkippedRun, ...] = ()
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -247,6 +258,11 @@ class Run:
     def errors(self) -> tuple[Diagnostic, ...]:
         """The diagnostics that put the columns in doubt: words that are unknown or not executed."""
         return tuple(diagnostic for diagnostic in self.diagnostics if diagnostic.severity is Severity.ERROR)
+
+    def with_skips(self, levels: frozenset[int]) -> "Run":
+        """Return what the program does while the switches of some levels of block skip are on."""
+        own = levels & self.skipped[0].levels if self.skipped else frozenset()
+        return next((each.run for each in self.skipped if each.levels == own), self)
 
     # Some rows
 

@@ -234,6 +234,14 @@ class EventWriter:
         if is_last and self._blocks.coolant != "OFF" and not comes_after(index, event, Coolant):
             self._write_word_event(Coolant(event.row, event.line, self._blocks.coolant), ())
 
+    def stop_between(self, motion: Motion, values: Mapping[str, Value]) -> None:
+        """Write an optional stop between operations, with the ``values`` of the template of stops."""
+        self._motion, self._values = motion, values
+        rows = len(motion.operation.moves)
+        self._blocks.write_lines(
+            self._stop_lines(Stop(rows, motion.operation.line, optional=True)), template=STOP_PLACE
+        )
+
     def _stop_lines(self, event: Stop) -> list[str]:
         """Return the lines of a stop: the family's, or those of the shop's template, which must stop as well."""
         if STOP_PLACE not in self._control.templates:

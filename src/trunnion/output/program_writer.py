@@ -18,7 +18,7 @@ from trunnion.machines import SweptPart
 from trunnion.model.motion import Motion
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.template_passage import TemplatePassage
-from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn
+from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn, Stop
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.compensation_entries import compensation_entries, head_texts
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
@@ -91,6 +91,7 @@ class _ProgramWriter:
         self._called_tool = ""  # in the present file
         self._tool_calls = self._template_values.tools.calls
         self._operation = 0
+        self._edge = ""
         self._calls_each = program.effective_setting("restart") == "on"
         self._previous_motion: Motion | None = None
         self._part: SweptPart | None = None
@@ -124,6 +125,8 @@ class _ProgramWriter:
                 if "after_operation" in self._control.templates:
                     self._templates.write_place("after_operation", self._values(motion, k), motion)
                 self._end_operation_file(motion, k)
+                if not ends_program:
+                    self._stop_between(motion, k)
         self._templates.write("program_end", self._values(motions[-1], -1), motions[-1])
         names = {} if self._files is None else self._files.names
         starts = self._blocks.writer.operation_starts
@@ -225,8 +228,9 @@ class _ProgramWriter:
         if motion.starts_operation:
             self._blocks.writer.begin_operation()
             self._templates.write_place("before_operation", values, motion)
-            self._templates.write("operation_start", values, motion)
+            self._templates.write("operation_start", {**values, "edge": self._edge_of_spindle(motion)}, motion)
             self._change_tool(motion, values)
+            self._edge = str(values.get("edge") or "")
         else:
             self._templates.write_place("between_planes", values, motion)
         from_plane = self._continues_from_plane(motion)
@@ -263,6 +267,10 @@ class _ProgramWriter:
         register = self._template_values.tools.length_register(motion.operation, self._loaded_tool)
         self._loaded_tool = LoadedTool(tool, motion.operation.tool.name, register)
 
+    def _edge_of_spindle(self, motion: Motion) -> str:
+        """Return the cutting edge of the tool before an operation: ADJUST names one of the operation's own tool."""
+        return self._edge or self._program.effective_setting("edge", motion.operation)
+
     def _approach(self, motion: Motion, suffix: str, values: Mapping[str, Value]) -> None:
         """Place the rotary axes for the first row, and activate TCP or the tilted plane."""
         onward = "next_axis" if motion.plane is None else "next_plane"
@@ -284,6 +292,14 @@ class _ProgramWriter:
         if not said:
             self._blocks.writer.write_lines([off])
         self._blocks.coolant = "OFF"
+
+    def _stop_between(self, motion: Motion, number: int) -> None:
+        """Write an optional stop behind an operation, if that is asked for and the CL file has no stop there."""
+        rows, following = len(motion.operation.moves), self._program.motions[number + 1].operation.events
+        here = [event for event in motion.operation.events if event.row == rows]
+        here += [event for event in following if event.row == 0]
+        if self._program.effective_setting("stop_between") == "on" and not any(isinstance(e, Stop) for e in here):
+            self._events.stop_between(motion, self._values(motion, number))
 
     # From plane to plane
 

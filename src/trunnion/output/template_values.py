@@ -21,7 +21,7 @@ from trunnion.model.toolpath import Operation, Sense, SpindleOn
 from trunnion.output.coordinates.extents import cut_extents
 from trunnion.output.coordinates.rotary_angles import rotary_counts
 from trunnion.output.program import Program
-from trunnion.output.tool_calls import LoadedTool, ToolCalls
+from trunnion.output.tool_calls import LoadedTool, ToolCalls, edge_setting
 from trunnion.planning import operation_seconds
 from trunnion.wording import format_duration
 
@@ -87,8 +87,10 @@ class TemplateValues:
             "intol": operation.intol,
             "outtol": operation.outtol,
             "tool": (tool := self.tools.call(operation, loaded)),
-            "length_number": str(self.tools.length_register(operation, loaded) or tool),
+            "length_number": str((register := self.tools.length_register(operation, loaded)) or tool),
         }
+        if "edge" in found:
+            found["edge"] = edge_setting(self._program, operation, register)
         return {name: self._escaped(value) for name, value in found.items()}
 
     def _escaped(self, value: Value) -> Value:
@@ -113,6 +115,8 @@ class TemplateValues:
             values["tolerance"] = (
                 (operation.intol or 0.0) + (operation.outtol or 0.0) if given else values.get("fallback_tolerance")
             )
+        if not values.get("three_axis_tolerance"):
+            values["three_axis_tolerance"] = values["tolerance"]
         method = self._program.method_of(operation)
         for setting in control.method_defaults:
             values[setting] = values[setting] or control.default_for_method(setting, method)

@@ -109,6 +109,14 @@ class ToolCalls:
         return self._next_calls[operation - 1]
 
 
+def edge_setting(program: Program, operation: Operation, register: int) -> str:
+    """Return the cutting edge of an operation: ``register`` (ADJUST), where that is asked for, or the setting."""
+    by_register = program.effective_setting("edge_from", operation) == "adjust" and register
+    if by_register and program.control.setting_rule("edge").allows(str(register)):
+        return str(register)
+    return program.effective_setting("edge", operation)
+
+
 def tool_text(call: str, tool: Tool, unit: float = 1.0) -> str:
     """Return a tool with its data, for the list of tools; ``unit`` is that of the program, mm."""
     known = tool.kind != "UNKNOWN"

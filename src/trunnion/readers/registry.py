@@ -10,10 +10,10 @@ from trunnion.families import FAMILIES, load_reader
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.model.run import Run
+from trunnion.model.run import Run, SkippedRun
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
-from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions, skip_meanings
 from trunnion.readers.program.settings import UNKNOWN, encoding_of, family_of, reading_of
 
 
@@ -36,6 +36,8 @@ def run_program(
     write_progress  the progress of the program's file if it is still being written: the program runs as far as it is
                     there, and waits for the rest. None for a complete file. The result is the same
 
+    A program with blocks that may be skipped is run again for each combination of switches (``Run.skipped``).
+
     Raises ``InputError`` if a file cannot be read, does not end, is nested wrongly or too deeply, or if there is no
     reader for the control. Words that are not understood are in ``Run.diagnostics``.
     """
@@ -43,14 +45,24 @@ def run_program(
     check_reading(machine)
     stated = encoding_of(machine) if options.encoding is None else options.encoding
     options = replace(options, encoding=stated)
-    run = reader.interpreter(Path(path), machine, options).run(write_progress)
-    return replace(
-        run,
-        language=FAMILIES[family_of(machine) if family is None else family].reader or "",
-        encoding=stated,
-        uses_length_numbers=reader.uses_length_numbers,
-        work_offset_name=reader.work_offsets.name,
-    )
+    language = FAMILIES[family_of(machine) if family is None else family].reader or ""
+
+    def read(how: RunOptions) -> Run:
+        run = reader.interpreter(Path(path), machine, how).run(None if how.skip else write_progress)
+        return replace(
+            run,
+            language=language,
+            encoding=stated,
+            uses_length_numbers=reader.uses_length_numbers,
+            work_offset_name=reader.work_offsets.name,
+        )
+
+    run = read(options)
+    meanings = [] if options.skip else skip_meanings(event.value for event in run.events if event.kind == "block_skip")
+    if meanings and write_progress is not None:
+        write_progress.wait_until_finished()
+    skipped = tuple(SkippedRun(levels, read(replace(options, skip=levels))) for levels in meanings)
+    return replace(run, skipped=skipped) if skipped else run
 
 
 def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:

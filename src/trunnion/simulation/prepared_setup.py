@@ -31,6 +31,7 @@ class PreparedSetup:
     pose       where the last set-up's workpiece frame lies in this one's
     register_holds  what the registers of the radius hold
     until      N number of the block of the last program before which the simulation ends; None: at its end
+    until_line  the line of that block instead, which may be skipped; 0: none
     """
 
     machine: Machine
@@ -44,6 +45,7 @@ class PreparedSetup:
     pose: Pose = field(default_factory=Pose)
     until: str | int | None = None
     register_holds: RegisterValue = RegisterValue.UNKNOWN
+    until_line: int = 0
 
     @property
     def turn(self) -> Floats | None:
@@ -69,10 +71,27 @@ class PreparedSetup:
         """
         turn, clamped = self.turn, self.clamped_runs()
         runs = clamped if turn is None else [run_of_drawn_part(run, turn) for run in clamped]
-        return [_program_of(run, self.tools, self.until if run is runs[-1] else None) for run in runs]
+        return [_program_of(run, self.tools, self._row_of_end(run) if run is runs[-1] else len(run)) for run in runs]
+
+    def line_of_end(self) -> int:
+        """Return the line of the block before which the last program ends; 0: none is stated.
+
+        Raises ``InputError`` if it has no such block.
+        """
+        return 0 if self.until is None else int(self.runs[-1].line[self._row_of_end(self.runs[-1])])
+
+    def _row_of_end(self, run: Run) -> int:
+        """Return the row at which the last program ends.
+
+        Raises ``InputError`` if it has no block ``until``.
+        """
+        if self.until_line:
+            behind = np.flatnonzero((run.file == 0) & (run.line >= self.until_line))
+            return int(behind[0]) if len(behind) else len(run)
+        return len(run) if self.until is None else _row_of_block(run, self.until)
 
 
-def _program_of(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> SimulatedProgram:
+def _program_of(run: Run, shapes: dict[str, ToolShape], last: int) -> SimulatedProgram:
     end, why = len(run), None
     errors = sorted(run.errors, key=lambda each: each.line)
     if errors:
@@ -81,10 +100,8 @@ def _program_of(run: Run, shapes: dict[str, ToolShape], until: str | int | None)
         later = np.flatnonzero((run.file == number) & (run.line >= first.line))
         end = int(later[0]) if len(later) else len(run)
         why = Wording("SIM142", "cut_up_to_fault", line=first.line, fault=first.wording)
-    if until is not None:
-        row = _row_of_block(run, until)
-        if row < end:
-            end, why = row, None
+    if last < end:
+        end, why = last, None
     return SimulatedProgram(run, shapes, end, why)
 
 

@@ -41,6 +41,7 @@ class SimulationFinding:
     depth     how deep, mm
     place     where, workpiece frame, mm
     setup     name of the set-up; empty where there is only one
+    skipped   which blocks must be skipped (``/``) for it; empty: none
     row       of the worst block in the run of its program
     """
 
@@ -57,6 +58,7 @@ class SimulationFinding:
     place: tuple[float, float, float]
     cl_file: Annotated[str, Figure(none="", after="cl_line")] = ""
     setup: OptionalText = ""
+    skipped: OptionalText = ""
     row: Annotated[int, NOT_DATA] = -1
     first_line: Annotated[int, Figure(after="block")] = 0
     first_block: Annotated[int, Figure(none=-1, after="first_line")] = -1
@@ -68,7 +70,8 @@ class SimulationFinding:
 
     def __str__(self) -> str:
         """Return what does what, how deep and where."""
-        return f"{self.kind}: {self.between[0]}, {self.between[1]}: {self.depth:.3f} mm deep at {position(self.place)}"
+        what = f"{self.kind}: {self.between[0]}, {self.between[1]}: {self.depth:.3f} mm deep at {position(self.place)}"
+        return f"{self.skipped}: {what}" if self.skipped else what
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +88,7 @@ class NearMiss:
     distance: Millimetres
     place: tuple[float, float, float]
     setup: OptionalText = ""
+    skipped: OptionalText = ""
     row: Annotated[int, NOT_DATA] = -1
     first_line: Annotated[int, Figure(after="block")] = 0
     first_block: Annotated[int, Figure(none=-1, after="first_line")] = -1
@@ -96,7 +100,8 @@ class NearMiss:
 
     def __str__(self) -> str:
         """Return what comes near what, how near and where."""
-        return f"near: {' and '.join(self.between)}: {self.distance:.3f} mm apart at {position(self.place)}"
+        what = f"near: {' and '.join(self.between)}: {self.distance:.3f} mm apart at {position(self.place)}"
+        return f"{self.skipped}: {what}" if self.skipped else what
 
 
 @dataclass(frozen=True, slots=True)

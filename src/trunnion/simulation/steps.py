@@ -80,6 +80,10 @@ class SetupSteps:
         #: What is odd about machines, which is told once, whatever runs on them.
         self._of_machines: list[Problem] = []
 
+    def again(self, watcher: Watcher) -> "SetupSteps":
+        """Return what cuts the stock once more from the beginning, whole."""
+        return SetupSteps(self._options, watcher, None)
+
     def follow(self, own: PreparedSetup, shape: StockShape, remarks: list[Problem]) -> CutSetup:
         """Cut the stock in a set-up; ``shape`` is the first one's."""
         pose, cell = own.pose, self._options.cell

@@ -6,6 +6,7 @@ from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 
 from trunnion.twin.mtconnect.adapter import MTConnectAdapter
+from trunnion.twin.mtconnect.agent import MTConnectAgent
 from trunnion.twin.opcua.outlet import OpcUaOutlet
 from trunnion.twin.opcua.server import Security, TwinServer
 from trunnion.twin.running import Twin
@@ -17,12 +18,14 @@ class TwinAddresses:
 
     opcua        address of the OPC UA server
     mtconnect    host and port of the MTConnect adapter; empty: there is none
+    agent        host and port of the MTConnect agent; empty: there is none
     fingerprint  of the server's certificate (SHA-1, as clients show it); empty: there is none
     not_measured  values of the definition that positions and times stand on, though nobody has measured them
     """
 
     opcua: str
     mtconnect: str
+    agent: str
     fingerprint: str
     not_measured: tuple[str, ...] = ()
 
@@ -34,6 +37,7 @@ class Ports:
     host: str
     opcua: socket.socket
     mtconnect: socket.socket | None
+    agent: socket.socket | None = None
 
 
 async def serve_program(
@@ -57,18 +61,19 @@ async def serve_program(
     publisher = await server.prepare(twin.playback.speed)
     twin.outlets.append(OpcUaOutlet(program, server, publisher, twin.clock()))
     adapter = MTConnectAdapter(program, ports.mtconnect) if ports.mtconnect is not None else None
-    if adapter is not None:
-        twin.outlets.append(adapter)
+    agent = MTConnectAgent(program, ports.agent, twin.clock) if ports.agent is not None else None
+    told = [each for each in (adapter, agent) if each is not None]
+    twin.outlets.extend(told)
     try:
         await server.start()
-        if adapter is not None:
-            await adapter.begin()
-        shdr = adapter.address if adapter else ""
-        ready(TwinAddresses(server.address, shdr, server.fingerprint, program.not_measured))
+        for each in told:
+            await each.begin()
+        shdr, documents = adapter.address if adapter else "", agent.address if agent else ""
+        ready(TwinAddresses(server.address, shdr, documents, server.fingerprint, program.not_measured))
         await twin.run(started=started)
     finally:
-        if adapter is not None:
-            await adapter.end()
+        for each in told:
+            await each.end()
         await server.stop()
 
 

@@ -27,6 +27,7 @@ class ExpectedValues:
     tool                   tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
     work_offset            as in ``Run.work_offset``; None: any, but the same throughout
     edge                   number of the cutting edge (D); None: any
+    last_edge              ADJUST of LOAD/TOOL up to this number is the cutting edge; 0: it is not
     radius_offset          what is added to the tool's number for the register of the radius
     register_holds         what radius compensation works with
     span                   how far the tool axis may be off between points, degrees; None: ``axis_tolerance``
@@ -50,6 +51,8 @@ class ExpectedValues:
     feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
+    without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
+    stop_between           an optional stop stands between operations
     demands                what the proof must stand on besides what the machine's definition demands
     """
 
@@ -58,6 +61,7 @@ class ExpectedValues:
     edge: int | None = None
     radius_offset: int = 0
     register_holds: RegisterValue = RegisterValue.UNKNOWN
+    last_edge: int = 0
     span: float | None = None
     span_tip: float | None = None
     absolute: bool = False
@@ -77,11 +81,13 @@ class ExpectedValues:
     feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
     swivel_data: tuple[str, ...] = ()
+    without_skipped: bool = False
+    stop_between: bool = False
     demands: tuple[str, ...] = ()
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""
-        every = OperationSettings(self.tool, self.work_offset, self.edge, self.radius_offset)
+        every = OperationSettings(self.tool, self.work_offset, self.edge, self.radius_offset, self.last_edge)
         return self.by_operation.get(name, every)
 
 

@@ -1,37 +1,54 @@
 """What else a program means: with the switches of block skip on, blocks with ``/`` are left out.
 
-In:     runs of programs with all switches off, of which every such block is an event.
+In:     runs of programs, each with what it is in its other meanings (``Run.skipped``).
 Out:    the levels that are on in each other meaning; and checks that fail in one of them.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from trunnion.model.run import Run
-from trunnion.verification.results import Check
+from trunnion.verification.results import Check, Verification
 
 
 def other_meanings(*runs: Run) -> list[frozenset[int]]:
     """Return the levels that are on: all that the programs use, and each alone; none where no block may be skipped."""
-    levels = sorted({_level(value) for run in runs for value in _values(run)})
-    every = [frozenset(levels)] if levels else []
-    return every + [frozenset({level}) for level in levels] if len(levels) > 1 else every
+    each = [skipped.levels for run in runs for skipped in run.skipped]
+    return list(dict.fromkeys([_used(*runs), *each])) if each else []
 
 
 def words_of(levels: frozenset[int], *runs: Run) -> str:
     """Name a meaning, and the first block that is skipped in it."""
-    used = {_level(value) for run in runs for value in _values(run)}
     lines = [
         event.line
         for run in runs
         for event in run.events
-        if event.kind == "block_skip" and _level(event.value) in levels
+        if event.kind == "block_skip" and isinstance(event.value, int | float) and int(event.value) in levels
     ]
-    which = "" if levels == used else f" of level {', '.join(map(str, sorted(levels)))}"
+    which = "" if levels == _used(*runs) else f" of level {', '.join(map(str, sorted(levels)))}"
     return f"with blocks{which} skipped (/, first in line {min(lines)})"
 
 
-def worse_checks(checks: Sequence[Check], others: Iterable[tuple[str, Sequence[Check]]]) -> Iterator[Check]:
+def with_other_meanings(
+    proof: Verification, verify: Callable[[Run, bool], Verification], *, has_toolpaths: bool
+) -> Verification:
+    """Return a proof that fails where the program fails with blocks skipped.
+
+    Without all blocks that may be skipped it is compared with the CL files without all that they let the operator skip.
+    What a single level is no CL file says, nor what else a program lets him skip: it is judged by itself there.
+
+    verify         of a run, and whether it is compared with the CL files without what they let the operator skip
+    has_toolpaths  whether the proof has compared the program with CL files
+    """
+    used, others = _used(proof.run), list[tuple[str, Sequence[Check]]]()
+    as_asked_for = all(check.passed for check in proof.checks if check.key == "stops")
+    for each in proof.run.skipped:
+        compared = has_toolpaths and as_asked_for and each.levels == used
+        others.append((words_of(each.levels, proof.run), verify(each.run, compared).checks))
+    return replace(proof, checks=tuple(_worse_checks(proof.checks, others))) if others else proof
+
+
+def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[str, Sequence[Check]]]) -> Iterator[Check]:
     """Yield each check, or what it is in the first other meaning in which it fails; ``others``: words and checks."""
     failed = [(words, {check.key: check for check in found if not check.passed}) for words, found in others]
     for check in checks:
@@ -44,9 +61,6 @@ def worse_checks(checks: Sequence[Check], others: Iterable[tuple[str, Sequence[C
         yield replace(fault, summary=f"{words}: {fault.summary}", places=places)
 
 
-def _values(run: Run) -> Iterator[object]:
-    return (event.value for event in run.events if event.kind == "block_skip")
-
-
-def _level(value: object) -> int:
-    return int(value) if isinstance(value, int | float) else 0
+def _used(*runs: Run) -> frozenset[int]:
+    """Return all levels that programs use."""
+    return frozenset(level for run in runs for each in run.skipped for level in each.levels)

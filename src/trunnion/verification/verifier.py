@@ -98,7 +98,10 @@ def _expected_path(
     settings: ExpectedValues,
 ) -> ExpectedPath:
     """Return the path that the CL files ask for, with the splines that the program writes."""
-    path = partial(ExpectedPath, toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation)
+    path = partial(
+        ExpectedPath, toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation,
+        skips=settings.without_skipped,
+    )  # fmt: skip
     expected = path()
     written = written_splines(run, expected)
     return path(written) if written else expected

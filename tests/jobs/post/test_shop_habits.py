@@ -109,15 +109,64 @@ def test_the_register_of_the_radius_is_the_tool_and_what_the_machine_adds(base: 
 # The method
 
 
-@pytest.mark.parametrize("base", ["yl569", "dmu65", "xyzac_trt"])
+@pytest.mark.parametrize("base", ["dmu65", "xyzac_trt"])
 def test_without_a_method_no_line_has_a_placeholder(base: str, tmp_path: Path) -> None:
-    settings = 'method = ""\n' + ("" if base == "dmu65" else 'program = ""\n')
-    machine = _machine(tmp_path, base, f"[control.settings]\n{settings}")
-    result = trunnion.post(_source(tmp_path), machine=machine)
+    result = trunnion.post(_source(tmp_path), machine=base)
     assert result.passed
-    assert result.text is not None
-    assert "METHOD" not in result.text
-    assert 'MSG("")' not in result.text
+    assert "METHOD" not in (result.text or "")
+
+
+def _sinumerik(folder: Path, settings: str = "") -> Path:
+    """The YL569 without what its published programs have of their own."""
+    return _machine(folder, "yl569", f'[control.settings]\nmethod = ""\nthree_axis_tolerance = ""\n{settings}')
+
+
+def test_a_sinumerik_displays_a_method_only_where_one_is_set(tmp_path: Path) -> None:
+    without = trunnion.post(_source(tmp_path), machine=_sinumerik(tmp_path)).text or ""
+    assert "MSG(" not in without
+    assert "TECHNOLOGY" not in without
+    assert 'MSG("METHOD")' in (trunnion.post(_source(tmp_path), machine="yl569").text or "")
+
+
+# The tolerance of three-axis operations on a Sinumerik
+
+
+def test_the_tolerance_of_three_axes_is_that_of_the_operation(tmp_path: Path) -> None:
+    machine = _sinumerik(tmp_path)
+    assert "CYCLE832(0.02, _ORI" in (trunnion.post(_source(tmp_path), machine=machine).text or "")
+    given = trunnion.post(_source(tmp_path), machine=machine, settings={"three_axis_tolerance": "0.005"})
+    assert "CYCLE832(0.005, _ORI" in (given.text or "")
+    assert "CYCLE832(0.01, _ORI" in (trunnion.post(_source(tmp_path), machine="yl569").text or "")
+
+
+# The cutting edge
+
+
+def test_adjust_is_the_cutting_edge_where_the_machine_says_so(tmp_path: Path) -> None:
+    source, output = _source(tmp_path), tmp_path / "part.mpf"
+    source.write_text(source.read_text(encoding="utf-8").replace("2,ADJUST,2", "2,ADJUST,5"), encoding="utf-8")
+    machine = _sinumerik(tmp_path, 'edge_from = "adjust"\n')
+    result = trunnion.post(source, machine=machine, output=output)
+    assert result.passed
+    assert "CTL715" not in [problem.code for problem in result.problems]
+    text = output.read_text(encoding="utf-8")
+    lines = text.splitlines()
+    change = next(k for k, line in enumerate(lines) if line.endswith("T=2"))
+    edges = [[line.split()[-1] for line in part if "SUPA G0 X" in line] for part in (lines[:change], lines[change:])]
+    assert edges == [["D1"] * 4, ["D5"] * 2]  # up to the change the edge is that of the tool that is in the spindle
+    assert _failing(output, machine, source) == {}
+    for lost in ("D5", "S3000 D1"):
+        output.write_text(text.replace(lost, "D2"), encoding="utf-8")
+        assert "tool" in _failing(output, machine, source)
+
+
+def test_adjust_beyond_the_highest_edge_leaves_the_setting(tmp_path: Path) -> None:
+    source = _source(tmp_path)
+    source.write_text(source.read_text(encoding="utf-8").replace("2,ADJUST,2", "2,ADJUST,15"), encoding="utf-8")
+    result = trunnion.post(source, machine=_sinumerik(tmp_path, 'edge_from = "adjust"\n'))
+    assert result.passed
+    assert "D15" not in (result.text or "")
+    assert "CTL715" in [problem.code for problem in result.problems]
 
 
 # An optional stop between operations
@@ -135,6 +184,17 @@ def test_an_optional_stop_between_operations_is_a_template_of_two_lines(base: st
     (stop,) = (event for event in run.events if event.kind == "optional_stop")
     assert 0 < stop.before_row < len(run)
     assert run.spindle[stop.before_row - 1] == 0 or run.machine_frame[stop.before_row - 1]
+
+
+@pytest.mark.parametrize("base", _MACHINES)
+def test_the_setting_writes_the_stop_and_the_proof_misses_it(base: str, tmp_path: Path) -> None:
+    source, output = _source(tmp_path), tmp_path / "part.nc"
+    machine = _machine(tmp_path, base, '[control.settings]\nstop_between = "on"\n')
+    assert trunnion.post(source, machine=machine, output=output).passed
+    lines = output.read_text(encoding="utf-8").splitlines()
+    (stop,) = (k for k, line in enumerate(lines) if line.split()[-1:] == ["M1"])
+    output.write_text("\n".join(lines[:stop] + lines[stop + 1 :]) + "\n", encoding="utf-8")
+    assert "stops" in _failing(output, machine, source)
 
 
 # The number of the program

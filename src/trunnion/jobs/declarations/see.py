@@ -109,6 +109,10 @@ _TWIN: Final = job(
         "adapter_port", "--adapter-port", whole(phrase("kind_port"), phrase("number_or_free"), "N", most=65535),
         "port of the MTConnect adapter", default=7878,
     ),
+    Option(
+        "agent_port", "--agent-port", whole(phrase("kind_port"), phrase("number_or_free"), "N", most=65535),
+        "serve an MTConnect agent as well, on this port (5000 is usual)",
+    ),
     Option("no_mtconnect", "--no-mtconnect", Switch(), "serve OPC UA alone", own=True),
     Option(
         "device_xml", "--device-xml", FileOut("FILE.xml", (".xml",), phrase("device_model_is_xml")),

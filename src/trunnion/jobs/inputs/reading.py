@@ -228,13 +228,6 @@ def _refuse_cl_file(program: Path) -> None:
         raise InputError(Problem(str(program), 0, Wording("NC112", "cl_file_for_program")))
 
 
-def run_without_blocks(nc: FilePath, machine: Machine, subprograms: Sequence[FilePath], levels: frozenset[int]) -> Run:
-    """Return the run of a program whose blocks of some levels of block skip are left out."""
-    others = check_paths("subprograms", subprograms)
-    options = readers.RunOptions(subprograms=others, skip=levels)
-    return readers.run_program(check_path("nc", nc), machine, options)
-
-
 def as_run(
     nc: FilePath | Run,
     machine: Machine,

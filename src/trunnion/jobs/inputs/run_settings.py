@@ -184,6 +184,11 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         form="MODE or OPERATION:MODE",
         example="OP1:tcp,OP2:tilted",
     ),
+    "drills_sideways": _choice(
+        "With allowed a drill, tap, reamer or boring bar may move sideways at a feed: it cuts chamfers or grooves.",
+        "refused",
+        "allowed",
+    ),
     "cycles": _choice("With off holes become motion wherever motion can make them.", "on", "off"),
     "tool_retract": RunSetting(
         "How far the tool leaves along its axis, at rapid, before it goes home from a tilted or simultaneous "

@@ -5,13 +5,11 @@ Out:    the program with notices in its head, and the proof of it.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import replace
 from typing import Final
 
 from trunnion import readers
 from trunnion.controls.vocabulary import FORCED_NOTICE
-from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.stages import Posting, Proof
 from trunnion.jobs.post.writing import write
 from trunnion.model.operation_start import OperationStart
@@ -20,17 +18,6 @@ from trunnion.output.program import Program
 
 #: Notices quote numbers of blocks, and may need more lines with larger ones; soon they do not.
 _MOST_WRITINGS: Final = 4
-
-
-class Untold(Observer):
-    """Passes on progress, and nothing else."""
-
-    def __init__(self, observer: Observer) -> None:
-        self._observer = observer
-
-    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
-        """As ``Observer`` has it."""
-        return self._observer.progress(stage, total, unit)
 
 
 def write_forced(

@@ -28,6 +28,7 @@ from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
+from trunnion.planning.holes.sideways import sideways_problems
 from trunnion.planning.retracts.tool_retract import with_tool_retract
 
 _MM_PER_INCH: Final = 25.4
@@ -209,7 +210,8 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
     conflicts = tool_conflicts(program, uses_length_numbers=by_register)
     leaning = _leaning_operations(planned, number_setting(job.settings, "max_tilt"))
-    found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program), *leaning]
+    sideways = sideways_problems(toolpaths) if job.settings.get("drills_sideways") != "allowed" else []
+    found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program), *leaning, *sideways]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))

@@ -9,8 +9,9 @@ from dataclasses import replace
 from functools import partial
 
 from trunnion.errors import Problem, Severity, warning
+from trunnion.jobs.observer import Untold
 from trunnion.jobs.post.expected_values import Expectation
-from trunnion.jobs.post.forced_program import Untold, write_forced
+from trunnion.jobs.post.forced_program import write_forced
 from trunnion.jobs.post.machining_times import operation_times
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram
@@ -20,6 +21,7 @@ from trunnion.messages import Wording
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.verification import Verification, rows_from_starts, verify, without_columns
+from trunnion.verification.skip_meanings import with_other_meanings
 
 
 def prove(posting: Posting, written: WrittenProgram, expected: Expectation) -> Proof:
@@ -44,9 +46,17 @@ def _prove_run(
     if run is not None:
         job, tolerances = posting.job, expected.tolerances
         found = verify(run, posting.toolpaths, tolerances=tolerances, settings=expected.settings, columns=columns)
+        found = with_other_meanings(found, partial(_skipping, posting, expected), has_toolpaths=True)
         found = named_verification(found, posting.target.name, job.beside)
         found = replace(found, operations=rows_from_starts(run, found.operations, starts), clamping=job.clamping)
     return _simulate(posting, run, found)
+
+
+def _skipping(posting: Posting, expected: Expectation, run: Run, compared: bool) -> Verification:
+    """Return the proof of the program with its blocks skipped."""
+    settings = replace(expected.settings, without_skipped=compared)
+    toolpaths, limits = (posting.toolpaths, expected.tolerances) if compared else ((), None)
+    return verify(run, toolpaths, tolerances=limits, settings=settings, columns=False)
 
 
 def _simulate(posting: Posting, run: Run | None, found: Verification | None) -> Proof:

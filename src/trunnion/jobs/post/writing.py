@@ -132,7 +132,12 @@ def named_verification(found: Verification, name: str, kept: Iterable[Path]) -> 
     names = _names(found.run, name) | {str(file): str(file) for file in kept} | {"": ""}
 
     def named(check: Check) -> Check:
-        return replace(check, places=tuple(replace(each, nc_file=names[each.nc_file]) for each in check.places))
+        return replace(
+            check,
+            places=tuple(
+                replace(each, nc_file=names.get(each.nc_file, Path(each.nc_file).name)) for each in check.places
+            ),
+        )
 
     return replace(found, program=name, run=named_run(found.run, name), checks=tuple(map(named, found.checks)))
 
@@ -143,7 +148,9 @@ def named_run(run: Run, name: str) -> Run:
     """
     names = _names(run, name)
     told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
-    return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)
+    files = tuple(names[file] for file in run.files)
+    skipped = tuple(replace(each, run=named_run(each.run, name)) for each in run.skipped)
+    return replace(run, files=files, diagnostics=told, skipped=skipped)
 
 
 def _names(run: Run, name: str) -> dict[str, str]:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.inputs.simulation_input import SetupInput
-from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.forced_program import Untold
+from trunnion.jobs.observer import Observer, Untold
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Project

@@ -238,6 +238,7 @@ def _check(
         summary = broken[0].what
     elif key == "removal":
         summary = f"{found.removed:.0f} mm³ removed by turning cutters at feed, and by nothing else"
+        summary += f"; {found.meanings_line}" if found.meanings else ""
     elif found.pairs:
         summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
         summary += f"; {found.not_checked_line}" if found.not_checked else ""
@@ -269,4 +270,5 @@ def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
 
 
 def _words(finding: SimulationFinding) -> str:
-    return f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
+    words = f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
+    return f"{finding.skipped}: {words}" if finding.skipped else words

@@ -56,6 +56,8 @@ class SimulationResult:
     not_checked  why collisions with the machine were not checked, in words; empty: they were
     not_measured  values of the definition that the distances of bodies stand on, though nobody has measured them
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
+    meanings   which blocks were skipped (``/``) in further runs, in words: what these found is among the findings; none
+               where no block may be skipped. All other figures but ``gouge``, the worst, are those with none skipped
     setup      its name, where this is one of several
     setups     the results of each, where there are several
     tools      their bodies by the words of the program; of several set-ups those of the last
@@ -87,6 +89,7 @@ class SimulationResult:
     seconds: float
     simulation: Annotated[Simulation, NOT_DATA]
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
+    meanings: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
 
@@ -107,7 +110,12 @@ class SimulationResult:
             errors = sum(remark.severity is Severity.ERROR for remark in self.remarks)
             parts = [counted(len(self.findings), "finding"), *([counted(errors, "error")] if errors else [])]
             found = f"{' and '.join(parts)}: the program must not run"
-        return "; ".join(filter(None, (found, self.not_checked_line)))
+        return "; ".join(filter(None, (found, self.meanings_line, self.not_checked_line)))
+
+    @property
+    def meanings_line(self) -> str:
+        """In which meanings of blocks that may be skipped it was simulated; empty: there are none."""
+        return f"simulated with no block skipped and {', '.join(self.meanings)}" if self.meanings else ""
 
     @property
     def not_checked_line(self) -> str:

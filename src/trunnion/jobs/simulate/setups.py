@@ -6,6 +6,7 @@ Units:  mm, degrees.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -62,7 +63,6 @@ def prepare_setup(
     runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
     _check_programs(runs, machine)
     remarks += _without_motion(runs)
-    remarks += _block_skips(runs)
     remarks += _cuts_from_unknown_places(runs)
     for program in programs:
         if not isinstance(program, Run):
@@ -79,6 +79,24 @@ def prepare_setup(
         machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
         given.until, RegisterValue(given.radius_register or register_value_of(machine)),
     )  # fmt: skip
+
+
+def skipping_setup(
+    own: PreparedSetup, given: SetupInput, levels: frozenset[int], remarks: list[Problem]
+) -> PreparedSetup:
+    """Return a set-up that was read as it is while some switches of block skip are on.
+
+    Raises ``InputError`` if its programs cut with no tool that is known then.
+    """
+    rapid_feed = rapid_feed_of(own.machine)
+    runs = tuple(restore_rapids(run.with_skips(levels), rapid_feed) for run in own.runs)
+    remarks += _without_motion(runs)
+    remarks += _cuts_from_unknown_places(runs)
+    if given.work_offset is not None:
+        remarks += _other_offsets(runs, given.work_offset, own.machine)
+    if NO_CALL not in own.tools and any(_cuts_without_call(run) for run in runs):
+        raise InputError(argument_problem("tools", Wording("SIM150", "cuts_before_first_tool")))
+    return replace(own, runs=runs, until_line=own.line_of_end(), until=None)
 
 
 def _tools(runs: Sequence[Run], known: KnownTools) -> dict[str, ToolShape]:
@@ -122,15 +140,6 @@ def _without_motion(runs: Sequence[Run]) -> list[Problem]:
     return [
         Problem(run.files[0], 0, Wording("SIM148", "nothing_moves"), severity=severity) for run in runs if not len(run)
     ]
-
-
-def _block_skips(runs: Sequence[Run]) -> Iterator[Problem]:
-    """Yield a warning of each program with blocks that the operator may skip."""
-    for run in runs:
-        lines = [event.line for event in run.events if event.kind == "block_skip"]
-        if lines:
-            wording = Wording("SIM149", "blocks_may_be_skipped", count=len(lines))
-            yield Problem(run.files[0], lines[0], wording, severity=Severity.WARNING)
 
 
 def _cuts_from_unknown_places(runs: Sequence[Run]) -> Iterator[Problem]:

@@ -1,7 +1,8 @@
 """Set-ups that are simulated one after another: the stock that one leaves is that of the next."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import Final, TypeAlias
 
 from trunnion import readers, simulation
@@ -10,7 +11,8 @@ from trunnion.jit import compile_ahead
 from trunnion.jobs.inputs.arguments import check_choice, check_whole
 from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.jobs.inputs.simulation_input import SimulationInput, told_with_places
-from trunnion.jobs.observer import Observer
+from trunnion.jobs.observer import Observer, Untold
+from trunnion.jobs.simulate.meanings import in_other_meanings
 from trunnion.jobs.simulate.result import SimulationResult, join_results, make_result
 from trunnion.jobs.simulate.setups import prepare_setup
 from trunnion.machines.forward import tool_axis_rows
@@ -44,13 +46,41 @@ def simulate_setups(given: SimulationInput, observer: Observer, shares: JoinedSh
         if shares is not None:
             _check_sharing(given)
         steps, shape, setups, remarks = _prepared(given, observer, shares)
-        results: list[SimulationResult] = []
-        for own, told in zip(setups, remarks, strict=True):
-            result = make_result(steps.follow(own, shape, told))
-            results.append(result)
-            if given.stop_at == "first" and result.findings:
-                break
+        stops = given.stop_at == "first"
+        results = list(_cut(steps, shape, setups, remarks, stops=stops))
+        if not (stops and results[-1].findings):
+            again = partial(_cut_again, steps, Untold(observer), shape, stops=stops)
+            results = in_other_meanings(results, list(zip(given.setups, setups, strict=True)), again, observer)
         return join_results(results)
+
+
+def _cut(
+    steps: SetupSteps,
+    shape: StockShape,
+    setups: Sequence[PreparedSetup],
+    remarks: Sequence[list[Problem]],
+    *,
+    stops: bool,
+) -> Iterator[SimulationResult]:
+    """Yield what cutting in each set-up comes to, up to the one with the first finding if it ``stops`` there."""
+    for own, told in zip(setups, remarks, strict=True):
+        result = make_result(steps.follow(own, shape, told))
+        yield result
+        if stops and result.findings:
+            return
+
+
+def _cut_again(
+    steps: SetupSteps,
+    observer: Observer,
+    shape: StockShape,
+    setups: Sequence[PreparedSetup],
+    remarks: Sequence[list[Problem]],
+    *,
+    stops: bool,
+) -> Iterator[SimulationResult]:
+    """Yield what cutting the stock from the beginning comes to in other set-ups."""
+    return _cut(steps.again(observer), shape, setups, remarks, stops=stops)
 
 
 def cut_setup_share(given: SimulationInput, share: Share, observer: Observer) -> bytes:

@@ -50,6 +50,7 @@ class TwinArguments(SetUpArguments, total=False):
     host: str
     port: int
     adapter_port: int | None
+    agent_port: int | None
     users: FilePath | None
     ready: "Callable[[TwinAddresses], None] | None"
 
@@ -68,7 +69,8 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
     hold                the program waits for a client to start it
     host                an address of this computer. On another than its own (127.0.0.1) clients need a user of
                         ``users``, and channels are encrypted; MTConnect stays on this computer
-    port, adapter_port  ports of OPC UA and MTConnect; 0: a free one. ``adapter_port`` None: no MTConnect
+    port, adapter_port  ports of OPC UA and of the MTConnect adapter; 0: a free one. ``adapter_port`` None: no adapter
+    agent_port          port of an MTConnect agent; 0: a free one. None: there is none
     users               file of users; None: that in the user's folder
     ready               is called with the addresses when clients can connect
 
@@ -93,11 +95,14 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
         adapter = None
         if adapter_port is not None:
             adapter = closing.enter_context(listen("MTConnect", "127.0.0.1", adapter_port, "adapter_port"))
+        agent, agent_port = None, found["agent_port"]
+        if agent_port is not None:
+            agent = closing.enter_context(listen("MTConnect", "127.0.0.1", agent_port, "agent_port"))
         program = twin_program(
             nc, machine=machine, subprograms=found["subprograms"], zero=found["zero"], tool_length=found["tool_length"]
         )
         playback = Playback(program.timed, speed=speed, loop=found["loop"])
-        ports = Ports(host, served, adapter)
+        ports = Ports(host, served, adapter, agent)
         ready = found["ready"] or _ignore
         run_until_ended(
             lambda: serve_program(

@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from typing import Final, Unpack
 
 from trunnion import readers
-from trunnion.errors import InputError, Problem
 from trunnion.jit import compile_ahead
 from trunnion.jobs.arguments import DiffArguments, taken
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, run_without_blocks
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.machines import Machine
-from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.verification import restore_rapids
 from trunnion.verification.comparison import Comparison, compare
@@ -76,10 +74,7 @@ def diff(
     limits = _INCH_TOLERANCE if coarse else tolerance
     result = compare(*runs, limits, axis_tolerance=tolerance, path=found["path"])
     for levels in other_meanings(*runs) if result.same else ():
-        others = (
-            _skipped(first, one, found["subprograms"], runs[0], levels),
-            _skipped(second, two, found["to_subprograms"], runs[1], levels),
-        )
+        others = (_skipping(runs[0], levels), _skipping(runs[1], levels))
         other = compare(*others, limits, axis_tolerance=tolerance, path=found["path"])
         if not other.same:
             return other.with_words(f"; {words_of(levels, *runs)}")
@@ -91,12 +86,7 @@ def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePa
     return restore_rapids(as_run(program, machine, subprograms, names), rapid_feed_of(machine))
 
 
-def _skipped(
-    program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], run: Run, levels: frozenset[int]
-) -> Run:
+def _skipping(run: Run, levels: frozenset[int]) -> Run:
     """Return the run of a program without its blocks of some levels; as it is where none of its blocks has them."""
-    if not any(event.kind == "block_skip" for event in run.events):
-        return run
-    if isinstance(program, Run):
-        raise InputError(Problem(run.files[0], 0, Wording("ARG170", "read_with_block_skip")))
-    return restore_rapids(run_without_blocks(program, machine, subprograms, levels), rapid_feed_of(machine))
+    other = run.with_skips(levels)
+    return run if other is run else restore_rapids(other, rapid_feed_of(run.machine))

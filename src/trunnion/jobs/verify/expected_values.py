@@ -29,7 +29,7 @@ def expected_values(
 
     Raises ``InputError`` if a work offset is none of the control's.
     """
-    every = _operation_settings(settings, machine)
+    every = _operation_settings(settings, machine, control)
     rapid_feed = float(settings["rapid_feed"]) if settings.get("rapid_feed") else None
     slower = None if rapid_feed is None or control is None else rapid_feed - control.formats["feed"].five_axis.digit
     return ExpectedValues(
@@ -38,11 +38,13 @@ def expected_values(
         edge=every.edge,
         radius_offset=every.radius_offset,
         register_holds=RegisterValue(settings.get(RADIUS_REGISTER_SETTING) or RegisterValue.UNKNOWN),
-        by_operation={name: _operation_settings(own, machine) for name, own in own_settings.items()},
+        last_edge=every.last_edge,
+        by_operation={name: _operation_settings(own, machine, control) for name, own in own_settings.items()},
         swivel_data=tuple(
             {each["swivel_data"] for each in (settings, *own_settings.values()) if "swivel_data" in each}
         ),
         rapid_feed=rapid_feed,
+        stop_between=settings.get("stop_between") == "on",
         below_rapid_feed=slower,
         coolant=control.coolant if control else {},
         rigid_tap=m_code(settings.get("rigid_tap", "")),
@@ -52,9 +54,11 @@ def expected_values(
     )
 
 
-def _operation_settings(settings: Mapping[str, str], machine: Machine) -> OperationSettings:
+def _operation_settings(settings: Mapping[str, str], machine: Machine, control: Control | None) -> OperationSettings:
     """Tool, work offset, edge and register of the radius as settings give them."""
     offset = work_offset_setting(settings["work_offset"], machine) if "work_offset" in settings else None
     edge = int(settings["edge"]) if "edge" in settings else None
     radius_offset = int(settings.get("radius_offset") or 0)
-    return OperationSettings(settings.get("tool", "").strip('"'), offset, edge, radius_offset)
+    by_register = control is not None and settings.get("edge_from") == "adjust"
+    last_edge = int(control.setting_rule("edge").at_most or 0) if control and by_register else 0
+    return OperationSettings(settings.get("tool", "").strip('"'), offset, edge, radius_offset, last_edge)

@@ -1,7 +1,8 @@
 """Verification of any NC program, with or without the CL files that it was made from."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from typing import Unpack
 
 from trunnion import readers, verification
@@ -11,7 +12,7 @@ from trunnion.jobs import kernels
 from trunnion.jobs.arguments import VerifyArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.control_settings import written_control
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, run_without_blocks
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer, Remembering
 from trunnion.jobs.verify.arguments import checked
@@ -20,8 +21,8 @@ from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine, read_prog
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
-from trunnion.verification import Check, Verification
-from trunnion.verification.skip_meanings import other_meanings, words_of, worse_checks
+from trunnion.verification import Verification
+from trunnion.verification.skip_meanings import with_other_meanings
 
 
 def verify(
@@ -127,8 +128,7 @@ def verify(
         read.run, read.toolpaths, settings=expected(on, read, found), tolerances=tolerances(on, read, found),
         columns=found["columns"],
     )  # fmt: skip
-    if not (read.toolpaths or isinstance(nc, Run)):  # CL files say which blocks may be skipped
-        proof = replace(proof, checks=tuple(worse_checks(proof.checks, _other_meanings(nc, on, read, found))))
+    proof = with_other_meanings(proof, partial(_skipping, on, read, found), has_toolpaths=bool(read.toolpaths))
     proof = replace(proof, clamping=read.clamping)
     observer.problems(_without_motion(read.run))
     proof = replace(proof, remarks=tuple(observer.found))
@@ -137,16 +137,12 @@ def verify(
     return verification.with_recording(proof, recording, found["recorded_tolerance"])
 
 
-def _other_meanings(
-    nc: FilePath, on: VerifiedMachine, read: ReadProgram, given: VerifyArguments
-) -> Iterator[tuple[str, Sequence[Check]]]:
-    """Yield the checks of the program with its blocks skipped, each with the words for it."""
-    for levels in other_meanings(read.run):
-        run = run_without_blocks(nc, on.machine, given["subprograms"], levels)
-        proof = verification.verify(
-            run, [], settings=expected(on, replace(read, run=run), given), tolerances=None, columns=False
-        )
-        yield words_of(levels, read.run), proof.checks
+def _skipping(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments, run: Run, compared: bool) -> Verification:
+    """Return the proof of the program with its blocks skipped."""
+    read = replace(read, run=run, toolpaths=read.toolpaths if compared else [])
+    settings = replace(expected(on, read, given), without_skipped=compared)
+    limits = tolerances(on, read, given) if compared else None
+    return verification.verify(run, read.toolpaths, settings=settings, tolerances=limits, columns=False)
 
 
 def _set_up(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> VerifiedMachine:

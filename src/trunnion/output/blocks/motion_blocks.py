@@ -26,6 +26,7 @@ from trunnion.output.blocks.surface_normals import add_vector_lines, contact_row
 from trunnion.output.coordinates.approach_leg import ApproachLegs
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
+from trunnion.output.tool_calls import edge_setting
 
 #: The keys of phase comments in a definition.
 _PHASE_KEYS: Final = {
@@ -144,6 +145,8 @@ class MotionBlockWriter:
         """Return the family's words for the first motion block, as counts."""
         orientation = {"orientation": "vector" if self._orientation.uses_vectors else "angles"}
         settings = self.program.effective_settings(motion.operation) | orientation
+        if "edge" in settings:
+            settings["edge"] = edge_setting(self.program, motion.operation, self._length_register)
         words = self.family.first_block_words(motion, self._tool, self._length_register, settings)
         return {word: self.writer.to_count(word, value) for word, value in words.items()}
 

@@ -22,16 +22,17 @@ def dwell_seconds(event: Dwell, rpm: float | None) -> float:
 
 
 def dwell_text(amount: float, number_format: NumberFormat, factor: float = 1.0, unit: str = "s") -> str:
-    """Return a dwell as it is printed: an amount of ``unit``, of which each is printed as ``factor``.
+    """Return a dwell as it is printed: an amount of ``unit``, of which each is printed as ``factor``; one that is
+    shorter than the control can wait is as long as it can.
 
-    Raises ``UnsupportedFeatureError`` if it is longer or shorter than the control can wait.
+    Raises ``UnsupportedFeatureError`` if it is longer than the control can wait, or no time at all.
     """
     least, greatest = number_format.least / factor, number_format.greatest / factor
-    if not least <= amount <= greatest:
+    if not 0.0 < amount <= greatest:
         raise UnsupportedFeatureError(
             Wording("CTL420", "dwell_control_waits", amount=amount, unit=unit, least=least, greatest=greatest)
         )
-    return number_format.text(factor * amount)
+    return number_format.text(factor * max(amount, least))
 
 
 def cycle_dwell_seconds(cycle: Cycle, spindle: SpindleState | None) -> float:

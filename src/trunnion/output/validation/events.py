@@ -1,6 +1,7 @@
 """Events that a control cannot carry out, or not where they are."""
 
 from collections.abc import Collection
+from dataclasses import replace
 from typing import TypeGuard
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
@@ -37,10 +38,14 @@ def event_problems(
     if isinstance(event, Dwell):
         if event.revolutions and not rpm:
             return [Problem(*location, Wording("CTL420", "dwell_spindle_revolutions_while"))]
+        formats = control.number_formats(motion.three_axis)
         try:
-            control.family.dwell(event, rpm, control.number_formats(motion.three_axis))
+            blocks = control.family.dwell(event, rpm, formats)
         except UnsupportedFeatureError as why:
             return [Problem(*location, why.wording)]
+        longer = replace(event, amount=2.0 * event.amount)
+        if event.amount < 1.0 and control.family.dwell(longer, rpm, formats) == blocks:
+            return [warning(*location, Wording("CTL425", "dwell_rounded_up", amount=event.amount, block=blocks[-1]))]
     if isinstance(event, LoadTool) and (event.row > 0 or not motion.starts_operation):
         return [Problem(*location, Wording("CTL430", "tool_change_within"))]
     if isinstance(event, CutterComp) and event.side == "ON":

@@ -103,7 +103,7 @@ def rounding_problem(
     error = abs(printed - feed) / feed
     if error <= TOLD_ERROR:
         return None
-    refused = per_rev or error > REFUSED_ERROR
+    refused = error > REFUSED_ERROR
     return Problem(
         file,
         line,

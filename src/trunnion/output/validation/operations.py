@@ -143,11 +143,12 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
 
 
 def _prints_tolerance(program: Program, motion: Motion) -> bool:
-    """Whether the templates at the start of an operation print its tolerance, and have none of their own."""
+    """Whether the templates at the start of an operation print its tolerance, and no setting has another one."""
     names = "operation_start", f"approach_{program.template_suffix(motion)}"
     templates = [program.control.templates[name] for name in names if name in program.control.templates]
     fields = {name for template in templates for name, _ in template.fields()}
-    return "tolerance" in fields and "three_axis_tolerance" not in fields
+    own = "three_axis_tolerance" in fields and program.effective_setting("three_axis_tolerance", motion.operation)
+    return bool(fields & {"tolerance", "three_axis_tolerance"}) and not own
 
 
 def plane_entry_problems(program: Program, motion: Motion) -> list[Problem]:

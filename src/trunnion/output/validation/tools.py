@@ -9,7 +9,7 @@ from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import LoadTool, Operation, Tool
 from trunnion.output.program import Program
-from trunnion.output.tool_calls import ToolCalls
+from trunnion.output.tool_calls import ToolCalls, edge_setting
 
 #: Sizes of a tool that are compared, mm and degrees, with what two files may differ by when they write the same size:
 #: one in inches rounds to the fourth decimal.
@@ -69,7 +69,7 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
 
 def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Iterator[Problem]:
     """Yield a warning of a register for the length that the control does not take, nor the operation as its edge."""
-    edge, said = program.effective_setting("edge", operation), {"tool": load.number, "register": load.adjust}
+    edge, said = edge_setting(program, operation, load.adjust), {"tool": load.number, "register": load.adjust}
     if edge == str(load.adjust):
         return
     wording = (

@@ -13,6 +13,9 @@ REENTRY_CLEARANCE: Final = 0.5
 #: Heights are the same if they differ by no more than this, mm.
 SAME_HEIGHT: Final = 1e-9
 
+#: The peck before the last one goes on to the depth if no more than this is left, mm: programs may print no less.
+SHORTEST_REST: Final = 0.005
+
 #: The most pecks that a hole may have.
 _MOST_PECKS: Final = 10_000
 
@@ -66,7 +69,7 @@ def peck_depths(cycle: Cycle) -> list[float]:
     if decrement < 0.0 or shortest < 0.0:
         raise HoleCycleError(Wording("PLN620", "step_number_below"))
     depths = [min(peck, cycle.depth)]
-    while cycle.depth - depths[-1] > SAME_HEIGHT:
+    while cycle.depth - depths[-1] > SHORTEST_REST:
         peck = max(peck - decrement, min(shortest, peck))
         if not peck > 0.0:
             raise HoleCycleError(Wording("PLN610", "step_without_shortest"))

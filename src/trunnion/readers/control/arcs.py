@@ -175,6 +175,24 @@ def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
     return Arc(end, centre, normal / math.sqrt(size), radius, turns)
 
 
+def tangential(start: Floats, end: Floats, heading: Floats | None, plane: int, turns: int) -> Arc | None:
+    """Return the arc that goes on in a direction, (3,) of any length or None; None if the end lies straight ahead."""
+    chord = _chord(start, end, plane)
+    way = np.zeros(3) if heading is None else heading.copy()
+    way[plane] = 0.0
+    length = float(np.linalg.norm(way))
+    if length < SAME_POINT or float(np.linalg.norm(chord)) < SAME_POINT:
+        raise ArcError(Wording("NC320", "no_direction_circle_could_go"))
+    left = np.cross(normal_of(plane, False), way / length)
+    across = float(left @ chord)
+    if abs(across) < SAME_POINT * float(chord @ chord):
+        return None
+    centre = start + left * (float(chord @ chord) / (2.0 * across))
+    if float(np.abs(centre).max()) > MAX_RADIUS:
+        return None
+    return by_centre(start, end, centre, plane, across < 0.0, turns)
+
+
 def _chord(start: Floats, end: Floats, plane: int) -> Floats:
     chord = end - start
     chord[plane] = 0.0

@@ -154,6 +154,9 @@ class CoordinateControl(RowRecorder):
         """
         return _FrameChange(self, keep_base)
 
+    def end_contour(self) -> None:
+        """Do what is due where the contour is interrupted."""
+
     # Frames and planes
 
     @property
@@ -361,6 +364,7 @@ class _FrameChange:
 
     def __enter__(self) -> None:
         control = self._control
+        control.end_contour()
         control.resolutions += 1
         self._programmed = control.programmed_position.copy()
         self._base = dict(control._increment_base)

@@ -24,7 +24,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, AxisWord, PositionMode, RotaryTarget
-from trunnion.readers.control.coordinates import CoordinateControl
+from trunnion.readers.control.contour_control import ContourControl
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.preconditions import Preconditions
@@ -38,15 +38,15 @@ LINEAR: Final = 1
 #: How far tool axis and drilling axis may differ without a warning, as the length of their difference.
 MAX_DRILLING_AXIS_ERROR: Final = 2e-4
 
-#: Makes the circle of a block from its start and end, programmed positions; raises ``arcs.ArcError``.
-Circle = Callable[[Floats, Floats], arcs.Arc]
+#: Makes the circle of a block from its start and end, programmed positions; None: it is a line. Raises ``ArcError``.
+Circle = Callable[[Floats, Floats], arcs.Arc | None]
 
 
 #: G93: F is one over the minutes of a block.
 _INVERSE_TIME: Final = 93
 
 
-class VirtualControl(CoordinateControl, ABC):
+class VirtualControl(ContourControl, ABC):
     """A control that executes motions on a machine.
 
     preconditions  what the program must say before the tool moves at the part
@@ -67,8 +67,6 @@ class VirtualControl(CoordinateControl, ABC):
         self.shortest = shortest
         self.compensates_in_space = False
         self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
-        # Rotary positions, and the map (3, 4) from slide positions to the tip at these positions.
-        self._slide_map: tuple[float, float, Floats] | None = None
 
     def _fault_at(self, fault: Wording, line: int) -> None:
         """Note an error at a line of the program, or at the present one for 0."""
@@ -210,8 +208,8 @@ class VirtualControl(CoordinateControl, ABC):
         if circle is not None and within_limits(end):
             try:
                 arc = circle(self.programmed_position.copy(), end)
-                end = arc.end
-                gap = arcs.gap_of_turn(self.programmed_position, arc)
+                end = end if arc is None else arc.end
+                gap = 0.0 if arc is None else arcs.gap_of_turn(self.programmed_position, arc)
                 if gap:
                     self.note(Wording("NC323", "end_beside_start", gap=gap), Severity.WARNING)
             except arcs.ArcError as error:
@@ -220,12 +218,7 @@ class VirtualControl(CoordinateControl, ABC):
         if vector is not None and rotary.bits:
             self.note(Wording("NC216", "rotary_words_vector_block_vector"), Severity.ERROR)
             rotary = NO_ROTARY
-        turns = vector is not None or rotary.bits != 0
-        placed = None if arc is None else self._arc_in_workpiece(arc, turns and not self.tip_programmed)
-        row = self.row
-        added = self.add_row(self._line_kind if placed is None else Kind.ARC, end, rotary, bits | written, vector)
-        if arc is not None and placed is not None and added:
-            self.add_arc(row, *placed, arc.turns)
+        self.add_element(self._line_kind, end, arc, rotary, bits | written, vector)
 
     def _end_position(self, axes: Mapping[str, AxisWord]) -> tuple[Floats, int]:
         """Return the programmed end of a block, (3,) mm, and the bits of the words X, Y and Z."""
@@ -277,6 +270,7 @@ class VirtualControl(CoordinateControl, ABC):
 
         bits   ``ProgrammedWord`` bits of the words besides rotary ones
         """
+        self.end_contour()
         self.resolve_rows()
         tip_programmed, position_map = self.tip_programmed, self.position_map
         self.tip_programmed, self.position_map = False, affine_matrix(np.eye(3), np.zeros(3))
@@ -298,6 +292,7 @@ class VirtualControl(CoordinateControl, ABC):
 
         ``bits`` are the ``ProgrammedWord`` bits of its words.
         """
+        self.end_contour()
         self.preconditions.report_motion()
         for axis in range(3):
             self._increment_base.pop(axis, None)
@@ -310,43 +305,11 @@ class VirtualControl(CoordinateControl, ABC):
             poles = poles @ slides[:, :3].T + slides[:, 3]
         self.add_spline(SplineRows(first, self.row - 1, spline._replace(poles=poles)))
 
-    # Circles
-
-    def _arc_in_workpiece(self, arc: arcs.Arc, axes_turn: bool) -> tuple[Floats, Floats, float] | None:
-        """Return centre, normal and radius in the workpiece frame; None, with a diagnostic, if it is no circle."""
-        if axes_turn:
-            self.note(Wording("NC321", "circle_of_axes_turns"), Severity.WARNING)
-        slide_map = None if self.tip_programmed else self._slides_to_tip()
-        if self._arc_map is None:
-            linear, shift = self.position_map[:, :3], self.position_map[:, 3]
-            if slide_map is not None:
-                linear, shift = slide_map[:, :3] @ linear, slide_map[:, :3] @ shift + slide_map[:, 3]
-            self._arc_map = arcs.ArcMap.of(linear, shift), self.frame.keeps_circles
-        arc_map, keeps_circles = self._arc_map
-        mapped = arc_map.map_arc(arc) if keeps_circles else arc_map.map_in_plane(arc)
-        if mapped is None:
-            self.note(Wording("NC320", "circle_under_unequal_scales_ellipse"), Severity.ERROR)
-        return mapped
-
-    def _slides_to_tip(self) -> Floats:
-        """Return the map (3, 4) from slide positions to the tip, with the rotary axes where they are."""
-        if self._rotary_unresolved:
-            self.resolve_rows()
-        first, second = (float(self.current_joints[column]) for column in self.machine.rotary)
-        if self._slide_map is None or self._slide_map[:2] != (first, second):
-            joints = np.zeros((4, 5))
-            joints[:, list(self.machine.rotary)] = first, second
-            for axis, column in enumerate(self._slides):
-                joints[axis + 1, column] = 1.0
-            tip = forward(self.machine, joints)[0]
-            self._slide_map = first, second, affine_matrix((tip[1:] - tip[0]).T, tip[0])
-            self._arc_map = None
-        return self._slide_map[2]
-
     # Drilling
 
     def drill(self, motions: Sequence[HoleMotion], work: SpindleWork | None = None) -> None:
         """Execute the motions of a drilling cycle at the present position; ``work``: the cycle drives the spindle."""
+        self.end_contour()
         self.preconditions.report_motion()
         hole = self.programmed_position.copy()
         feed, first_row = self.programmed_feed, self.row

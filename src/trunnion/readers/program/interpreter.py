@@ -145,6 +145,7 @@ class Interpreter(ABC, Generic[A]):
             main.close()
             for source, _ in self._sources.values():
                 source.close()
+        self.control.end_contour()
         self.control.resolve_rows()
         diagnostics = list(self._diagnostics)
         if self._unlisted:
@@ -187,7 +188,7 @@ class Interpreter(ABC, Generic[A]):
             self._source_of_line = source
             if self._lines_without_scan:
                 self._lines_without_scan -= 1
-            elif not control.preconditions and self._may_scan(source):
+            elif not (control.preconditions or control.awaits_element) and self._may_scan(source):
                 self._lines_without_scan = _LINES_WITHOUT_SCAN if self._scan(source) < _FEW_BLOCKS else 0
                 if not source.fill():
                     continue

@@ -1,6 +1,6 @@
 """How a program is run."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -13,7 +13,8 @@ class RunOptions:
     subprograms  the files that it may call, by their names. No others are looked for: calling a missing one is an error
                  among ``Run.diagnostics``
     step_limit   blocks that loops and calls may execute, besides once through each file
-    skip         leave out blocks that begin with ``/``: all of them, or those of some levels
+    skip         leave out blocks that begin with ``/``: all of them, or those of some levels. False: none, and the run
+                 has what the program does with the switches on besides (``Run.skipped``)
     shortest     how endless rotary axes reach plain words: True by the shorter way, False within the displayed turn,
                  None as the control does it. Axes whose output has all turns take the number as it is, except with True
     encoding     of names and texts, as Python calls it; empty: what is likeliest for each line. None: what the
@@ -30,6 +31,13 @@ class RunOptions:
     def skips(self, level: int) -> bool:
         """Whether blocks of a level of block skip are left out."""
         return self.skip if isinstance(self.skip, bool) else level in self.skip
+
+
+def skip_meanings(levels: Iterable[object]) -> list[frozenset[int]]:
+    """Return the switches that are on in each other meaning of a program: all that its blocks use, and each alone."""
+    used = sorted({int(level) for level in levels if isinstance(level, int | float)})
+    every = [frozenset(used)] if used else []
+    return every + [frozenset({level}) for level in used] if len(used) > 1 else every
 
 
 #: Without subprograms, as the control does it.

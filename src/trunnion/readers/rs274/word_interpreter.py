@@ -51,7 +51,7 @@ class WordInterpreter(Rs274Interpreter[A]):
         """Read the words of a block as those of the family."""
         block = read_block(reader, self._report_repeated_word)
         for word in self.control.own_words.translate(block):
-            self._note(Wording("NC211", "unknown_word", word=word), Severity.ERROR)
+            self._note(Wording("NC211", "unknown_own_word", word=word), Severity.ERROR)
         self._check_groups(block)
         return block
 
@@ -148,7 +148,7 @@ class WordInterpreter(Rs274Interpreter[A]):
         if word.text[0] == "M" and self.has_builders_words:
             self.control.add_builders_word("M", float(word.code))
         else:
-            self._note(Wording("NC211", "unknown_word", word=word.text), Severity.ERROR)
+            self._note(Wording("NC211", "unknown_own_word", word=word.text), Severity.ERROR)
 
     def _report_values(self, words: Sequence[Word], block: Block) -> None:
         """Report letters with values that a word cannot have."""

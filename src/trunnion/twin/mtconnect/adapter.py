@@ -6,7 +6,6 @@ values first.
 """
 
 import asyncio
-import math
 import socket
 from collections.abc import Mapping
 from contextlib import suppress
@@ -14,9 +13,9 @@ from datetime import UTC, datetime
 from typing import Final
 
 from trunnion.twin.mtconnect.device import device_name
+from trunnion.twin.mtconnect.observations import UNAVAILABLE, Condition, Observations, stamp_text
 from trunnion.twin.mtconnect.shdr import shdr_line
-from trunnion.twin.playback import Playback, PlayState
-from trunnion.twin.snapshots import Snapshots, TwinProgram, displayed
+from trunnion.twin.snapshots import TwinProgram
 
 #: Milliseconds between two questions of an agent.
 HEARTBEAT: Final = 10_000
@@ -28,22 +27,8 @@ _LONGEST_LINE: Final = 1024
 _WAITED_FOR: Final = 256 * 1024
 _MOST_UNREAD: Final = 8 * 1024 * 1024
 
-#: EXECUTION of MTConnect.
-_EXECUTION: Final = {
-    PlayState.READY: "READY",
-    PlayState.RUNNING: "ACTIVE",
-    PlayState.HELD: "FEED_HOLD",
-    PlayState.STOPPED: "PROGRAM_STOPPED",
-    PlayState.ENDED: "PROGRAM_COMPLETED",
-}
-
 #: Seconds in which agents take the last line.
 _FAREWELL: Final = 1.0
-
-UNAVAILABLE: Final = "UNAVAILABLE"
-
-#: Level, code, severity, qualifier and text of a condition that is well.
-_NORMAL: Final = ("NORMAL", "", "", "", "")
 
 
 class _Agent:
@@ -67,21 +52,15 @@ class _Agent:
             self.written += len(text)
 
 
-class MTConnectAdapter:
+class MTConnectAdapter(Observations):
     """Tells any number of agents what the machine shows."""
 
     def __init__(self, program: TwinProgram, listening: socket.socket) -> None:
-        self._program, self._listening = program, listening
+        super().__init__(program)
+        self._listening = listening
         self._agents: set[_Agent] = set()
         self._tasks: set[asyncio.Task[None]] = set()
         self._server: asyncio.Server | None = None
-        self._values: dict[str, str] = {}
-        self._last = datetime.fromtimestamp(0.0, UTC)
-        self._conditions: dict[str, tuple[str, ...]] = {"system": _NORMAL}
-        for axis in program.machine.axes:
-            self._conditions[f"{axis.name}_travel"] = _NORMAL
-        fixed = {"avail": "AVAILABLE", "estop": "ARMED", "mode": "AUTOMATIC", "main_program": program.name}
-        self._values |= fixed
 
     @property
     def address(self) -> str:
@@ -97,7 +76,7 @@ class MTConnectAdapter:
         """Tell agents that the machine is not there any more, and leave them."""
         if self._server is not None:
             self._server.close()
-        self._send(_line(self._in_order(datetime.now(UTC)), {"avail": UNAVAILABLE}))
+        self.tell(self.in_order(datetime.now(UTC)), {"avail": UNAVAILABLE})
         for agent in list(self._agents):
             agent.writer.close()
         if self._tasks:
@@ -107,40 +86,19 @@ class MTConnectAdapter:
         if self._tasks:
             await asyncio.wait(self._tasks)
 
-    # What the twin tells
+    # What agents are told
 
-    async def show(self, snapshots: Snapshots, stamps: list[datetime], microseconds: list[int]) -> None:
-        """Send what has changed from each time to the next."""
-        lines = []
-        for k, stamp in enumerate(stamps):
-            changed = self._changed(self._values_at(snapshots, k))
-            if changed:
-                lines.append(_line(self._in_order(stamp), changed))
-        self._send("".join(lines))
+    def tell(self, stamp: datetime, changed: Mapping[str, str]) -> None:
+        """Send values that have changed."""
+        self._send(_line(stamp, changed))
 
-    async def changed(self, playback: Playback, wall: float) -> None:
-        """Send what the program does now."""
-        now = {
-            "exec": _EXECUTION[playback.state],
-            "feed_override": f"{playback.override:g}",
-            "part_count": str(playback.completed),
-        }
-        stamp = datetime.fromtimestamp(wall, UTC)
-        if changed := self._changed(now):
-            self._send(_line(self._in_order(stamp), changed))
+    def tell_condition(self, stamp: datetime, key: str, condition: Condition) -> None:
+        """Send a condition."""
+        self._send(shdr_line(stamp_text(stamp), key, *condition))
 
-    async def message(self, text: str, stamp: datetime) -> None:
+    def tell_message(self, stamp: datetime, text: str) -> None:
         """Send a message of the program."""
-        self._send(shdr_line(_stamp(self._in_order(stamp)), "message", "", text))
-
-    async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
-        """Send an alarm of the machine: a fault of the axis that it names, or of the system."""
-        key = self._condition_of(identifier)
-        self._condition(stamp, key, ("FAULT", identifier, "", "", text))
-
-    async def alarm_over(self, identifier: str, text: str, stamp: datetime) -> None:
-        """Send that a fault is over."""
-        self._condition(stamp, self._condition_of(identifier), _NORMAL)
+        self._send(shdr_line(stamp_text(stamp), "message", "", text))
 
     def lagging(self) -> dict[object, int]:
         """Agents that have not taken what was sent, and how much they have taken so far."""
@@ -182,71 +140,16 @@ class MTConnectAdapter:
                 patience = 3.0 * HEARTBEAT / 1000.0
 
     def _everything(self) -> str:
-        now = self._last if self._last.timestamp() else datetime.now(UTC)  # as old as what was told last
-        head = f"* shdrVersion: 2.0\n* adapterVersion: 2.0\n* device: {device_name(self._program.machine)}\n"
-        conditions = "".join(shdr_line(_stamp(now), key, *told) for key, told in self._conditions.items())
-        return head + _line(now, self._values) + conditions
-
-    def _in_order(self, stamp: datetime) -> datetime:
-        """Return a time that is not before what was told last."""
-        self._last = max(stamp, self._last)
-        return self._last
+        now = self.last if self.last.timestamp() else datetime.now(UTC)  # as old as what was told last
+        head = f"* shdrVersion: 2.0\n* adapterVersion: 2.0\n* device: {device_name(self.program.machine)}\n"
+        conditions = "".join(shdr_line(stamp_text(now), key, *told) for key, told in self.conditions.items())
+        return head + _line(now, self.values) + conditions
 
     def _send(self, text: str) -> None:
-        if text:
-            data = text.encode()
-            for agent in self._agents:
-                agent.send(data)
-
-    # Values
-
-    def _changed(self, values: Mapping[str, str]) -> dict[str, str]:
-        changed = {key: value for key, value in values.items() if self._values.get(key) != value}
-        self._values |= changed
-        return changed
-
-    def _condition_of(self, identifier: str) -> str:
-        """Return the condition of the axis that an alarm names, else that of the system."""
-        kind, _, axis = identifier.partition(" ")
-        return f"{axis}_{kind}" if f"{axis}_{kind}" in self._conditions else "system"
-
-    def _condition(self, stamp: datetime, key: str, told: tuple[str, ...]) -> None:
-        self._conditions[key] = told
-        self._send(shdr_line(_stamp(self._in_order(stamp)), key, *told))
-
-    def _values_at(self, snapshots: Snapshots, k: int) -> dict[str, str]:
-        block, machine = snapshots.blocks[k], self._program.machine
-        rpm = float(snapshots.rpm[k])
-        values = {
-            "program": block.file,
-            "block": block.blocks[1],
-            "line": str(block.line),
-            "block_number": block.number or UNAVAILABLE,
-            "tool": block.tool or UNAVAILABLE,
-            "feed": _number(float(snapshots.feed[k])),
-            "tip": " ".join(map(_number, snapshots.tip[k].tolist())),
-            "S_actual": _number(abs(rpm)),
-            "S_commanded": _number(abs(float(snapshots.told_rpm[k]))),
-            "S_direction": "CLOCKWISE" if rpm > 0.0 else "COUNTER_CLOCKWISE" if rpm < 0.0 else "NONE",
-        }
-        if UNAVAILABLE in values["tip"]:
-            values["tip"] = UNAVAILABLE
-        for column, axis in enumerate(machine.axes):
-            values[f"{axis.name}_actual"] = _number(
-                float(displayed(machine, column, snapshots.joints[k : k + 1, column])[0])
-            )
-            values[f"{axis.name}_state"] = "TRAVEL" if snapshots.moving[k, column] else "STOPPED"
-        return values
+        data = text.encode()
+        for agent in self._agents:
+            agent.send(data)
 
 
 def _line(stamp: datetime, values: Mapping[str, str]) -> str:
-    return shdr_line(_stamp(stamp), *(part for pair in values.items() for part in pair))
-
-
-def _stamp(moment: datetime) -> str:
-    return moment.strftime("%Y-%m-%dT%H:%M:%S.%fZ")
-
-
-def _number(value: float) -> str:
-    """Return a number from which the same one is read; what is not known is unavailable."""
-    return repr(value + 0.0) if math.isfinite(value) else UNAVAILABLE
+    return shdr_line(stamp_text(stamp), *(part for pair in values.items() for part in pair))

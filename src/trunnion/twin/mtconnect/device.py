@@ -6,15 +6,16 @@ from datetime import UTC, datetime
 from typing import Final
 
 from trunnion.machines import Machine
+from trunnion.twin.mtconnect.shdr import shown_text
 from trunnion.twin.snapshots import TwinProgram
 
 _NAMESPACE: Final = "urn:mtconnect.org:MTConnectDevices:1.6"
 _SCHEMA: Final = f"{_NAMESPACE} http://schemas.mtconnect.org/schemas/MTConnectDevices_1.6.xsd"
 
 #: A data item: key of the adapter, category, type, and further attributes.
-_Item = tuple[str, str, str, dict[str, str]]
+Item = tuple[str, str, str, dict[str, str]]
 
-_PATH_ITEMS: Final[tuple[_Item, ...]] = (
+_PATH_ITEMS: Final[tuple[Item, ...]] = (
     ("exec", "EVENT", "EXECUTION", {}),
     ("mode", "EVENT", "CONTROLLER_MODE", {}),
     ("program", "EVENT", "PROGRAM", {"subType": "ACTIVE"}),
@@ -48,7 +49,6 @@ def device_name(machine: Machine) -> str:
 
 def device_xml(program: TwinProgram) -> str:
     """Return the device model of the machine of a program, as an agent reads it from its file of devices."""
-    machine = program.machine
     root = ET.Element(
         "MTConnectDevices",
         {
@@ -62,22 +62,26 @@ def device_xml(program: TwinProgram) -> str:
         root, "Header", creationTime=_text(datetime(2026, 1, 1, tzinfo=UTC)), sender="trunnion", instanceId="1",
         version="1.6.0.0", assetBufferSize="1", assetCount="0", bufferSize="1",
     )  # fmt: skip
-    name = device_name(machine)
-    device = ET.SubElement(ET.SubElement(root, "Devices"), "Device", id="d", uuid=f"trunnion-twin-{name}", name=name)
-    description = ET.SubElement(device, "Description", manufacturer="Trunnion", model=machine.name)
-    description.text = f"Twin of {machine.name}"
-    _items(
-        device, "d",
-        [("avail", "EVENT", "AVAILABILITY", {})],
-    )  # fmt: skip
+    ET.SubElement(root, "Devices").append(device_model(program))
+    ET.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def device_model(program: TwinProgram, further: Iterable[Item] = ()) -> ET.Element:
+    """Return the device, its components and data items; ``further``: items that it has besides."""
+    machine = program.machine
+    name, shown = device_name(machine), shown_text(machine.name)
+    device = ET.Element("Device", id="d", uuid=f"trunnion-twin-{name}", name=name)
+    description = ET.SubElement(device, "Description", manufacturer="Trunnion", model=shown)
+    description.text = f"Twin of {shown}"
+    _items(device, "d", [("avail", "EVENT", "AVAILABILITY", {}), *further])
     components = ET.SubElement(device, "Components")
     _axes(components, machine)
     controller = ET.SubElement(components, "Controller", id="c", name="controller")
     _items(controller, "c", [("estop", "EVENT", "EMERGENCY_STOP", {}), ("system", "CONDITION", "SYSTEM", {})])
     path = ET.SubElement(ET.SubElement(controller, "Components"), "Path", id="p", name="path")
     _items(path, "p", _PATH_ITEMS)
-    ET.indent(root)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+    return device
 
 
 def _axes(components: ET.Element, machine: Machine) -> None:
@@ -90,7 +94,7 @@ def _axes(components: ET.Element, machine: Machine) -> None:
         units = {"subType": "ACTUAL", "units": measured[1], "nativeUnits": measured[1]}
         system = "MACHINE" if machine.is_placed(column) else "WORK"
         where = {} if axis.is_rotary else {"coordinateSystem": system}
-        items: list[_Item] = [
+        items: list[Item] = [
             (f"{name}_actual", "SAMPLE", measured[0], units | where),
             (f"{name}_state", "EVENT", "AXIS_STATE", {}),
             (f"{name}_travel", "CONDITION", "POSITION", {}),
@@ -108,7 +112,7 @@ def _axes(components: ET.Element, machine: Machine) -> None:
     )  # fmt: skip
 
 
-def _items(of: ET.Element, prefix: str, items: Iterable[_Item]) -> None:
+def _items(of: ET.Element, prefix: str, items: Iterable[Item]) -> None:
     listed = ET.SubElement(of, "DataItems")
     for key, category, kind, further in items:
         ET.SubElement(

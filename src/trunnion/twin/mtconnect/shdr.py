@@ -29,12 +29,13 @@ def shdr_field(text: str) -> str:
 
 
 def shown_text(text: str) -> str:
-    """Return a text without what no field can hold: characters of control, halves of characters, and more than one
-    blank.
+    """Return a text without what neither a field nor XML can hold: characters of control, what is no character, and
+    more than one blank.
     """
     printable = "".join(" " if letter.isspace() else letter for letter in text if _is_text(letter))
     return " ".join(printable.split())
 
 
 def _is_text(letter: str) -> bool:
-    return letter.isspace() or not (letter < " " or "\x7f" <= letter < "\xa0" or "\ud800" <= letter <= "\udfff")
+    control = letter < " " or "\x7f" <= letter < "\xa0"
+    return letter.isspace() or not (control or "\ud800" <= letter <= "\udfff" or letter in "\ufffe\uffff")

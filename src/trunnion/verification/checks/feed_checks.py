@@ -12,7 +12,7 @@ from trunnion.timing import HARDLY_MOVES
 from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, needlessly_lowered_feeds
 from trunnion.verification.expected.path import ExpectedPath
-from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
+from trunnion.verification.expected.tolerances import feed_per_rev_tolerance
 from trunnion.verification.results import Check
 from trunnion.wording import counted
 
@@ -45,7 +45,7 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original:
         )
         asked = np.full(len(segments.nc), wanted)
         per_rev = context.expected.per_rev(np.array([segments.cl]))[0]
-        digit = np.full(len(asked), FEED_PER_REV_SHARE * wanted if per_rev else tolerances.feed)
+        digit = feed_per_rev_tolerance(asked) if per_rev else np.full(len(asked), tolerances.feed)
         near, feed = _compare_feeds(context, segments.nc, asked, tolerances.tip, digit)
         for k in np.flatnonzero(~near).tolist():
             text = f"moves with {feed[k]:g} mm/min; the CL file wants {wanted:g}"
@@ -69,7 +69,7 @@ def _compare_points(context: ComparedContext, original: ExpectedPath, found: Fau
     for nc, cl in context.matching.all_pair_chunks():
         at_feed = (run.kind[nc] != Kind.RAPID) & (expected.kind(cl) != Kind.RAPID)
         per_rev, asked, mode = expected.per_rev(cl), expected.feed(cl), run.state.feed_mode.at(nc)
-        digit = np.where(per_rev, FEED_PER_REV_SHARE * asked, feed_tolerance)
+        digit = np.where(per_rev, feed_per_rev_tolerance(asked), feed_tolerance)
         if context.settings.fastest_feed:
             asked, either = _asked_at_rest(context, nc, asked, original.feed(cl))
         near, feed = _compare_feeds(context, nc, asked, expected.max_tip_tolerance, digit)

@@ -16,7 +16,7 @@ from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
 from trunnion.verification.checks.peck_faults import peck_faults
 from trunnion.verification.checks.spindle_checks import RPM_TOLERANCE
 from trunnion.verification.expected.holes import Hole
-from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
+from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE, feed_per_rev_tolerance
 from trunnion.verification.kinematics.positioning_moves import comes_from_home
 from trunnion.verification.matching.hole_matching import MatchedHole
 
@@ -26,8 +26,8 @@ _FEED, _PITCH, _NOISE = 0.005, 5e-6, 1e-6
 #: In programs in inches pitches have as many digits, of inches.
 _INCH: Final = 25.4
 
-#: Half of the last digit of dwells, seconds.
-_DWELL: Final = 5.1e-4
+#: Dwells are the same if they differ by no more than the shortest that controls print, seconds.
+_DWELL: Final = 1.01e-3
 
 #: What a cycle does with the spindle, for messages.
 _TASKS: Final[dict[SpindleTask | None, str]] = {
@@ -165,7 +165,9 @@ def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float, way: Floats) -> 
     wanted = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
     pitch = _PITCH * np.where(run.state.inches.at(lines), _INCH, 1.0)
     digit = (min(hole.feed_tolerance, _FEED) if hole.cycle.mode[0] == "TAP" else hole.feed_tolerance) + _NOISE
-    allowed = np.where(mode == 95, FEED_PER_REV_SHARE * wanted + _NOISE, digit + pitch * rpm)
+    is_thread = hole.cycle.mode[0] == "TAP" or not hole.cycle.per_rev
+    share = FEED_PER_REV_SHARE * wanted if is_thread else rpm * feed_per_rev_tolerance(np.array(hole.cycle.feed))
+    allowed = np.where(mode == 95, share + _NOISE, digit + pitch * rpm)
     off = ~(np.abs(feed - wanted) <= allowed + 1e-9 * wanted)
     if off.any():
         k = int(np.argmax(off))

@@ -4,7 +4,8 @@ Heights are as in ``trunnion.verification.expected.holes``.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -19,6 +20,9 @@ _MAX_PECKS: Final = 100_000
 
 #: A retract by less than this breaks the chip without leaving the hole, mm.
 _CHIP_BREAK: Final = 5.0
+
+#: A last peck no longer than this may go with the one before, mm: programs may print no less.
+_SHORTEST_REST: Final = 0.005
 
 #: The row at which faults of the pecks together are named: the first one into the hole.
 _FIRST_PECK: Final = 2
@@ -82,28 +86,33 @@ def _cycle_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterat
 
 def _programmed_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterator[HoleFault]:
     """Pecks that the program has itself are those of STEP, one by one: counted from the CL point, or from RAPTO."""
-    found = _distinct_heights([hole.cycle.clearance, *ends], hole.tolerance)
-    for begin in (0.0, hole.cycle.clearance):
-        wanted = _distinct_heights([hole.cycle.clearance, *_step_heights(hole, begin)], hole.tolerance)
-        if len(wanted) == len(found) and float(np.abs(wanted - found).max()) <= hole.tolerance:
+    found = np.array([hole.cycle.clearance, *ends])
+    for begin, rest in product((0.0, hole.cycle.clearance), (0.0, _SHORTEST_REST)):
+        wanted = np.array([hole.cycle.clearance, *_step_heights(hole, begin, rest)])
+        if _all_near(found, wanted, hole.tolerance) and _all_near(wanted, found, hole.tolerance):
             return
     heights = ", ".join(f"{-height:.4f}" for height in found[1:5])
     text = f"drills to {heights} and so on, which are not the pecks of STEP in the CL file"
     yield motions.fault(_FIRST_PECK, float(found[-1]), text)
 
 
-def _distinct_heights(heights: Sequence[float], tolerance: float) -> Floats:
-    """Falling heights without those that are as good as the next one, except for the last."""
-    all_ = np.array(heights)
-    return np.asarray(all_[np.append(all_[:-1] - all_[1:] > 2.0 * tolerance, True)])
+def _all_near(heights: Floats, falling: Floats, tolerance: float) -> bool:
+    """Whether each height is one of the falling heights (n,), as near as they are printed: n >= 1."""
+    after = np.searchsorted(-falling, -heights).clip(0, len(falling) - 1)
+    nearest = np.minimum(np.abs(heights - falling[after]), np.abs(heights - falling[np.maximum(after - 1, 0)]))
+    return bool((nearest <= tolerance).all())
 
 
-def _step_heights(hole: Hole, begin: float) -> list[float]:
-    """Heights to which STEP leads: the first peck from ``begin``, each next one shorter, none below the shortest."""
+def _step_heights(hole: Hole, begin: float, rest: float) -> list[float]:
+    """Heights to which STEP leads: the first peck from ``begin``, each next one shorter, none below the shortest; what
+    is left goes with the peck before if it is no more than ``rest``.
+    """
     peck, less, shortest = (*hole.cycle.pecks, 0.0, 0.0, 0.0)[:3]
     height, ends = begin, list[float]()
     while height > -hole.cycle.depth and peck > 0.0 and len(ends) < _MAX_PECKS:
         height = max(height - peck, -hole.cycle.depth)
         ends.append(height)
         peck = peck if peck <= shortest else max(peck - less, shortest)
+    if len(ends) > 1 and ends[-2] - ends[-1] <= rest:
+        del ends[-2]
     return ends

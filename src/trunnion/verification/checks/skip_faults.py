@@ -8,16 +8,23 @@ from collections.abc import Iterator
 
 from trunnion.model.toolpath import BlockSkip
 from trunnion.verification.context import ComparedContext
+from trunnion.verification.expected.holes import Hole
+from trunnion.verification.expected.skipped import skipped_stretches
+from trunnion.verification.matching.hole_matching import MatchedHole, match_holes
 from trunnion.verification.results import Place
 
 
 def skip_faults(context: ComparedContext) -> Iterator[Place]:
-    """Yield the blocks with ``/`` that stand neither at nor between points of an OPSKIP."""
+    """Yield the blocks with ``/`` that stand neither at nor between points or holes of an OPSKIP."""
     events = [event for event in context.run.events if event.kind == "block_skip"]
     if not events:
         return
     regions, cl = list(_regions(context)), context.matching.cl
+    holes = [(each, context.expected.holes[each.index]) for each in _holes(context)]
     for event in events:
+        drilled = next((hole for rows, hole in holes if rows.first <= event.before_row < rows.end), None)
+        if drilled is not None and _may_be_skipped(context, drilled):
+            continue
         pair = context.matching.nc.count_before(event.before_row)
         first = int(cl[pair - 1]) if pair else 0
         last = int(cl[pair]) if pair < len(cl) else len(context.expected)
@@ -26,17 +33,24 @@ def skip_faults(context: ComparedContext) -> Iterator[Place]:
             yield context.place_of_event(event, 0.0, "may be skipped (/), and the CL file has no OPSKIP there")
 
 
+def _holes(context: ComparedContext) -> Iterator[MatchedHole]:
+    """Yield the rows of the holes that the CL file has."""
+    return (each for each in match_holes(context.run, context.expected) if each.index < len(context.expected.holes))
+
+
+def _may_be_skipped(context: ComparedContext, hole: Hole) -> bool:
+    """Whether the statement of a hole stands behind an OPSKIP/ON, and before the next OPSKIP/OFF: holes are no rows."""
+    behind = [
+        (event.line, event.on)
+        for section in context.expected.sections
+        for event in section.operation.events
+        if isinstance(event, BlockSkip) and section.file == hole.file and event.line < hole.line
+    ]
+    return bool(behind) and max(behind)[1]
+
+
 def _regions(context: ComparedContext) -> Iterator[tuple[int, int]]:
     """Yield the points of the CL file that may be skipped: the first, and the one after the last."""
     for section in context.expected.sections:
-        begin = -1
-        for event in section.operation.events:
-            if isinstance(event, BlockSkip):
-                row = section.first + event.row
-                if event.on and begin < 0:
-                    begin = row
-                elif not event.on and begin >= 0:
-                    yield begin, row
-                    begin = -1
-        if begin >= 0:
-            yield begin, section.first + len(section.operation.moves)
+        for begin, end in skipped_stretches(section.operation):
+            yield section.first + begin, section.first + end

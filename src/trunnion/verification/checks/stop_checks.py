@@ -2,7 +2,7 @@
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Final
@@ -22,8 +22,8 @@ from trunnion.wording import counted, format_duration
 
 _NAMES: Final = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional stops"}
 
-#: Half of the last digit of dwells, seconds.
-_TOLERANCE: Final = 5.1e-4
+#: Dwells are the same if they differ by no more than the shortest that controls print, seconds.
+_TOLERANCE: Final = 1.01e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,9 +73,21 @@ def check_stops(context: ComparedContext) -> Check:
     count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _NAMES}
     good = ", ".join(counted(count[kind], name.removesuffix("s")) for kind, name in _NAMES.items() if count[kind])
     good = (good or "the CL file has none") + _own_stops(context.run, own)
+    places += _missing_between(context, found)
     places += skip_faults(context)
     title = "stops, dwells and block skip as the CL file says"
     return check_from_places("stops", title, places, good)
+
+
+def _missing_between(context: ComparedContext, found: Mapping[int, list[_FoundStop]]) -> Iterator[Place]:
+    """Yield the operations before which no stop stands, where the settings ask for one between all of them."""
+    sections = context.expected.sections if context.settings.stop_between else ()
+    wanted: defaultdict[int, int] = defaultdict(int)
+    for section in sections[1:]:
+        pair = context.matching.cl.count_before(section.first)
+        wanted[pair] += 1
+        if sum(stop.event.kind != "dwell" for stop in found.get(pair, ())) < wanted[pair]:
+            yield context.place_of_missing(section.first, "the setting stop_between wants an optional stop before this")
 
 
 def _own_stops(run: Run, stops: list[_FoundStop]) -> str:

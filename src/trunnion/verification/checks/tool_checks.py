@@ -99,12 +99,15 @@ def _wrong_edges(context: ComparedContext) -> Iterator[Place]:
     it.
     """
     used, matching = context.run.state.edge, context.matching
+    registers = {each.first: 0 if each.value.called else each.value.adjust for each in tool_states(context.expected)}
     known: list[int] = []
     for section in context.expected.sections:
-        edge = section.settings.edge
-        if edge is None:
+        edge = setting = section.settings.edge
+        if edge is None or setting is None:
             return
-        known.append(edge)
+        if 0 < registers.get(section.first, 0) <= section.settings.last_edge:
+            edge = registers[section.first]
+        known += [edge, setting]  # before the first tool change that of the settings
         bad = first_wrong_pair(
             matching, *matching.pair_range(section.first, section.end), partial(_has_other_edge, used, edge)
         )

@@ -30,6 +30,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.verification.expected.frames import transform_to_frame
 from trunnion.verification.expected.holes import Hole, HoleSource, holes_of_operation, without_holes, without_rows
+from trunnion.verification.expected.skipped import without_skipped
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedSpindles, ExpectedTool
 from trunnion.verification.expected.tolerances import Tolerances
 
@@ -41,6 +42,7 @@ class OperationSettings:
     tool         tool number or name instead of that of LOAD/TOOL; empty: as in the CL file
     work_offset  54..59, 505..599, or 600 plus the P of G54.1; None: any, but the same throughout
     edge         number of the cutting edge (D); None: any
+    last_edge    ADJUST of LOAD/TOOL up to this number is the cutting edge; 0: it is not
     radius_offset  what is added to the tool's number for the register of the radius
     """
 
@@ -48,6 +50,7 @@ class OperationSettings:
     work_offset: int | None = None
     edge: int | None = None
     radius_offset: int = 0
+    last_edge: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,7 +106,8 @@ class ExpectedPath:
     """All operations of a program end to end: rows are counted through them, and holes are kept apart.
 
     ``hole_ends`` has, for each section, how many holes there are up to its end. ``written_splines`` are those that the
-    program writes as such: each has one row here, that of its end, as an arc has.
+    program writes as such: each has one row here, that of its end, as an arc has. With ``skips`` the path is that of an
+    operator who has switched block skip on: rows and events within OPSKIP are not there.
 
     The columns of an operation are not copied; ``tip``, ``axis`` and the like gather some rows of them.
     """
@@ -115,6 +119,8 @@ class ExpectedPath:
         absolute: bool = False,
         settings_of: Callable[[str], OperationSettings] = lambda name: OperationSettings(),
         written_splines: Sequence[WrittenSpline] = (),
+        *,
+        skips: bool = False,
     ) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
@@ -131,6 +137,9 @@ class ExpectedPath:
         for (path, whole), limit_of in zip(moving, limits, strict=True):
             placed = transform_to_frame(frame, whole)
             limit = limit_of(placed)
+            if skips:
+                placed, skipped = without_skipped(placed)
+                limit = _without_rows(limit, skipped)
             if whole.frame != frame:  # points of another coordinate system have the noise of turning
                 limit = replace(limit, tip=limit.tip + TURNING_NOISE)
             operation, hole_rows = without_holes(placed)
@@ -141,12 +150,10 @@ class ExpectedPath:
             source = HoleSource(path.file, first, limit, tool, spindle)
             found += holes_of_operation(placed, hole_rows, source)
             spindle = ExpectedSpindles(placed, spindle).at(len(placed.moves))
-            if limit.deviations is not None and hole_rows.any():
-                limit = replace(limit, deviations=limit.deviations.without_rows(hole_rows))
+            limit = _without_rows(limit, hole_rows)
             kept = np.flatnonzero(~hole_rows) if hole_rows.any() else None
             if (gone := _inside_splines(operation, written_splines, len(sections))) is not None:
-                if limit.deviations is not None:
-                    limit = replace(limit, deviations=limit.deviations.without_rows(gone))
+                limit = _without_rows(limit, gone)
                 operation = without_rows(operation, gone)
                 kept = np.flatnonzero(~gone) if kept is None else kept[~gone]
             sections.append(Section(path.file, operation, first, limit, settings, placed, kept))
@@ -273,6 +280,13 @@ class ExpectedPath:
             for section in self.sections
             for event in section.operation.events
         )
+
+
+def _without_rows(limit: Tolerances, gone: Flags) -> Tolerances:
+    """Return tolerances whose deviations count without some rows (n,)."""
+    if limit.deviations is None or not gone.any():
+        return limit
+    return replace(limit, deviations=limit.deviations.without_rows(gone))
 
 
 def _inside_splines(operation: Operation, written: Sequence[WrittenSpline], section: int) -> Flags | None:

@@ -34,14 +34,33 @@ def test_parts_within_parts_are_repeated_anew_each_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "PART: G1 X1 F9\nEND_: X2\nREPEAT PART END_ P=2\n", "PART: G1 X1 F9\nENDLABEL: X2\nREPEAT PART P=2\n",
+        "PART: G1 X1 F9\nREPEAT PART NOWHERE P=2\n", "PART: G1 X1 F9\nOTHER: X2\nREPEATB PART OTHER P=2\n",
         "PART: G1 X1 F9\nIF R1>2 GOTOF OUT\nR1=R1+1\nREPEAT PART P=9\nOUT: X5\n", "REPEAT PART P=2\nPART: G1 X1 F9\n",
         "PART: G1 X1 F9\nREPEAT PART P=1.5\n", "PART: G1 X1 F9\nREPEAT PART P=-1\n",
-        "PART: G1 X1 F9\nREPEATB PART P=2\n",
+        "PART: G1 X1 F9\nREPEATB NOWHERE P=2\n", "PART: X1\nREPEATB REPEATB P=2\n",
     ],
 )  # fmt: skip
 def test_other_parts_are_refused_by_name(text: str, tmp_path: Path) -> None:
     assert any("REPEAT" in error.text for error in _run(tmp_path, text).errors)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("PART: R1=R1+1 X=R1\nY5\nREPEATB PART P=2\nZ1\n", [[1, 0], [1, 5], [2, 5], [3, 5]]),
+        ("X9\nREPEATB PART P=1\nY7\nPART: R1=R1+1 X=R1\nZ1\n", [[9, 0], [1, 0], [1, 7], [2, 7]]),
+        ("PART: R1=R1+1 X=R1\nLAST: Y=R1\nX0\nREPEAT PART LAST P=1\nZ1\n", [[1, 0], [1, 1], [0, 1], [2, 1], [2, 2]]),
+        ("PART: R1=R1+1 X=R1\nENDLABEL: Y=R1\nX0\nREPEAT PART\nZ1\n", [[1, 0], [1, 1], [0, 1], [2, 1], [2, 2]]),
+        ("PART: R1=R1+1 X=R1\n; the end\nREPEAT PART P=1\nZ1\n", [[1, 0], [2, 0]]),
+    ],
+)
+def test_a_block_or_a_part_with_an_end_of_its_own_is_repeated(
+    text: str, wanted: list[list[int]], tmp_path: Path
+) -> None:
+    run = _run(tmp_path, f"G1 F90\n{text}")
+    assert not run.errors
+    assert run.tip[1:-1, :2].tolist() == wanted
+    assert run.tip[-1, 2] == 1.0
 
 
 def test_a_part_without_end_ends(tmp_path: Path) -> None:

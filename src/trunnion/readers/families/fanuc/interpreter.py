@@ -1,7 +1,9 @@
 """Interpreter of Fanuc programs."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -26,6 +28,9 @@ from trunnion.readers.rs274.block import Block, block_reader
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import MOTIONS
 from trunnion.readers.rs274.word_table import Word
+
+#: A program's name in place of its number, as controls from 30i on have it.
+_PROGRAM_NAME: Final = re.compile(r"<[A-Z0-9+_.-]{1,32}>")
 
 
 class FanucInterpreter(CycleInterpreter):
@@ -84,7 +89,10 @@ class FanucInterpreter(CycleInterpreter):
             return
         if self._needs_number:
             self._needs_number = False
-            self._note(Wording("NC160", "program_begins_without_number_write"), Severity.ERROR)
+            if _PROGRAM_NAME.fullmatch(text):
+                active.begun = True
+                return
+            self._note(Wording("NC168", "program_begins_without_number"), Severity.WARNING)
         reader = block_reader(text, ARITHMETIC, self._variables)
         if self._flow.accept(active, line, reader):
             self._nurbs.break_off()

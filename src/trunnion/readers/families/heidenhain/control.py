@@ -11,17 +11,16 @@ from trunnion.machines import Axis, Machine, Mount
 from trunnion.messages import Wording
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
-from trunnion.model.toolpath import Kind
-from trunnion.readers.control.axis_word import NO_ROTARY, AxisWord, RotaryTarget
+from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import Circle
-from trunnion.readers.families.heidenhain.plane_control import PlaneControl
+from trunnion.readers.families.heidenhain.leads import LeadControl
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.scan_kernel import letter_table
 
 
-class HeidenhainControl(PlaneControl):
+class HeidenhainControl(LeadControl):
     """A TNC on a machine.
 
     shortest_path          M126: endless rotary axes take the shorter way
@@ -48,8 +47,6 @@ class HeidenhainControl(PlaneControl):
         self._tool_sizes: dict[str, dict[str, float]] = {}
         # The row before which the last tool was fetched.
         self._fetched_from = -1
-        # The first row from which on ``columns.xyz`` has the present meaning.
-        self._comparable_from = 0
         # The preset that cycle 247 has activated before the first motion at the part; None: none.
         self._head_preset: int | None = None
         super().__init__(machine, note, shortest=shortest)
@@ -92,7 +89,7 @@ class HeidenhainControl(PlaneControl):
 
     def set_shortest_path(self, on: bool) -> None:
         """M126, M127."""
-        self._cancels_shortest_path |= not on
+        self._cancels_shortest_path |= self.shortest_path and not on
         self.shortest_path = on
 
     def end_operation(self, variant: str) -> None:
@@ -172,36 +169,6 @@ class HeidenhainControl(PlaneControl):
         if self._fetched_from != self.row:
             self.end_operation("changes_tool_with_m126")
             self.change_tool()
-
-    # Directions
-
-    def end_direction(self) -> Floats | None:
-        """Return the direction of the last motion at its end, (3,) of any length, as programmed; None before one."""
-        if not self.row:
-            return None
-        to_programmed = np.linalg.inv(self.position_map[:, :3])
-        if self._arcs and self._arcs[-1][0] == self.row - 1:
-            _, centre, normal, _, _ = self._arcs[-1]
-            end = self._mapped(self.programmed_position)
-            if self.tip_programmed:
-                return np.asarray(to_programmed @ np.cross(normal, end - centre))
-            slide_map = self._slides_to_tip()
-            tip = slide_map[:, :3] @ end + slide_map[:, 3]
-            return np.asarray(to_programmed @ np.linalg.solve(slide_map[:, :3], np.cross(normal, tip - centre)))
-        if self.row - 2 < self._comparable_from:
-            return None
-        return np.asarray(to_programmed @ (self.columns.xyz[self.row - 1] - self.columns.xyz[self.row - 2]))
-
-    def _update_maps(self) -> None:
-        tip_programmed = self.tip_programmed
-        super()._update_maps()
-        if tip_programmed != self.tip_programmed:
-            self._comparable_from = self.row
-
-    def move_axes(self, kind: Kind, slides: Floats, rotary: RotaryTarget = NO_ROTARY, bits: int = 0) -> None:
-        """Add a row of slide positions and rotary values; see ``VirtualControl.move_axes``."""
-        super().move_axes(kind, slides, rotary, bits)
-        self._comparable_from = self.row
 
     # Motion
 

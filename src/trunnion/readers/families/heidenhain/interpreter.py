@@ -8,25 +8,23 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.coordinates import INCH
 from trunnion.readers.control.event_recorder import Note
-from trunnion.readers.control.hole_motion import CycleExecutionError
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.heidenhain import program_frame
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
-from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
-from trunnion.readers.families.heidenhain.flow import ActiveProgram, FlowInterpreter
+from trunnion.readers.families.heidenhain.flow import ActiveProgram
 from trunnion.readers.families.heidenhain.fn_functions import ASSIGNED, assign
-from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, Line, split_line, words
-from trunnion.readers.families.heidenhain.machine_functions import MFunctions, tool_block
+from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, split_line, words
+from trunnion.readers.families.heidenhain.machine_functions import tool_block
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
-from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
+from trunnion.readers.families.heidenhain.path_blocks import read_block
+from trunnion.readers.families.heidenhain.path_interpreter import PathInterpreter
 from trunnion.readers.families.heidenhain.plane_blocks import plane_block, tcpm_block
 from trunnion.readers.families.heidenhain.scan_kernel import read_blocks
 from trunnion.readers.families.heidenhain.settings import variables_of
 from trunnion.readers.families.heidenhain.text import KlartextText
-from trunnion.readers.families.heidenhain.words import BLOCKS_NOT_SIMULATED, M_CALL, M_MACHINE, M_SECOND_MACHINE, PATHS
+from trunnion.readers.families.heidenhain.words import BLOCKS_NOT_SIMULATED, PATHS
 from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
@@ -38,9 +36,6 @@ _TENTH: Final = 0.1 * INCH
 _PLAIN_START = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
 _PREFIX_LENGTH: Final = 32
 
-#: Cutter radius compensation: left of the path, right of it, off.
-_RADIUS_COMPENSATION: Final = {"R0": 0, "RL": 1, "RR": -1}
-
 _CYCLE_DEFINITION = re.compile(r"CYCLE?[ \t]*DEF(?![A-Z])")
 _CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
 _CORNER = re.compile(r"[ \t]*FORM[ \t]+0\.([12])(?![0-9])[ \t]*[XYZ]?(?=[ \t])")
@@ -49,19 +44,16 @@ _KEYWORD = re.compile(r"([A-Z]+)")
 _PATH = re.compile(rf"({'|'.join(sorted(PATHS, key=len, reverse=True))})(?=[ \t]|$)")
 
 
-class HeidenhainInterpreter(FlowInterpreter):
+class HeidenhainInterpreter(PathInterpreter):
     """Runs one Klartext program on one machine."""
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
-        self._definitions = Definitions(self.control, self._note)
-        self._m_functions = MFunctions(self.control, self._note)
-        # The feed of the tool call, for F AUTO.
-        self._tool_feed: float | None = None
         # The lines so far of a block that continues over several lines, and its first line and number.
         self._block_parts: list[str] = []
         self._block_length = 0
         self._block_start = 0, -1
+        self._skips_block = False
         # The first corner of the stock (BLK FORM 0.1).
         self._stock_corner: dict[str, float] = {}
         # The last block that was split into words: of which program, and its number.
@@ -79,6 +71,10 @@ class HeidenhainInterpreter(FlowInterpreter):
             "PLANE": self._plane,
             "FUNCTION": self._function,
             "CC": self._pole,
+            "RND": self._rounding,
+            "CHF": self._chamfer,
+            "APPR": self._approach,
+            "DEP": self._departure,
             "STOP": self._stop,
         }
 
@@ -120,12 +116,11 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._note(Wording("NC210", "block_before_goes_new_begins"), Severity.ERROR)
             self._finish_block(active)
             self.control.line = line
-        if parts.block_skip and not self._options.skips(1):
-            self.control.add_event("block_skip", 1.0)
-        elif parts.block_skip:
-            parts = Line(parts.number, True, "", parts.comment, False)
         if not self._block_parts:
             self._block_start, self._block_length = (line, parts.number), 0
+            self._skips_block = parts.block_skip and self._options.skips(1)
+        if parts.block_skip and not self._skips_block:
+            self.control.add_event("block_skip", 1.0)
         if parts.statement:
             self._block_parts.append(parts.statement)
             self._block_length += len(parts.statement)
@@ -144,7 +139,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         """Execute the block of the lines so far."""
         statement = " ".join(self._block_parts)
         self._block_parts.clear()
-        if not statement:
+        if not statement or self._skips_block:
             return
         self.control.line, self.control.block_number = self._block_start
         if not statement.startswith("BEGIN"):
@@ -251,89 +246,6 @@ class HeidenhainInterpreter(FlowInterpreter):
         self.control.add_event("stop")
         self._m_functions.execute_after_motion(block)
 
-    # Motion
-
-    def _path_block(self, active: ActiveProgram, function: str, rest: str) -> None:
-        control = self.control
-        block = read_block(words(rest), active.parameters)
-        self._remove_missing_axes(block)
-        axes = block.axes
-        if function in ("LP", "CP", "CTP"):
-            axes = polar_end(control, block, circle=function == "CP")
-        elif block.polar:
-            raise KlartextError(Wording("NC210", "no_polar_coordinates", function=function))
-        if block.radius is not None and function != "CR":
-            raise KlartextError(Wording("NC210", "no_radius", function=function))
-        circle = circle_of(control, function, block) if function[0] == "C" else None
-        vector = block.tool_axis
-        feed = self._feed(block)
-        self._m_functions.execute_before_motion(block)
-        if feed is not None:
-            control.programmed_feed = feed
-        control.motion = RAPID if block.rapid else LINEAR
-        self._set_compensation(block)
-        in_machine = self._moves_in_machine(block)
-        if vector is not None and not control.tip_programmed:
-            self._note(Wording("NC340", "tx_ty_tz_need_m128"), Severity.ERROR)
-        moves, row = bool(axes) or vector is not None or circle is not None, control.row
-        if moves:
-            feed_written = block.feed is not None and not block.rapid
-            control.move(axes, vector, circle=circle, machine_frame=in_machine, feed_written=feed_written)
-            if block.normal is not None and control.row > row:
-                control.add_normal(block.normal)
-        called = any(code == M_CALL for code, _ in block.m)
-        if called or (self._m_functions.modal_call and moves and not in_machine):
-            self._drill(active)
-        if called:
-            self._m_functions.modal_call = False
-        self._m_functions.execute_after_motion(block)
-
-    def _set_compensation(self, block: Block) -> None:
-        if block.side:
-            self.control.modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
-        if block.side in ("RL", "RR"):
-            self._note(Wording("NC221", "radius_compensation", word=block.side), Severity.WARNING)
-            self.control.judge_compensation()
-
-    def _moves_in_machine(self, block: Block) -> bool:
-        """Whether a block programs positions of the machine axes (M91, M92)."""
-        codes = {code for code, _ in block.m}
-        if M_SECOND_MACHINE in codes:
-            self._note(Wording("NC224", "m92_counts_set_machine_taken"), Severity.WARNING)
-        return bool(codes & {M_MACHINE, M_SECOND_MACHINE})
-
-    def _remove_missing_axes(self, block: Block) -> None:
-        """Report the words of axes that the machine does not have, and remove them."""
-        known = {"X", "Y", "Z", *self.control.rotary_names}
-        if self.control.spatial_angles_active:
-            known |= {"A", "B", "C"}
-        for name in sorted(block.axes.keys() - known):
-            self._note(Wording("NC230", "axis_word_not_executed", axis=name), Severity.ERROR)
-            del block.axes[name]
-
-    def _feed(self, block: Block) -> float | None:
-        """Return the feed of a block in mm/min, None if it has none."""
-        if block.feed is not None:
-            return block.feed * self.control.feed_unit
-        if block.feed_of_tool and self._tool_feed is None:
-            raise KlartextError(Wording("NC210", "f_auto_tool_call_no"))
-        return self._tool_feed if block.feed_of_tool else None
-
-    def _pole(self, active: ActiveProgram, rest: str) -> None:
-        """CC: set the pole; an error in the block leaves none."""
-        control = self.control
-        control.pole = None
-        block = read_block(words(rest), active.parameters)
-        pole = control.programmed_position.copy()
-        for name, (value, mode) in block.axes.items():
-            if name not in ("X", "Y", "Z"):
-                raise KlartextError(Wording("NC210", "cc_takes_no", name=name))
-            axis = "XYZ".index(name)
-            if axis == control.plane_axis:
-                raise KlartextError(Wording("NC220", "pole_outside_plane", axis=name))
-            pole[axis] = value * control.length_unit + (pole[axis] if mode is PositionMode.INCREMENTAL else 0.0)
-        control.pole = pole
-
     # Tools and cycles
 
     def _tool(self, active: ActiveProgram, rest: str) -> None:
@@ -370,16 +282,6 @@ class HeidenhainInterpreter(FlowInterpreter):
             control.move(block.axes, None, feed_written=block.feed is not None)
         self._drill(active)
         self._m_functions.execute_after_motion(block)
-
-    def _drill(self, active: ActiveProgram) -> None:
-        """Execute the defined cycle at the present position."""
-        try:
-            motions = self._definitions.call(active.parameters)
-        except CycleExecutionError as error:
-            self._note(error.wording.within("cycle_not_executed"), Severity.ERROR)
-            return
-        self._counter.count_motions(len(motions))
-        self.control.drill(motions, self._definitions.spindle_work())
 
     # Planes
 

@@ -1,7 +1,7 @@
 """The words of path blocks, polar coordinates and circles."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Final
@@ -44,6 +44,7 @@ class Block:
     axes          axes by letter
     vectors       components of surface normal and tool axis
     polar         PR and PA
+    sizes         LEN, CCA and CHF
     direction     1 for DR+, -1 for DR-, 0 without
     side          RL, RR or R0
     feed_of_tool  F AUTO: the feed of the tool call
@@ -53,6 +54,7 @@ class Block:
     axes: dict[str, AxisWord] = field(default_factory=dict)
     vectors: dict[str, float] = field(default_factory=dict)
     polar: dict[str, AxisWord] = field(default_factory=dict)
+    sizes: dict[str, float] = field(default_factory=dict)
     radius: float | None = None
     direction: int = 0
     side: str = ""
@@ -80,8 +82,8 @@ class Block:
         return np.array([self.vectors.get(name, 0.0) for name in names])
 
 
-def read_block(words: Sequence[Word], parameters: Parameters) -> Block:
-    """Return the block of words.
+def read_block(words: Sequence[Word], parameters: Parameters, sizes: Collection[str] = ()) -> Block:
+    """Return the block of words; ``sizes``: those that it may have besides the words of path blocks.
 
     Raises ``KlartextError`` for a word that path blocks do not have, and for a parameter without a value.
     """
@@ -96,6 +98,8 @@ def read_block(words: Sequence[Word], parameters: Parameters) -> Block:
             block.m[-1][1][name] = value
         elif value is None:
             _flag(block, name)
+        elif name in sizes:
+            block.sizes[name] = value
         else:
             _value(block, name, value, PositionMode.INCREMENTAL if word.incremental else PositionMode.ABSOLUTE)
     return block
@@ -208,21 +212,7 @@ def circle_of(control: HeidenhainControl, head: str, block: Block) -> Circle:
 
 def _tangential(control: HeidenhainControl, start: Floats, end: Floats) -> arcs.Arc:
     """Return the circle that continues in the direction of the last motion."""
-    heading = control.end_direction()
-    plane = control.plane_axis
-    chord = end - start
-    chord[plane] = 0.0
-    if heading is None:
-        raise arcs.ArcError(Wording("NC320", "no_direction_circle_could_go"))
-    heading[plane] = 0.0
-    length = float(np.linalg.norm(heading))
-    if length < arcs.SAME_POINT or float(np.linalg.norm(chord)) < arcs.SAME_POINT:
-        raise arcs.ArcError(Wording("NC320", "no_direction_circle_could_go"))
-    left = np.cross(arcs.normal_of(plane, False), heading / length)
-    across = float(left @ chord)
-    if abs(across) < arcs.SAME_POINT * float(chord @ chord):
+    arc = arcs.tangential(start, end, control.end_direction(), control.plane_axis, 0)
+    if arc is None:
         raise arcs.ArcError(Wording("NC320", "end_lies_straight_ahead"))
-    centre = start + left * (float(chord @ chord) / (2.0 * across))
-    if float(np.abs(centre).max()) > arcs.MAX_RADIUS:
-        raise arcs.ArcError(Wording("NC320", "end_lies_straight_ahead"))
-    return arcs.by_centre(start, end, centre, plane, across < 0.0, 0)
+    return arc

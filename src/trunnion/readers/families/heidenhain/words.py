@@ -14,10 +14,6 @@ PATHS: Final = _words("L LN LP C CR CP CT CTP")
 
 #: Blocks that are not simulated: the message.
 BLOCKS_NOT_SIMULATED: Final = {
-    "RND": "rounds the corner: not simulated, the corner stays sharp",
-    "CHF": "chamfers the corner: not simulated, the corner stays sharp",
-    "APPR": "approaches a contour: not simulated, the block is not executed",
-    "DEP": "departs from a contour: not simulated, the block is not executed",
     "FPOL": "free contour programming is not simulated",
     "FL": "free contour programming is not simulated",
     "FLT": "free contour programming is not simulated",
@@ -108,7 +104,7 @@ M_NOT_SIMULATED: Final = {
     98: ("ends an open contour corner: not simulated", True),
     104: ("takes the last datum again: not simulated", True),
     109: ("arcs have another feed: not simulated", True),
-    110: ("arcs have another feed: not simulated", True),
+    110: ("lowers the feed at compensated inner arcs: not simulated", False),
     112: ("contour transitions are not simulated", True),
     114: ("compensates the tilt by itself: not simulated, M128 is", True),
     115: ("ends M114, which is not simulated", False),

@@ -35,6 +35,7 @@ class Block:
     feed_radius  at which F counts for rotary axes
     orientation_tolerance  OTOL, degrees
     traori   the arguments of TRAORI
+    corner   RND, RNDM, CHF, CHR, FRC, FRCM
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -57,6 +58,7 @@ class Block:
     tolerances: list[float] = field(default_factory=list)
     feed_radius: float | None = None
     orientation_tolerance: float | None = None
+    corner: dict[str, float] = field(default_factory=dict)
 
     @property
     def tool_axis(self) -> Floats | None:

@@ -13,6 +13,8 @@ from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     ACTIVE,
+    CORNER_FEEDS,
+    CORNERS,
     FEED_GROUP,
     FEED_RADIUS,
     FLOW,
@@ -39,7 +41,11 @@ MAX_FEED: Final = 1e9
 
 #: Words without a value that the interpreter executes.
 _MODES: Final = (
-    FRAMES | ORIENTATION | WITHOUT_PATH_EFFECT | TOOL_FRAMES | frozenset({"SUPA", "CIP", "POLY", "TRAFOOF", "TRAORI"})
+    FRAMES
+    | ORIENTATION
+    | WITHOUT_PATH_EFFECT
+    | TOOL_FRAMES
+    | frozenset({"SUPA", "CIP", "CT", "POLY", "TRAFOOF", "TRAORI"})
 )
 
 #: Words with a value that belong to circles and frames.
@@ -47,7 +53,6 @@ _PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
 
 #: Where a block holds the words of which it has one at most.
 _HELD: Final = {"T": "tool", "S": "speed", "F": "feed", "D": "edge"}
-
 
 #: The value of a word and its mode.
 _Word = tuple[Value, PositionMode]
@@ -230,6 +235,9 @@ class BlockReader:
         elif name in _PARAMS and follows == "=":
             value, mode = self._value(reader)
             block.params[name] = _number(value), mode
+        elif name in CORNERS | CORNER_FEEDS and follows == "=":
+            self._once(name, name in block.corner)
+            block.corner[name] = _size(_number(self._value(reader)[0]), name)
         elif name == "PO" and follows == "[":
             self._polynomial(reader, block)
         elif name == "PL" and follows == "=":
@@ -374,6 +382,12 @@ def _number(value: Value) -> float:
     if isinstance(value, str):
         raise ExpressionError(Wording("NC210", "text_for_number", value=value[:40]))
     return value
+
+
+def _size(number: float, name: str) -> float:
+    if not 0.0 <= number <= MAX_FEED:
+        raise ExpressionError(Wording("NC215", "below_zero", word=name, value=number))
+    return number
 
 
 def _code(number: float, letter: str) -> int:

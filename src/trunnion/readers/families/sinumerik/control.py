@@ -37,6 +37,9 @@ THROUGH: Final = 4
 #: POLY, in whose blocks axes without a polynomial move evenly.
 POLYNOMIAL: Final = 5
 
+#: CT, a circle that goes on in the direction of the last motion.
+TANGENT: Final = 6
+
 
 class SinumerikControl(VirtualControl):
     """A Sinumerik on a machine.
@@ -176,12 +179,14 @@ class SinumerikControl(VirtualControl):
         in_plane = any(name in axes for axis, name in enumerate("XYZ") if axis != self.plane_axis)
         return partial(self._arc, params, in_plane)
 
-    def _arc(self, params: Mapping[str, AxisWord], in_plane: bool, start: Floats, end: Floats) -> arcs.Arc:
+    def _arc(self, params: Mapping[str, AxisWord], in_plane: bool, start: Floats, end: Floats) -> arcs.Arc | None:
         turns = int(params.get("TURN", (0.0, PositionMode.MODAL))[0])
         if not 0 <= turns < 1000:
             raise arcs.ArcError(Wording("NC320", "bad_turns", turns=turns))
         if any(abs(value) * self.length_unit > MAX_POSITION for value, _ in params.values()):
             raise arcs.ArcError(Wording("NC320", "circle_numbers_no_machine"))
+        if self.motion == TANGENT:
+            return arcs.tangential(start, end, self.end_direction(), self.plane_axis, turns)
         if self.motion != THROUGH:
             return self._plane_arc(params, in_plane, turns, start, end)
         through = end.copy()

@@ -26,7 +26,8 @@ class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram that is being executed, and its modal cycle or subprogram (MCALL).
 
     header_end  the last of the lines without a block with which the file begins
-    repeated    how often a REPEAT has gone back to its label, by its line
+    repeated    how often a REPEAT or REPEATB has gone to its label, by its line
+    sections    the last line of each part that is being repeated, and the line of its REPEAT or REPEATB
     """
 
     source: SinumerikText
@@ -34,6 +35,12 @@ class ActiveProgram(interpreter.ActiveProgram):
     modal: Call | None = None
     header_end: int = 0
     repeated: dict[int, int] = field(default_factory=dict)
+    sections: list[tuple[int, int]] = field(default_factory=list)
+
+    def end_section(self, line: int) -> None:
+        """Go back to what repeats a part behind the last line of that."""
+        if self.sections and self.sections[-1][0] == line:
+            self.source.jump(self.sections.pop()[1])
 
 
 #: What a condition that never changes consists of, besides numbers.
@@ -58,6 +65,7 @@ class Flow:
             "LOOP": self._paired,
             "ENDLOOP": self._end_loop,
             "REPEAT": self._repeat,
+            "REPEATB": self._repeat_part,
             "UNTIL": self._until,
             "CASE": self._case,
             "DEF": self._def,
@@ -124,22 +132,31 @@ class Flow:
             active.source.partner(line)
 
     def _repeat_part(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        """REPEAT LABEL P=n: execute the blocks from a label to here again, n times."""
-        name = reader.peek()
-        reader.at += 1
+        """Execute a part of the program again, n times, and go on behind this block.
+
+        REPEAT LABEL P=n: from a label to the label ENDLABEL, or to here; REPEAT LABEL LAST P=n: to the block of LAST;
+        REPEATB LABEL P=n: the block of the label alone.
+        """
+        one_block = reader.tokens[reader.at - 1].text == "REPEATB"
+        names = []
+        while (token := reader.token) is not None and token.kind is TokenKind.NAME:
+            names.append(token.text.upper())
+            reader.at += 1
         times = 1.0
         if reader.accept("P"):
             reader.expect("=")
             times = reader.number()
         active.source.load()
-        begin = active.source.repeated_from(name.upper(), line)
-        if reader.token is not None or begin is None or times < 0.0 or times != int(times):
+        wrong = not 1 <= len(names) <= 2 - one_block
+        part = None if wrong else active.source.repeated_part(tuple(names), line, one_block=one_block)
+        if reader.token is not None or part is None or times < 0.0 or times != int(times):
             raise ExpressionError(Wording("NC220", "repeating_part_program_labels_not"))
         done = active.repeated.pop(line, 0)
         if done < times:
             active.repeated[line] = done + 1
             active.source.jumps_back = 0
-            active.source.jump(begin)
+            active.sections.append((part[1], line))
+            active.source.jump(part[0])
 
     def _until(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         begin = active.source.partner(line)[1]

@@ -16,6 +16,7 @@ from trunnion.readers.families.sinumerik.control import (
     POLYNOMIAL,
     SinumerikControl,
 )
+from trunnion.readers.families.sinumerik.corner_words import CornerWords
 from trunnion.readers.families.sinumerik.cycle800 import swivel
 from trunnion.readers.families.sinumerik.cycle832 import smooth
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader, Value
@@ -61,6 +62,7 @@ class SinumerikInterpreter(WordInterpreter):
         super().__init__(path, machine, options)
         # Whether F counts for rotary axes at another radius than that of a degree as a millimetre.
         self._other_feed_radius = False
+        self._corners = CornerWords(self.control, self._note)
         self._block_reader = BlockReader(self.control.rotary_names, self._note)
         self._flow = self._flow_handlers()
 
@@ -75,6 +77,8 @@ class SinumerikInterpreter(WordInterpreter):
     def _may_scan(self, source: SourceText) -> bool:
         control = self.control
         if not control.absolute or self._stack[-1].modal is not None or control.tool_frame:
+            return False
+        if self._corners.rounds or self._stack[-1].sections:
             return False
         if control.motion == POLYNOMIAL or (self._other_feed_radius and not control.tcp):
             return False
@@ -96,6 +100,12 @@ class SinumerikInterpreter(WordInterpreter):
     # Lines
 
     def _execute_line(self, active: ActiveProgram, line: int, raw: str) -> None:
+        try:
+            self._read_line(active, line, raw)
+        finally:
+            active.end_section(line)
+
+    def _read_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         words, comment = split_comment(raw.rstrip("\r"))
         stripped = words.strip()
         level = int(stripped[1]) if re.match(r"/\d(?!\d)", stripped) else 0
@@ -176,8 +186,10 @@ class SinumerikInterpreter(WordInterpreter):
             self._word(word, block)
         for word in block.waits:
             self.control.note_wait(Wording("NC226", "waits_for_channel", word=word))
+        self._corners.begin_block(block.corner)
         if DWELL in block.g:
             self._dwell(block)
+            self._corners.end_block(block.corner, moved=False)
             return
         self._feed_speed_and_tool(block)
         for code in block.m:
@@ -186,7 +198,9 @@ class SinumerikInterpreter(WordInterpreter):
         for value in block.h:
             self.control.add_builders_word("H", value)
         calls = block.calls
-        if self._execute_motion(block) and active.modal is not None:
+        moved = self._execute_motion(block)
+        self._corners.end_block(block.corner, moved=moved)
+        if moved and active.modal is not None:
             calls = [active.modal, *calls]
         for call in calls:
             if call.name in _BUILT_IN:
@@ -238,6 +252,7 @@ class SinumerikInterpreter(WordInterpreter):
             self._note(Wording("NC224", "x_y_before_torotof_point"), Severity.ERROR)
         if self._other_feed_radius and control.motion != RAPID and self._only_turns(block):
             self._note(Wording("NC220", "fgref_changes_feed_rotary_axes"), Severity.ERROR)
+        self._corners.begin_motion()
         control.move(
             block.axes,
             block.tool_axis,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from trunnion.machines import Machine
+from trunnion.readers.control.contour_control import FEED_BEFORE, FEED_BEHIND
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of
 
@@ -25,6 +26,8 @@ class Settings:
     machine_positions  ``WITH_LENGTH`` or ``WITHOUT_LENGTH``; empty: the definition does not say
     length_along_z     the tool length counts along Z in every working plane (SD42940 = 17), not across the plane
     swivel_axes        names of the rotary axes 1 and 2 of the swivel data; empty: the definition does not say
+    corner_feed        of which block corners without a feed of their own have theirs, ``FEED_BEFORE`` or
+                       ``FEED_BEHIND`` (MD20201); empty: the definition does not say
     variables          values of variables that the control has when a program starts
     """
 
@@ -32,6 +35,7 @@ class Settings:
     machine_positions: str = ""
     length_along_z: bool = False
     swivel_axes: tuple[str, ...] = ()
+    corner_feed: str = ""
     variables: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -43,6 +47,7 @@ def settings_of(machine: Machine) -> Settings:
         machine_positions=table.text("machine_positions", "", one_of=("", WITH_LENGTH, WITHOUT_LENGTH)),
         length_along_z=table.flag("length_along_z", False),
         swivel_axes=table.texts("swivel_axes", ()),
+        corner_feed=table.text("corner_feed", "", one_of=("", FEED_BEFORE, FEED_BEHIND)),
         variables=read_variables(table, _VARIABLE, "R100"),
     )
     table.report_unread_keys()

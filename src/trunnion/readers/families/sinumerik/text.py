@@ -20,8 +20,6 @@ _STRUCTURE = re.compile(
 )
 _JUMPS = re.compile(rb"(?<![A-Z0-9_])GOTO[FBCS]?(?![A-Z0-9_])", re.IGNORECASE)
 
-_END_LABEL: Final = re.compile(rb"(?<![A-Z0-9_])ENDLABEL(?![A-Z0-9_])", re.IGNORECASE)
-
 #: The keyword that begins a structure, by the one that ends it.
 _ENDS: Final = {"ENDIF": "IF", "ENDFOR": "FOR", "ENDWHILE": "WHILE", "ENDLOOP": "LOOP", "UNTIL": "REPEAT"}
 
@@ -37,13 +35,13 @@ SUFFIXES: Final = (".SPF", "_SPF", ".MPF", "_MPF", "")
 class _JumpTargets:
     """Lines of labels and block numbers, and the counterparts of keywords; each found on first use.
 
-    repeated  the first line of the part that a REPEAT repeats, by its line; None: it repeats another part
+    repeated  the first and the last line of the part that a REPEAT repeats, by its line; None: there is none
     """
 
     labels: dict[str, list[int]] | None = None
     numbers: dict[int, list[int]] | None = None
     partners: dict[int, tuple[int, int]] | None = None
-    repeated: dict[int, int | None] = field(default_factory=dict)
+    repeated: dict[int, tuple[int, int] | None] = field(default_factory=dict)
 
 
 class SinumerikText(SourceText):
@@ -63,17 +61,37 @@ class SinumerikText(SourceText):
                 labels.setdefault(match.group(1).decode().upper(), []).append(self.line_of(match.start(1)))
         return _choose_line(labels.get(name, []), here, forward=forward, backward=backward)
 
-    def repeated_from(self, name: str, here: int) -> int | None:
-        """Return the line of the label from which a REPEAT repeats up to its own line; None if it is another part.
+    def repeated_part(self, names: tuple[str, ...], here: int, *, one_block: bool) -> tuple[int, int] | None:
+        """Return the first and the last line of the part that a REPEAT or REPEATB repeats; None: there is none.
 
-        An end of its own (ENDLABEL), or a jump out of the part, is another one.
+        here       its line
+        names      its labels; a label is looked for towards the beginning of the program, then towards its end
+        one_block  it is the block of the label alone
         """
         known = self._jump_targets.repeated
         if here not in known:
-            begin = self.label(name, here, forward=False, backward=True)
-            part = b"" if begin is None else b"\n".join(self.whole_bytes().split(b"\n")[begin - 1 : here - 1])
-            known[here] = None if _JUMPS.search(part) or _END_LABEL.search(part) else begin
+            known[here] = self._find_part(names, here, one_block)
         return known[here]
+
+    def _find_part(self, names: tuple[str, ...], here: int, one_block: bool) -> tuple[int, int] | None:
+        found = [self.label(name, here, forward=False, backward=True) for name in names]
+        found = [
+            line or self.label(name, here, forward=True, backward=False)
+            for line, name in zip(found, names, strict=True)
+        ]
+        if None in found:
+            return None
+        begin, last = found[0], found[-1]
+        assert begin is not None
+        assert last is not None
+        if len(names) == 1 and not one_block:
+            end = self.label("ENDLABEL", begin, forward=True, backward=False)
+            last = here - 1 if end is None or (begin < here < end) else end
+        lines = range(begin, last + 1)
+        if not lines or here in lines:
+            return None
+        part = b"\n".join(self.whole_bytes().split(b"\n")[begin - 1 : last])
+        return None if _JUMPS.search(part) else (begin, last)
 
     def number(self, number: int, here: int, *, forward: bool, backward: bool) -> int | None:
         """Return the line of a block number, found like a label."""

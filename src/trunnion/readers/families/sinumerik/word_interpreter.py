@@ -14,6 +14,7 @@ from trunnion.readers.families.sinumerik.control import (
     CLOCKWISE,
     COUNTER_CLOCKWISE,
     POLYNOMIAL,
+    TANGENT,
     THROUGH,
 )
 from trunnion.readers.families.sinumerik.expressions import Value
@@ -100,6 +101,8 @@ class WordInterpreter(CallInterpreter):
                 control.set_tcp(False)
             case "CIP":
                 control.motion = THROUGH
+            case "CT":
+                control.motion = TANGENT
             case "POLY":
                 control.motion = POLYNOMIAL
             case "ORIAXES":

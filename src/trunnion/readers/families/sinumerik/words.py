@@ -164,7 +164,7 @@ WITHOUT_PATH_EFFECT: Final = _words("""
 #: Words with ``=value`` or ``[axis]=value`` that the path does not depend on.
 WITHOUT_PATH_EFFECT_VALUES: Final = _words("""
     ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC
-    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA DITS DITE FZ
+    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FD FDA FA DITS DITE FZ
     """)
 
 #: Those within which the control may round off the path, mm.
@@ -221,13 +221,19 @@ FEED_GROUP: Final = "FGROUP"
 NOT_SIMULATED: Final = _words("""
     ROTS AROTS CROTS CROT CTRANS CSCALE CMIRROR TOFRAMEX TOFRAMEY TOROTX TOROTY PAROT
     TRANSMIT TRACYL TRAANG TRACON
-    BSPLINE ASPLINE CSPLINE POLYPATH PW SD INVCW INVCCW CT
+    BSPLINE ASPLINE CSPLINE POLYPATH PW SD INVCW INVCCW
     ORIPATH ORIPATHS ORICURVE ORICONCW ORICONCCW ORICONIO ORICONTO ORIVIRT1 ORIVIRT2 ORIRESET
     TCARR CPON MEAS MEAW POS POSA SPOSA FXS COUPON COUPONC COUPOF DRFOF
-    REPEATB TOFFON
-    RND RNDM CHF CHR
+    TOFFON
     FLIN FCUB FPO FL SVC LIMS RTLIOF DIAMON DIAM90 SAVE
     """)
+
+#: Words that round or chamfer the corner at the end of their block, and the feed there: RNDM and FRCM until they are 0.
+CORNERS: Final = frozenset({"RND", "RNDM", "CHF", "CHR"})
+CORNER_FEEDS: Final = frozenset({"FRC", "FRCM"})
+
+#: The control looks past so many blocks without motion for the other side of a corner (MD20200 as it is delivered).
+BLOCKS_IN_CORNER: Final = 3
 
 #: Words that control the orientation.
 ORIENTATION: Final = frozenset({"ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE", "ORIEULER", "ORIRPY", "ORIRPY2"})
@@ -240,7 +246,7 @@ TOOL_FRAMES: Final = frozenset({"TOROT", "TOROTZ", "TOFRAME", "TOFRAMEZ", "TOROT
 
 #: Keywords of control flow.
 FLOW: Final = _words("""
-    IF ELSE ENDIF FOR TO ENDFOR WHILE ENDWHILE LOOP ENDLOOP REPEAT UNTIL
+    IF ELSE ENDIF FOR TO ENDFOR WHILE ENDWHILE LOOP ENDLOOP REPEAT REPEATB UNTIL
     GOTO GOTOF GOTOB GOTOC GOTOS CASE OF DEFAULT
     PROC ENDPROC RET DEF EXTERN CALL EXTCALL MCALL
     """)
@@ -251,9 +257,12 @@ TYPES: Final = frozenset({"REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAM
 #: Functions that give the mode of a position.
 POSITION_MODES: Final = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 
-#: Other words with an effect: transformation, machine positions, circles, polynomials, messages.
-ACTIVE: Final = frozenset(
-    {"TRAORI", "TRAFOOF", "SUPA", "CIP", "CR", "TURN", "AR", "RPL", "POLY", "PO", "PL", "SPOS", "MSG", "SETAL"}
+#: Words without a value that set a mode of the motion.
+MODES: Final = frozenset({"TRAORI", "TRAFOOF", "SUPA", "CIP", "CT", "POLY"})
+
+#: Other words with an effect: circles, polynomials, corners, messages.
+ACTIVE: Final = (
+    MODES | CORNERS | CORNER_FEEDS | frozenset({"CR", "TURN", "AR", "RPL", "PO", "PL", "SPOS", "MSG", "SETAL"})
 )
 
 #: Values of predefined names; modes of CYCLE832 as the digits of S_TOLM.

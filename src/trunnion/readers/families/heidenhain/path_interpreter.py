@@ -1,0 +1,220 @@
+"""Path blocks of Klartext: motions, corners, approaches and departures, and the cycles that they call."""
+
+import math
+import re
+from pathlib import Path
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.machines import Machine
+from trunnion.messages import Wording
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.contour_control import CornerWord
+from trunnion.readers.control.hole_motion import CycleExecutionError
+from trunnion.readers.control.virtual_control import LINEAR, RAPID
+from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
+from trunnion.readers.families.heidenhain.flow import ActiveProgram, FlowInterpreter
+from trunnion.readers.families.heidenhain.leads import LeadWords
+from trunnion.readers.families.heidenhain.lexer import words
+from trunnion.readers.families.heidenhain.machine_functions import MFunctions
+from trunnion.readers.families.heidenhain.parameters import KlartextError
+from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
+from trunnion.readers.families.heidenhain.words import M_CALL, M_MACHINE, M_SECOND_MACHINE
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+
+#: Cutter radius compensation: left of the path, right of it, off.
+_RADIUS_COMPENSATION: Final = {"R0": 0, "RL": 1, "RR": -1}
+
+#: Approaches and departures: in polar coordinates with a P.
+_LEAD: Final = re.compile(r"[ \t]*(P?)(LT|LN|CT|LCT)(?![A-Z])")
+
+#: The sizes that each kind needs.
+_LEAD_WORDS: Final = {"LT": ("LEN",), "LN": ("LEN",), "CT": ("R", "CCA"), "LCT": ("R",)}
+
+#: Arcs of approaches turn this far at most, degrees.
+_MOST_TURN: Final = 360.0
+
+
+class PathInterpreter(FlowInterpreter):
+    """Executes path blocks."""
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
+        self._definitions = Definitions(self.control, self._note)
+        self._m_functions = MFunctions(self.control, self._note)
+        # The feed of the tool call, for F AUTO.
+        self._tool_feed: float | None = None
+
+    # Motion
+
+    def _path_block(self, active: ActiveProgram, function: str, rest: str) -> None:
+        control = self.control
+        block = read_block(words(rest), active.parameters)
+        self._remove_missing_axes(block)
+        axes = block.axes
+        if function in ("LP", "CP", "CTP"):
+            axes = polar_end(control, block, circle=function == "CP")
+        elif block.polar:
+            raise KlartextError(Wording("NC210", "no_polar_coordinates", function=function))
+        if block.radius is not None and function != "CR":
+            raise KlartextError(Wording("NC210", "no_radius", function=function))
+        circle = circle_of(control, function, block) if function[0] == "C" else None
+        vector = block.tool_axis
+        feed = self._feed(block)
+        self._m_functions.execute_before_motion(block)
+        if feed is not None:
+            control.programmed_feed = feed
+        control.motion = RAPID if block.rapid else LINEAR
+        self._set_compensation(block)
+        in_machine = self._moves_in_machine(block)
+        if vector is not None and not control.tip_programmed:
+            self._note(Wording("NC340", "tx_ty_tz_need_m128"), Severity.ERROR)
+        moves, row = bool(axes) or vector is not None or circle is not None, control.row
+        if moves:
+            feed_written = block.feed is not None and not block.rapid
+            control.move(axes, vector, circle=circle, machine_frame=in_machine, feed_written=feed_written)
+            if block.normal is not None and control.row > row:
+                control.add_normal(block.normal)
+        called = any(code == M_CALL for code, _ in block.m)
+        if called or (self._m_functions.modal_call and moves and not in_machine):
+            self._drill(active)
+        if called:
+            self._m_functions.modal_call = False
+        self._m_functions.execute_after_motion(block)
+
+    def _set_compensation(self, block: Block) -> None:
+        if block.side:
+            self.control.modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
+        if block.side in ("RL", "RR"):
+            self._note(Wording("NC221", "radius_compensation", word=block.side), Severity.WARNING)
+            self.control.judge_compensation()
+
+    def _moves_in_machine(self, block: Block) -> bool:
+        """Whether a block programs positions of the machine axes (M91, M92)."""
+        codes = {code for code, _ in block.m}
+        if M_SECOND_MACHINE in codes:
+            self._note(Wording("NC224", "m92_counts_set_machine_taken"), Severity.WARNING)
+        return bool(codes & {M_MACHINE, M_SECOND_MACHINE})
+
+    def _remove_missing_axes(self, block: Block) -> None:
+        """Report the words of axes that the machine does not have, and remove them."""
+        known = {"X", "Y", "Z", *self.control.rotary_names}
+        if self.control.spatial_angles_active:
+            known |= {"A", "B", "C"}
+        for name in sorted(block.axes.keys() - known):
+            self._note(Wording("NC230", "axis_word_not_executed", axis=name), Severity.ERROR)
+            del block.axes[name]
+
+    def _feed(self, block: Block) -> float | None:
+        """Return the feed of a block in mm/min, None if it has none."""
+        if block.feed is not None:
+            return block.feed * self.control.feed_unit
+        if block.feed_of_tool and self._tool_feed is None:
+            raise KlartextError(Wording("NC210", "f_auto_tool_call_no"))
+        return self._tool_feed if block.feed_of_tool else None
+
+    def _pole(self, active: ActiveProgram, rest: str) -> None:
+        """CC: set the pole; an error in the block leaves none."""
+        control = self.control
+        control.pole = None
+        block = read_block(words(rest), active.parameters)
+        pole = control.programmed_position.copy()
+        for name, (value, mode) in block.axes.items():
+            if name not in ("X", "Y", "Z"):
+                raise KlartextError(Wording("NC210", "cc_takes_no", name=name))
+            axis = "XYZ".index(name)
+            if axis == control.plane_axis:
+                raise KlartextError(Wording("NC220", "pole_outside_plane", axis=name))
+            pole[axis] = value * control.length_unit + (pole[axis] if mode is PositionMode.INCREMENTAL else 0.0)
+        control.pole = pole
+
+    # Corners
+
+    def _rounding(self, active: ActiveProgram, rest: str) -> None:
+        block = read_block(words(rest), active.parameters)
+        if block.radius is None or block.radius < 0.0:
+            raise KlartextError(Wording("NC210", "corner_needs_size", word="RND R"))
+        self._corner(block, CornerWord("RND", block.radius * self.control.length_unit))
+
+    def _chamfer(self, active: ActiveProgram, rest: str) -> None:
+        block = read_block(words(f"CHF{rest}"), active.parameters, ("CHF",))
+        side = block.sizes.pop("CHF", 0.0)
+        if not side > 0.0:
+            raise KlartextError(Wording("NC210", "corner_needs_size", word="CHF"))
+        self._corner(block, CornerWord("CHF", side * self.control.length_unit, chamfer=True))
+
+    def _corner(self, block: Block, corner: CornerWord) -> None:
+        """Round or chamfer the corner: besides its size the block takes a feed alone, which counts for the corner."""
+        if block.axes or block.polar or block.vectors or block.m or block.side or block.direction or block.rapid:
+            raise KlartextError(Wording("NC210", "corner_takes_feed_only", word=corner.word))
+        if corner.chamfer and block.radius is not None:
+            raise KlartextError(Wording("NC210", "corner_takes_feed_only", word=corner.word))
+        self.control.cut_corner(corner._replace(feed=self._feed(block)))
+
+    # Approach and departure
+
+    def _approach(self, active: ActiveProgram, rest: str) -> None:
+        control = self.control
+        feed_before = math.nan if control.motion == RAPID else control.programmed_feed
+        axes, block, lead = self._lead_block(active, "APPR", rest)
+        if not axes.keys() & {"X", "Y", "Z"} - {"XYZ"[control.plane_axis]}:
+            raise KlartextError(Wording("NC210", "lead_needs_point", word=lead.word))
+        self._begin_lead(block)
+        self._set_compensation(block)
+        control.approach(axes, lead, feed_before)
+        self._m_functions.execute_after_motion(block)
+
+    def _departure(self, active: ActiveProgram, rest: str) -> None:
+        control = self.control
+        axes, block, lead = self._lead_block(active, "DEP", rest)
+        to_a_point = bool(axes.keys() & {"X", "Y", "Z"} - {"XYZ"[control.plane_axis]})
+        if to_a_point != (lead.kind == "LCT"):
+            raise KlartextError(
+                Wording("NC210", "lead_needs_point" if not to_a_point else "lead_takes_no_point", word=lead.word)
+            )
+        self._begin_lead(block)
+        control.depart(axes, lead)
+        self._m_functions.execute_after_motion(block)
+
+    def _begin_lead(self, block: Block) -> None:
+        """Take over the feed and the M functions of an approach or departure."""
+        feed = self._feed(block)
+        self._m_functions.execute_before_motion(block)
+        if feed is not None:
+            self.control.programmed_feed = feed
+        self.control.motion = RAPID if block.rapid else LINEAR
+
+    def _lead_block(self, active: ActiveProgram, word: str, rest: str) -> tuple[dict[str, AxisWord], Block, LeadWords]:
+        """Return the axes of an APPR or DEP block, its words and its sizes."""
+        match = _LEAD.match(rest)
+        if match is None:
+            raise KlartextError(Wording("NC210", "lead_needs_kind", word=word))
+        word, kind = f"{word} {match[1]}{match[2]}", match[2]
+        block = read_block(words(rest[match.end() :]), active.parameters, ("LEN", "CCA"))
+        self._remove_missing_axes(block)
+        if block.axes.keys() - {"X", "Y", "Z"} or block.vectors or block.direction:
+            raise KlartextError(Wording("NC220", "lead_with_rotary_axes", word=word))
+        if self._moves_in_machine(block) or any(code == M_CALL for code, _ in block.m):
+            raise KlartextError(Wording("NC210", "lead_in_machine", word=word))
+        sizes = dict(block.sizes)
+        if block.radius is not None:
+            sizes["R"] = block.radius
+        positive = all(value > 0.0 or (name == "R" and kind == "CT") for name, value in sizes.items())
+        if sizes.keys() != set(_LEAD_WORDS[kind]) or not positive or sizes.get("CCA", 0.0) > _MOST_TURN:
+            raise KlartextError(Wording("NC210", "lead_sizes", word=word, sizes=_LEAD_WORDS[kind]))
+        if block.polar and not match[1]:
+            raise KlartextError(Wording("NC210", "no_polar_coordinates", function=word))
+        axes = polar_end(self.control, block, circle=False) if match[1] else block.axes
+        unit = self.control.length_unit
+        length, radius = sizes.get("LEN", 0.0) * unit, sizes.get("R", 0.0) * unit
+        return axes, block, LeadWords(word, kind, length, radius, sizes.get("CCA", 0.0), block.rapid)
+
+    def _drill(self, active: ActiveProgram) -> None:
+        """Execute the defined cycle at the present position."""
+        try:
+            motions = self._definitions.call(active.parameters)
+        except CycleExecutionError as error:
+            self._note(error.wording.within("cycle_not_executed"), Severity.ERROR)
+            return
+        self._counter.count_motions(len(motions))
+        self.control.drill(motions, self._definitions.spindle_work())
