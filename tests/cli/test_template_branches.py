@@ -1,5 +1,6 @@
 """``trunnion check`` reports motions that stand in a branch of a template."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -56,3 +57,16 @@ def test_what_is_in_every_program_or_moves_nothing_is_none(
     base: str, text: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert _said(tmp_path, capfd, base, text) == []
+
+
+def test_data_has_what_stderr_says(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "ours.toml"
+    text = _HEAD.format(base="yl569", text=_IF.format("G0 X100"))
+    control = text.replace("yl569", "sinumerik_840d").replace("[control.templates]", "[templates]")
+    for content in (text, control.replace("schema = 1", "").replace('name = "Ours"', "")):
+        file.write_text(content, encoding="utf-8")
+        assert main(["check", str(file), "--json"]) == 0
+        told = capfd.readouterr()
+        (remark,) = json.loads(told.out)["remarks"]
+        assert (remark["code"], remark["severity"], remark["line"]) == ("DEF595", "warning", 7)
+        assert remark["text"] in told.err

@@ -8,9 +8,12 @@ import trunnion
 from tests.support.locations import YL569
 from tests.support.reports import blade
 from trunnion.errors import Problem, Severity
+from trunnion.jobs.convert.result import ConvertResult
 from trunnion.messages import Wording, foreign
-from trunnion.reporting.remarks import remark_groups
+from trunnion.model.toolpath import Toolpath
+from trunnion.reporting.remarks import remark_data, remark_groups
 from trunnion.reporting.write import write_report
+from trunnion.results import to_data
 
 
 def warning(line: int, operation: str) -> Problem:
@@ -34,6 +37,14 @@ def test_what_differs_in_a_part_that_is_a_text_of_its_own_is_not_the_same() -> N
         ("the simulation finds: gouge: tool 2, part", 2),
         ("the simulation finds: collision: part, shank", 1),
     ]
+
+
+def test_data_of_a_job_has_the_first_place_and_a_count() -> None:
+    problems = tuple(warning(k, f"OP{k}") for k in range(1, 16))
+    converted = ConvertResult(Toolpath("part.cls", ()), {}, problems, None, None, None)
+    (remark,) = to_data(converted)["remarks"]
+    assert (remark["count"], remark["code"], remark["file"], remark["line"]) == (15, "CTL530", "part.cls", 1)
+    assert remark_data(problems) == [remark]
 
 
 def test_page_and_data_have_every_warning(tmp_path: Path) -> None:

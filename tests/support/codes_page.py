@@ -26,6 +26,7 @@ Wherever the data of a command has `remarks`, each has the same keys; `null` whe
 | `text` | what is wrong |
 | `cure` | how to correct it |
 | `subject` | what it is about, if not a line: `kind` (`argument`, or `key` of a definition) and `name` |
+| `count` | of `simulate`, `convert` and reports: how often it was said; `file` and `line` are those of the first time |
 """
 
 

@@ -13,6 +13,7 @@ from typing import Any, Final
 from trunnion.definitions import LocatedValue, load_table, own_keys
 from trunnion.errors import InputError, Problem
 from trunnion.machines.loading import machine_library
+from trunnion.results import to_data
 from trunnion.wording import counted
 
 #: The line by which a file names its schema.
@@ -123,4 +124,6 @@ def _kind(path: Path) -> str | None:
 
 def checked_data(found: CheckedFile) -> dict[str, Any]:
     """Return it as data."""
-    return {"schema": 1, "file": Path(found.file).as_posix(), "kind": found.kind, "text": found.text}
+    return {"schema": 1, "file": Path(found.file).as_posix(), "kind": found.kind, "text": found.text} | {
+        "remarks": to_data(found.remarks)
+    }

@@ -10,7 +10,7 @@ from trunnion.cli.machine_text import machine_data, machine_lines, machine_list
 from trunnion.cli.printing import print_result, tell_problem
 from trunnion.cli.results import show
 from trunnion.cli.wording import problem_line
-from trunnion.controls import Control, load_control
+from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
 from trunnion.definitions import load_table
@@ -21,7 +21,6 @@ from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.describe.controls import describe_control
 from trunnion.jobs.describe.definition_checks import all_problems, machine_problems, stand_in
 from trunnion.jobs.describe.machines import describe_machine
-from trunnion.jobs.describe.template_motions import motions_in_branches
 from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.job import Given
 from trunnion.machines import load_machine, shipped_machines
@@ -71,33 +70,29 @@ def check(given: Given) -> int:
     """
     other = checked_file(given.file)
     if other is not None:
-        for remark in other.remarks:
-            tell_problem(problem_line(remark))
+        _tell(other.remarks)
         show(given, lambda: checked_data(other), [f"{given.file}: good: {other.text}"])
         return 0
     if given.file in shipped_controls() or is_control_file(Path(given.file)):
         _check_control_file(given.file)
-        _warn_of_branches(load_control(load_control_table(given.file)))
         control = describe_control(given.file)
+        _tell(control.remarks)
         good = f"{given.file}: good"
         show(given, lambda: control, [good, "", *control_lines(control)])
         return 0
     _check_is_known(given.file)
     key = PurePath(given.file).name.removesuffix(".toml")
     _raise(machine_problems(load_table(given.file, machine_library(), kind="machine"), key))
-    machine = load_machine(given.file)
-    if machine.control.keys() not in ([], ["family"]):
-        _warn_of_branches(load_control(machine.control))
     found = describe_machine(given.file)
+    _tell(found.remarks)
     good = f"{given.file}: good"
     show(given, lambda: machine_data(found), [good, "", *machine_lines(found)])
     return 0
 
 
-def _warn_of_branches(control: Control) -> None:
-    """Print what the proof of a program may not have seen."""
-    for problem in motions_in_branches(control):
-        tell_problem(problem_line(problem))
+def _tell(remarks: Sequence[Problem]) -> None:
+    for remark in remarks:
+        tell_problem(problem_line(remark))
 
 
 def _raise(problems: Sequence[Problem]) -> None:

@@ -53,6 +53,21 @@ class EarlierJob:
         known = self._digests.get(os.path.normcase(file.name))
         return bool(known) and file.is_file() and file.stat().st_size > 0 and not self.wrote(file)
 
+    def is_foreign(self, file: Path) -> bool:
+        """Whether a file holds what these jobs have not written: it was edited since, or is somebody else's.
+
+        Where nothing can be remembered nobody knows it, and every file would be.
+        """
+        return file.is_file() and file.stat().st_size > 0 and not self.wrote(file) and self._remembers
+
+    @property
+    def _remembers(self) -> bool:
+        """Whether there is a place for the record."""
+        if self._record is None:
+            return False
+        there = next(folder for folder in self._record.parents if folder.exists())
+        return os.access(there, os.W_OK)
+
     def wrote_paper(self, file: Path) -> bool:
         """Whether a file that exists is as any job has written it as a paper, or one of these jobs at all."""
         if self.wrote(file):

@@ -1,7 +1,7 @@
-"""Programs that somebody has edited since a job has written them: none is replaced unseen.
+"""Files that are not as a job has written them, edited since or somebody else's: none is replaced unseen.
 
 In:     the place of a file that is going to be replaced, what earlier jobs have written, and what the user wants.
-Out:    where the edited file is kept; or an error.
+Out:    where the file is kept; or an error.
 """
 
 from datetime import datetime
@@ -14,7 +14,9 @@ from trunnion.messages import Wording
 
 
 def place_of_edited(place: OutputPlace, earlier: EarlierJob, edited: str) -> OutputPlace | None:
-    """Return where an edited file is kept; None: it is as jobs have written it, or of somebody else, or replaced.
+    """Return where a file is kept that jobs have not written as it is; None: they have, or it is replaced.
+
+    Its own place: nobody knows whose it is. It is replaced only by what it holds already, as after a clone.
 
     place    of the file
     earlier  the jobs
@@ -22,10 +24,12 @@ def place_of_edited(place: OutputPlace, earlier: EarlierJob, edited: str) -> Out
 
     Raises ``InputError`` if it is refused.
     """
-    if edited == "replace" or place.is_stream or not earlier.has_edited(place.path):
+    if edited == "replace" or place.is_stream or not earlier.is_foreign(place.path):
         return None
     if edited != "keep":
-        raise InputError(edited_problem(place.name))
+        if earlier.has_edited(place.path):
+            raise InputError(Problem(place.name, 0, Wording("FIL250", "edited_since")))
+        return place
     # The date of the edit, not of today: the same files give the same names.
     changed = datetime.fromtimestamp(place.path.stat().st_mtime)
     for number in count(1):
@@ -34,8 +38,3 @@ def place_of_edited(place: OutputPlace, earlier: EarlierJob, edited: str) -> Out
         if not path.exists():
             return OutputPlace(str(path), path)
     raise AssertionError("there is a number that is free")
-
-
-def edited_problem(name: str) -> Problem:
-    """Return what is said where an edited program is not replaced."""
-    return Problem(name, 0, Wording("FIL250", "edited_since"))

@@ -1,5 +1,6 @@
 """Output files of a job, which appear complete or not at all."""
 
+import filecmp
 import io
 import os
 from collections.abc import Iterable, Iterator
@@ -103,12 +104,20 @@ class OutputFiles:
     @property
     def kept(self) -> list[tuple[OutputPlace, OutputPlace]]:
         """Programs that were edited since they were written, and where they are kept."""
-        return list(self._kept.items())
+        return [(place, kept) for place, kept in self._kept.items() if kept != place]
 
     def _keep_edited(self, place: OutputPlace) -> None:
         """Note where a program that was edited is kept; errors are those of ``place_of_edited``."""
         if self._earlier is not None and (kept := place_of_edited(place, self._earlier, self._edited)) is not None:
             self._kept[place] = kept
+
+    def check_replaced(self) -> None:
+        """Raise ``InputError`` for a file that no job has written, and that holds anything else than these files."""
+        for path, place in self._program_files():
+            if self._kept.get(place) == place:
+                if not filecmp.cmp(path, place.path, shallow=False):
+                    raise InputError(Problem(place.name, 0, Wording("FIL250", "of_somebody_else")))
+                del self._kept[place]
 
     def add_paper(self, place: OutputPlace) -> BinaryIO:
         """Begin a report or another file about the first one, which appears with it, and return its sink."""
@@ -319,6 +328,7 @@ def _fill(files: OutputFiles) -> Iterator[OutputFiles]:
         try:
             yield files
             files.sync()
+            files.check_replaced()
         finally:
             files.close()
     finally:

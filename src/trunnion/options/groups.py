@@ -92,7 +92,7 @@ POSTING: Final = Group(
             "edited",
             "--edited",
             Choice(EDITED),
-            "a program there that was edited since it was written: refuse, keep it as NAME.edited-DATE, or replace it",
+            "a file there that is not as a job has written it: refuse, keep it as NAME.edited-DATE, or replace it",
             setting="edited",
         ),
     ),

@@ -5,7 +5,7 @@ from typing import Final
 #: Values of the setting ``feed``.
 FEEDS: Final = ("programmed", "fastest")
 
-#: What becomes of a program that was edited since it was written, where a new one takes its place.
+#: What becomes of a file that is not as a job has written it, where a new program takes its place.
 EDITED: Final = ("refuse", "keep", "replace")
 
 #: What the best place is best for.

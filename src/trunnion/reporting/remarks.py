@@ -9,11 +9,12 @@ Text from outside is cleaned here of characters that no file can hold.
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from trunnion.errors import Problem
 from trunnion.messages import Wording
 from trunnion.reporting.text import clean
-from trunnion.results import OptionalLine, OptionalText
+from trunnion.results import OptionalLine, OptionalText, to_data
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +39,20 @@ class RemarkGroup:
 
 def remark_groups(problems: Iterable[Problem]) -> tuple[RemarkGroup, ...]:
     """Return the groups of problems that say the same of several places of a file or tool."""
+    return tuple(_group(each) for each in _alike(problems))
+
+
+def remark_data(problems: Iterable[Problem]) -> list[dict[str, Any]]:
+    """Return the first problem of each group as data, with its ``count``."""
+    return [{**to_data(each[0]), "count": len(each)} for each in _alike(problems)]
+
+
+def _alike(problems: Iterable[Problem]) -> Iterable[list[Problem]]:
     groups: dict[tuple[str, str, str, tuple[str, ...]], list[Problem]] = {}
     for problem in problems:
         kind = (str(problem.severity), problem.code, problem.file, _kind(problem.wording))
         groups.setdefault(kind, []).append(problem)
-    return tuple(_group(each) for each in groups.values())
+    return groups.values()
 
 
 def _kind(wording: Wording) -> tuple[str, ...]:

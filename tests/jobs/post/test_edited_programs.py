@@ -76,9 +76,57 @@ def test_an_edited_program_of_a_project_is_refused_and_kept_where_it_says_so(tmp
     assert (tmp_path / "hub.mpf.edited-2023-11-14").read_bytes() == edited
 
 
-def test_a_file_that_no_job_has_written_is_replaced_where_it_is_named(tmp_path: Path) -> None:
-    (tmp_path / "hub.mpf").write_text("somebody's", encoding="utf-8")
+def test_a_program_that_was_written_by_hand_is_refused_kept_or_replaced_as_is_said(tmp_path: Path) -> None:
+    file = tmp_path / "hub.mpf"
+    file.write_text("N10 M30\n", encoding="utf-8")
+    by_hand = edit(file)
+    for settings in ({}, {"edited": "refuse"}):
+        with pytest.raises(trunnion.InputError, match="although no post or conversion has written it") as refused:
+            post(tmp_path, **settings)
+        assert "edited=keep" in refused.value.problems[0].cure
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [by_hand]
+    result = post(tmp_path, edited="keep")
+    assert (tmp_path / "hub.mpf.edited-2023-11-14").read_bytes() == by_hand
+    assert "it is kept as hub.mpf.edited-2023-11-14" in "\n".join(map(str, result.problems))
     assert post(tmp_path).passed
+    (tmp_path / "other.mpf").write_text("N10 M30\n", encoding="utf-8")
+    file.unlink()
+    (tmp_path / "other.mpf").rename(file)
+    assert post(tmp_path, edited="replace").passed
+
+
+def test_what_a_program_holds_already_and_an_empty_file_are_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As after a clone, and where nothing can be remembered."""
+    post(tmp_path)
+    (tmp_path / "cache").mkdir()
+    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "cache"))
+    assert post(tmp_path).passed
+    edit(tmp_path / "hub.mpf")
+    with pytest.raises(trunnion.InputError, match="was edited since it was written"):
+        post(tmp_path)
+    (tmp_path / "hub.mpf").write_bytes(b"")
+    assert post(tmp_path).passed
+    edit(tmp_path / "hub.mpf")
+    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "none"))
+    assert post(tmp_path).passed
+
+
+def test_a_program_by_hand_is_not_replaced_by_a_project_or_a_conversion(tmp_path: Path) -> None:
+    project, file = tmp_path / "part.toml", tmp_path / "hub.mpf"
+    (tmp_path / "hub.cls").write_bytes(HUB.read_bytes())
+    project.write_text('machine = "yl569"\ncl = ["hub.cls"]\noutput = "hub.mpf"\n', encoding="utf-8")
+    file.write_text("N10 M30\n", encoding="utf-8")
+    match = "although no post or conversion has written it"
+    with pytest.raises(trunnion.InputError, match=match) as refused:
+        trunnion.post_project(project)
+    assert (refused.value.problems[0].file, refused.value.problems[0].line) == (str(project), 3)
+    with pytest.raises(trunnion.InputError, match=match):
+        trunnion.convert(YL569 / "2_hub_rough.expected.mpf", machine="yl569", to_cl=True, output=file)
+    assert file.read_text(encoding="utf-8") == "N10 M30\n"
+    trunnion.post_project(project, settings={"edited": "keep"})
+    assert len([path for path in tmp_path.iterdir() if path.name.startswith("hub.mpf.edited-")]) == 1
 
 
 def test_an_edited_program_of_a_conversion_is_kept(tmp_path: Path) -> None:

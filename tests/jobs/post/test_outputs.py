@@ -190,7 +190,7 @@ def test_a_file_that_nobody_named_is_replaced_only_as_it_was_written(
     Path("tool.mpf").write_text("N10 M30\n")
     assert main(["post", "tool.cls", "--machine", "yl569"]) == 2
     assert f"tool.mpf: error: {written}" in (said := capfd.readouterr().err)
-    assert "--output tool.mpf replaces it, another name keeps it" in said
+    assert "--output tool.mpf with --edited keep keeps it as NAME.edited-DATE, another name leaves it alone" in said
     Path("tool.mpf").unlink()
     assert contents(Path()) == before
     Path("cl").mkdir()

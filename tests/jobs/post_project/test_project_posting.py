@@ -243,12 +243,14 @@ def test_a_project_replaces_only_what_posts_have_written(tmp_path: Path) -> None
     written[0].write_text("EDITED")
     assert "was edited since it was written, and would be replaced" in problems(path)[0]
     assert written[0].read_text() == "EDITED"
-    clone = tmp_path / "clone"  # a program is replaced by a program that comes from elsewhere
+    clone = tmp_path / "clone"  # whose a program is nobody knows
     clone.mkdir()
     for file in (path, tmp_path / "top.cls", written[0]):
         shutil.copy(file, clone)
     (clone / path.name).write_text(PROJECT)
-    assert "EDITED" not in trunnion.post_project(clone / path.name).files[0].read_text()
+    assert "although no post or conversion has written it as it is" in problems(clone / path.name)[0]
+    posted = trunnion.post_project(clone / path.name, settings={"edited": "replace"})
+    assert "EDITED" not in posted.files[0].read_text()
     path.write_text((PROJECT + papers).replace("top.mpf", "notes.txt"))
     (tmp_path / "notes.txt").write_text("MINE")
     assert "notes.txt would be replaced" in problems(path)[0]

@@ -10,6 +10,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.result_output import written_text
 from trunnion.model.toolpath import Toolpath
+from trunnion.reporting.remarks import remark_data
 from trunnion.results import FIRST, Figure
 from trunnion.wording import counted
 
@@ -33,7 +34,7 @@ class ConvertResult:
         Figure("points", take=lambda toolpath: sum(len(each.moves) for each in toolpath.operations)),
     ]
     settings: Annotated[Mapping[str, str], Figure(after="points")]
-    problems: Annotated[tuple[Problem, ...], Figure("remarks", after="posted")]
+    problems: Annotated[tuple[Problem, ...], Figure("remarks", after="posted", take=remark_data)]
     posted: Annotated[PostResult | None, Figure(after="settings")]
     output: Path | None
     _memory: io.BytesIO | None

@@ -15,8 +15,9 @@ from trunnion.controls.vocabulary import (
     TOOL_VECTOR_WORDS,
     UNKNOWN_FEED,
 )
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES, load_reader
+from trunnion.jobs.describe.template_motions import motions_in_branches
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.reading import FilePath, load_machine
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
@@ -92,6 +93,7 @@ class ControlDescription:
     texts         templates in the order in which a program has them
     settings      its own
     run_settings  those that every control has
+    remarks       warnings of what the proof of a program may not see
     """
 
     key: str
@@ -104,6 +106,7 @@ class ControlDescription:
     texts: tuple[TemplateDescription, ...]
     settings: tuple[SettingDescription, ...]
     run_settings: tuple[SettingDescription, ...]
+    remarks: tuple[Problem, ...] = ()
 
 
 def describe_control(control: FilePath) -> ControlDescription:
@@ -206,6 +209,7 @@ def _describe(key: str, control: Control) -> ControlDescription:
         texts=tuple(TemplateDescription(name, control.templates[name].lines) for name in names),
         settings=describe_settings(control),
         run_settings=tuple(setting for setting in run_settings() if setting.name not in control.settings),
+        remarks=tuple(motions_in_branches(control)),
     )
 
 

@@ -7,8 +7,10 @@ from typing import Annotated
 
 from trunnion.controls import load_control
 from trunnion.definitions import load_table
+from trunnion.errors import Problem
 from trunnion.jobs.describe.assumptions import assumptions
 from trunnion.jobs.describe.controls import TemplateDescription, main_texts
+from trunnion.jobs.describe.template_motions import motions_in_branches
 from trunnion.jobs.inputs.reading import MachineLike, as_machine
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import JogTable, jog_table
@@ -25,6 +27,7 @@ class MachineDescription:
     control  name of its control
     texts    those of its control that a program with one tool has, in their order
     assumed  what its definition leaves open, marks as not measured, or has from another machine, in sentences
+    remarks  warnings of what the proof of a program may not see
     """
 
     machine: Annotated[
@@ -40,6 +43,7 @@ class MachineDescription:
     control: Annotated[str, Figure(after="assumed")]
     texts: Annotated[tuple[TemplateDescription, ...], Figure(after="control")]
     assumed: tuple[str, ...] = ()
+    remarks: tuple[Problem, ...] = ()
 
 
 def describe_machine(machine: MachineLike) -> MachineDescription:
@@ -76,4 +80,5 @@ def describe_machine(machine: MachineLike) -> MachineDescription:
     control = load_control(found.control)
     table = load_table(machine, machine_library(), kind="machine") if isinstance(machine, str | Path) else None
     assumed = assumptions(found, table)
-    return MachineDescription(found, jog_table(found), control.name, main_texts(control), assumed)
+    remarks = tuple(motions_in_branches(control))
+    return MachineDescription(found, jog_table(found), control.name, main_texts(control), assumed, remarks)

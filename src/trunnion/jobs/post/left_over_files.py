@@ -32,7 +32,7 @@ def left_over(target: Target, papers: Iterable[OutputPlace]) -> list[Problem]:
 
 
 def kept_files(target: Target) -> list[Problem]:
-    """Return a warning for each program that was edited since it was written, and that is kept under another name."""
+    """Return a warning for each file that no job has written as it is, and that is kept under another name."""
     return [warning(place.name, 0, Wording("FIL250", "kept", name=kept.path.name)) for place, kept in target.files.kept]
 
 

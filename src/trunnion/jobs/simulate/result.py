@@ -11,6 +11,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
 from trunnion.messages import phrase
 from trunnion.model.run_samples import joint_samples
+from trunnion.reporting.remarks import remark_data
 from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
 from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperation, SimulationFinding, setup_findings
 from trunnion.simulation.simulator import Simulation
@@ -125,9 +126,9 @@ class SimulationResult:
     @property
     @Figure("remarks", after="operations")
     def remarks_of_setups(self) -> list[dict[str, Any]]:
-        """The remarks as data, with the names of their set-ups."""
+        """The remarks as data, each thing once with its count, and the names of their set-ups."""
         parts = self.setups or (self,)
-        return [{**to_data(each), "setup": part.setup or None} for part in parts for each in part.remarks]
+        return [{**each, "setup": part.setup or None} for part in parts for each in remark_data(part.remarks)]
 
     @property
     @Figure(after="schema")

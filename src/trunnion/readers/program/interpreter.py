@@ -88,7 +88,6 @@ class Interpreter(ABC, Generic[A]):
         self._machine = machine
         self._options = options
         self._subprograms = Subprograms(options.subprograms, self.suffixes, self.prefix)
-        self._source_of_line: SourceText | None = None  # a block that calls a subprogram is a line of its own file
         self._counter = StepCounter(options.step_limit, self._open_sources, self._limit_error, self._positions_from)
         self._diagnostics: list[Diagnostic] = []
         self._unlisted = 0
@@ -182,10 +181,13 @@ class Interpreter(ABC, Generic[A]):
         while self._stack:
             active = self._stack[-1]
             source = active.source
+            if (
+                control.modal.file.current != active.file
+            ):  # only now: the block that called is of its own file to its end
+                control.modal.file.set(control.row, active.file)
             if not source.fill():
                 self._end_of_source()
                 continue
-            self._source_of_line = source
             if self._lines_without_scan:
                 self._lines_without_scan -= 1
             elif not (control.preconditions or control.awaits_element) and self._may_scan(source):
@@ -267,8 +269,7 @@ class Interpreter(ABC, Generic[A]):
         return [self._stack[0].source, *(source for source, _ in self._sources.values())]
 
     def _limit_error(self, wording: Wording) -> InputError:
-        source = self._source_of_line or self._stack[-1].source
-        return source.problem(self.control.line, wording)
+        return InputError(Problem(self._files[self.control.modal.file.current], self.control.line, wording))
 
     def _check_depth(self) -> None:
         if len(self._stack) >= MAX_CALL_DEPTH:
@@ -277,7 +278,7 @@ class Interpreter(ABC, Generic[A]):
     # Subprograms
 
     def _open_subprogram(self, path: Path) -> tuple[SourceText, int]:
-        """Return the text of a subprogram at its first line, and its index in ``Run.files``; rows are its own now."""
+        """Return the text of a subprogram at its first line, and its index in ``Run.files``."""
         if path not in self._sources:
             if len(self._sources) >= MAX_SUBPROGRAMS:
                 raise self._limit_error(Wording("NC140", "too_many_subprograms", most=MAX_SUBPROGRAMS))
@@ -288,7 +289,6 @@ class Interpreter(ABC, Generic[A]):
             # A file may be active more than once: each time with a position of its own.
             source, file = self._sources[path][0].restarted(), self._sources[path][1]
         source.first_row = self.control.row
-        self.control.modal.file.set(self.control.row, file)
         return source, file
 
     def _lines_of(self, active: A) -> tuple[int, int | None]:

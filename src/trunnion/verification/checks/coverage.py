@@ -1,11 +1,12 @@
-"""Which motions of a program the checks against CL files look at, and why not at the others.
+"""Which motions of a program checks look at, and why not at the others.
 
-In:     a program that is compared with CL files.
+In:     a program; one that is compared with CL files for the checks that compare motions with them.
 Out:    counts, and of the motions that are left out the first for each reason.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from operator import itemgetter
 from typing import Final
 
 import numpy as np
@@ -13,8 +14,9 @@ import numpy as np
 from trunnion.arrays import Codes
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Kind
-from trunnion.verification.context import ComparedContext
+from trunnion.verification.context import ComparedContext, Context
 from trunnion.verification.kinematics.positioning_moves import approach_rows, rotary_positioning_flags
+from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.matching.hole_matching import hole_rows, match_holes
 from trunnion.verification.results import Check, Coverage
 from trunnion.verification.row_ranges import chunk_bounds
@@ -38,6 +40,12 @@ _POINTWISE: Final = {
     "tip": (False, True), "axis": (False, True), "kind": (True, True), "feed": (True, False), "spindle": (True, True),
     "tool": (True, True), "coolant": (True, True), "compensation": (True, True),
 }  # fmt: skip
+
+
+def coverage_of(context: Context, seen: SeenRows) -> Coverage:
+    """Return the count of what was seen, and of what was not the first motion of each reason, in their order."""
+    places = tuple(context.place(row, 0.0, why) for why, row in sorted(seen.left_out.items(), key=itemgetter(1)))
+    return Coverage(seen.checked, len(context.run), places)
 
 
 def with_coverage(context: ComparedContext, checks: Sequence[Check]) -> Iterator[Check]:

@@ -8,17 +8,22 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.messages import phrase
 from trunnion.model.columns import StepColumn
-from trunnion.model.run import Run
+from trunnion.model.feed_path import NO_ROTATION
+from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.coverage import coverage_of
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.linearization import LinearizationErrors
 from trunnion.verification.expected.arcs import circle_of
 from trunnion.verification.expected.path import WrittenSpline
 from trunnion.verification.expected.splines import dense_points, span_counts
 from trunnion.verification.kinematics.axis_motion import AxisMotion
+from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.matching.pairs import ArcSegments
 from trunnion.verification.results import Check, Place
+from trunnion.verification.row_ranges import chunk_bounds
 
 #: What comes of arithmetic only, mm.
 _NOISE: Final = 1e-9
@@ -140,7 +145,23 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
         places = [*faults[:MAX_PLACES], *places]
     passed = not errors.axis.count + errors.tip.count + len(faults)
     title = "tool between the points"
-    return Check("span", title, passed, summary, axis.value, settings.span, "deg", tuple(places))
+    seen = coverage_of(context, _seen(context, rapids=settings.span_tip is not None))
+    return Check("span", title, passed, summary, axis.value, settings.span, "deg", tuple(places), (), seen)
+
+
+def _seen(context: Context, *, rapids: bool) -> SeenRows:
+    """Return the motions that are judged between their ends; ``rapids``: of rapids those without TCP too."""
+    run, seen = context.run, SeenRows()
+    for first, end in chunk_bounds(len(run)):
+        kind, state = run.kind[first:end], run.state
+        here = (kind == Kind.RAPID) & ~(rapids & ~state.tcp.part(first, end))
+        before = run.rotary[first - 1] if first else np.asarray(run.start)[list(run.machine.rotary)]
+        turns = np.abs(np.diff(np.vstack((before, run.rotary[first:end])), axis=0)).max(axis=1) > NO_ROTATION
+        on_arc = (kind == Kind.ARC) & turns & (run.orientation_between(first, end) == Orientation.ANGLES)
+        in_machine = phrase("left_in_machine"), state.machine_frame.part(first, end)
+        reasons = (in_machine, (phrase("left_rapid"), here), (phrase("left_turns_on_arc"), on_arc))
+        seen.add(first, end - first, reasons)
+    return seen
 
 
 def _allowed_tip(settings: ExpectedValues) -> Iterator[str]:

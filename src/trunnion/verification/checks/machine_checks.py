@@ -1,11 +1,12 @@
 """What the program asks of the machine: travel, speed and acceleration of its axes."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trunnion.machines import Axis
 from trunnion.messages import Wording, phrase
 from trunnion.model.tool_additions import added_lengths
+from trunnion.verification.checks.coverage import coverage_of
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -127,7 +128,8 @@ def check_speed(context: Context, motion: AxisMotion) -> Check:
     title = "speed of the axes at the programmed feed"
     if not any(axis.rapid for axis in context.run.machine.axes):
         return Check("speed", title, True, "")
-    return _check_shares(context, motion.speed, "speed", title, "rapid speed", "no axis moves at feed")
+    check = _check_shares(context, motion.speed, "speed", title, "rapid speed", "no axis moves at feed")
+    return replace(check, coverage=coverage_of(context, motion.speed_seen))
 
 
 def check_acceleration(context: Context, motion: AxisMotion) -> Check:
@@ -136,7 +138,8 @@ def check_acceleration(context: Context, motion: AxisMotion) -> Check:
     if not any(axis.acceleration for axis in context.run.machine.axes):
         return Check("acceleration", title, True, "")
     none = "no two motions at feed follow each other"
-    return _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", none)
+    check = _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", none)
+    return replace(check, coverage=coverage_of(context, motion.change_seen))
 
 
 def _check_shares(

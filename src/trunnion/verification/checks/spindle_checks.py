@@ -1,6 +1,7 @@
 """The spindle of a program against SPINDL in the CL files, and against the range that the machine has."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -8,11 +9,14 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.machines import spindle_speed_fault, states_spindle_range
+from trunnion.messages import phrase
 from trunnion.model.run import Run
+from trunnion.verification.checks.coverage import coverage_of
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext, Context, Faults, check_from_places
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle
 from trunnion.verification.expected.states import all_spindles, spindle_states
+from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
 
@@ -88,7 +92,7 @@ def check_spindle_range(context: Context) -> Check:
     run = context.run
     if not states_spindle_range(run.machine):
         return Check(_RANGE, _RANGE_TITLE, True, "")
-    found = Faults()
+    found, seen = Faults(), SeenRows()
     speeds: set[float] = set()
     last = 0.0
     for start, end in chunk_bounds(len(run)):
@@ -101,5 +105,7 @@ def check_spindle_range(context: Context) -> Check:
                 if fault:
                     found.add(context.place(start + k, speed, str(fault)))
         last = float(rpm[-1])
+        still = (phrase("left_standing_spindle"), rpm == 0.0)
+        seen.add(start, end - start, (still, (phrase("left_no_speed"), ~(rpm > 0.0))))
     good = f"{min(speeds):g} to {max(speeds):g} rev/min" if speeds else "the spindle does not turn"
-    return found.check(_RANGE, _RANGE_TITLE, good)
+    return replace(found.check(_RANGE, _RANGE_TITLE, good), coverage=coverage_of(context, seen))

@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machines import Machine, forward
+from trunnion.messages import Wording, phrase
 from trunnion.model.arc_extremes import run_reach
 from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, PositionChunk, Run
@@ -27,6 +28,7 @@ from trunnion.model.turning_lines import LineSearch, TurningLines
 from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
+from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.kinematics.unknown_approaches import UnknownApproaches, unknown_approaches
 from trunnion.verification.kinematics.worst_rows import WorstRows
 
@@ -47,6 +49,8 @@ class AxisMotion:
     extreme_rows    (5, 2) the rows that reach them, -1 for none
     within_lines    (5, 2) bool: between the ends of a line on which rotary axes turn
     unknown         rows that are left out of the extremes, since nobody knows where they begin
+    speed_seen      motions whose speeds are known
+    change_seen     motions of which it is known how speeds change from the one before
     """
 
     seconds: Floats
@@ -60,6 +64,8 @@ class AxisMotion:
     extreme_rows: Ints
     within_lines: Flags
     unknown: UnknownApproaches
+    speed_seen: SeenRows
+    change_seen: SeenRows
 
 
 class AxisMotionAnalyzer:
@@ -88,11 +94,13 @@ class AxisMotionAnalyzer:
             extreme_rows=np.full((5, 2), -1, np.int64),
             within_lines=np.zeros((5, 2), np.bool_),
             unknown=self._unknown,
+            speed_seen=SeenRows(),
+            change_seen=SeenRows(),
         )
         motion = self._motion
         self._line_search = LineSearch(run.machine, motion.extremes, motion.extreme_rows, motion.within_lines)
         self._is_placed = all(run.machine.is_placed(column) for column in run.machine.linear)
-        self._counts_before = False
+        self._counts_before = self._moved_at_feed = False
 
     def add(self, first: int, end: int, positions: PositionChunk) -> None:
         """Add rows, in order; ``positions`` is the ``Run.chunk`` of them."""
@@ -124,6 +132,7 @@ class AxisMotionAnalyzer:
         axis_motion_rows(
             first, rows, self._limits, self._carry, motion.extremes, motion.extreme_rows, shares, deviation
         )
+        self._count_seen(first, kind, feeds)
         self._add_arc_shares(arcs, first, feeds, shares)
         self._add_arcs(first, end, positions, machine_frame)
         motion.within_lines[motion.extremes != extremes_before] = False
@@ -139,6 +148,20 @@ class AxisMotionAnalyzer:
         if not tcp.all():
             free = np.flatnonzero(self._turns(positions) & ~tcp & (kind == Kind.LINEAR))
             motion.tip_deviation.add(first, _tip_deviations(run.machine, positions, free, count))
+
+    def _count_seen(self, first: int, kind: Codes, feeds: Floats) -> None:
+        """Count the motions whose speeds are known, and those of which it is known how speeds change."""
+        count, motion, unknown = len(kind), self._motion, self._unknown
+        at_feed = np.isfinite(feeds[1])
+        left: list[tuple[Wording, Flags]] = [(phrase("left_rapid"), kind == Kind.RAPID)]
+        for row, why in zip(unknown.rows.tolist(), unknown.reasons, strict=True):
+            if first <= row < first + count:
+                left.append((why, np.arange(count) == row - first))
+        left.append((phrase("left_no_feed"), ~at_feed))
+        motion.speed_seen.add(first, count, left)
+        before = np.append(self._moved_at_feed, (at_feed & (feeds[0] > 0.0))[:-1])
+        self._moved_at_feed = bool(at_feed[-1] and feeds[0, -1] > 0.0)
+        motion.change_seen.add(first, count, [*left, (phrase("left_begins_at_feed"), ~before)])
 
     def _add_arc_shares(self, arcs: ArcSpeeds, first: int, feeds: Floats, shares: Floats) -> None:
         """Raise the shares of arcs, (2, 5, k), to the greatest ones on their way."""

@@ -166,10 +166,8 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
 
     def _find_subprogram(self, active: ActiveProgram, label: str) -> tuple[ActiveProgram, int]:
         """Return a subprogram of this file or of another one, and its first line."""
-        file_of_rows = self.control.modal.file
         here = active.source.subprogram(label)
         if here is not None:
-            file_of_rows.set(self.control.row, active.file)
             return ActiveProgram(active.source.restarted(), active.file), here.begin
         path = self._subprograms.find(label.strip("<>"))
         if path is None:
@@ -178,7 +176,6 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
         assert isinstance(source, LinuxcncText)
         found = source.subprogram(label)
         if found is None:
-            file_of_rows.set(self.control.row, active.file)
             raise BlockError(Wording("NC132", "file_without_subprogram", path=path.name, label=label[:80]))
         return ActiveProgram(source, file), found.begin
 
