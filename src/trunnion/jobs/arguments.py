@@ -88,6 +88,7 @@ class PostArguments(ReadingArguments, SetUpArguments, ClampingArguments, total=F
     manifest: FilePath | None
     columns: bool
     simulation: Mapping[str, Any] | FilePath | None
+    sheet_tools: Mapping[str, Any] | None
 
 
 class ConvertArguments(ReadingArguments, SetUpArguments, total=False):
@@ -233,8 +234,8 @@ class ImpellerArguments(TypedDict, total=False):
 #: What only the library has, and what it is where it is not given.
 LIBRARY: Final[Mapping[str, Any]] = MappingProxyType(
     {
-        "columns": True, "simulation": None, "threads": None, "ready": None, "password": "", "weights": None,
-        "tls": None, "tiles": None, "recorded": None,
+        "columns": True, "simulation": None, "sheet_tools": None, "threads": None, "ready": None, "password": "",
+        "weights": None, "tls": None, "tiles": None, "recorded": None,
     }
 )  # fmt: skip
 

@@ -204,6 +204,8 @@ class TemplateValues:
         linear = {axis.name: self._printed_home(axis) for axis in machine.axes if not axis.is_rotary}
         return {
             **{f"home_{name.lower()}": linear.get(name) for name in "XYZ"},
+            "primary_returns": machine.axes[machine.primary].name,
+            "secondary_returns": machine.axes[machine.secondary].name,
             "primary_home": machine.axes[machine.primary].home,
             "secondary_home": machine.axes[machine.secondary].home,
         }

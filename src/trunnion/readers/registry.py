@@ -65,6 +65,7 @@ def run_program(
     return replace(run, skipped=skipped) if skipped else run
 
 
+@lru_cache(maxsize=8)
 def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     """Return the reader of a family, by default that of the machine's control.
 

@@ -6,6 +6,7 @@ from itertools import islice
 
 import numpy as np
 
+from trunnion.arrays import Floats
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
@@ -51,6 +52,9 @@ class ExpectedValues:
     feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
+    clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
+    in_turn                axes move one group after the other from home to an operation
+    between_operations     the tool goes home, or above all operations, from one to the next
     without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     stop_between           an optional stop stands between operations
     demands                what the proof must stand on besides what the machine's definition demands
@@ -83,6 +87,9 @@ class ExpectedValues:
     swivel_data: tuple[str, ...] = ()
     without_skipped: bool = False
     stop_between: bool = False
+    clearance: float | None = None
+    in_turn: bool = False
+    between_operations: bool = False
     demands: tuple[str, ...] = ()
 
     def for_operation(self, name: str) -> OperationSettings:
@@ -135,6 +142,10 @@ class ComparedContext(Context):
 
     expected: ExpectedPath
     matching: Matching
+
+    def highest_point(self, axis: Floats) -> float:
+        """Return how high the CL files come along a direction (3,), mm from the program's zero."""
+        return max(float((section.whole.moves.tip @ axis).max()) for section in self.expected.sections)
 
     def place_with_cl(self, row: int, value: float, text: str, cl: int) -> Place:
         """Return the place of a row, with that of a CL row."""

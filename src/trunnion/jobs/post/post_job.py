@@ -36,6 +36,7 @@ from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, 
 from trunnion.readers import check_reading
 
 if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.jobs.inputs.bodies import KnownTools
     from trunnion.jobs.inputs.simulation_input import SimulationInput
 
 #: Values of the setting ``mode``.
@@ -66,6 +67,7 @@ class PostJob:
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
     simulation    stock and all else that the program is simulated with; None: it is not; and the files of that
+    sheet_tools   tools that the sheet names without a simulation; None: those of the CL files alone
     notices       comments for the head of the program
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
@@ -85,6 +87,7 @@ class PostJob:
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
     simulation_files: tuple[str | os.PathLike[str], ...] = ()
+    sheet_tools: "KnownTools | None" = None
     notices: tuple[str, ...] = ()
     clamping: Clamping = field(default_factory=Clamping)
     decisions: tuple[Decision, ...] = ()

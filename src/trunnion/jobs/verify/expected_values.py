@@ -44,6 +44,9 @@ def expected_values(
             {each["swivel_data"] for each in (settings, *own_settings.values()) if "swivel_data" in each}
         ),
         rapid_feed=rapid_feed,
+        clearance=float(settings["operation_clearance"]) if settings.get("same_tool") == "clearance" else None,
+        between_operations=settings.get("same_tool", "home") != "home",
+        in_turn=settings.get("first_approach") == "in_turn",
         stop_between=settings.get("stop_between") == "on",
         below_rapid_feed=slower,
         coolant=control.coolant if control else {},

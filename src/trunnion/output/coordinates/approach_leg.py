@@ -41,6 +41,26 @@ def tilts_tool(machine: Machine, motion: Motion) -> bool:
     return bool(columns) and bool((np.abs(motion.rotary[0, columns]) > _STILL).any())
 
 
+def height_at_home(machine: Machine, tip: Floats, rotary: Floats) -> float | None:
+    """Return how high along the tool the tip is over a point (3,) with the axis along the spindle near home, mm.
+
+    None where that is not known, or where a head has turned the tool from it, by ``rotary`` (2,) degrees.
+    """
+    tilts = any(
+        machine.axes[k].mount is Mount.TOOL and abs(a) > _STILL for k, a in zip(machine.rotary, rotary, strict=True)
+    )
+    if machine.workpiece_zero is None or machine.tool_length is None or tilts:
+        return None
+    end = slide_positions(machine, tip[None], rotary[None])
+    if np.isnan(end).any():
+        return None
+    along = max(machine.linear, key=lambda k: abs(float(np.dot(machine.axes[k].direction, machine.spindle_direction))))
+    way = machine.home[along] - end[0, along]
+    end[0, along] += way - np.clip(way, -_FROM_HOME, _FROM_HOME)
+    place, axis = forward(machine, end)[:2]
+    return float(place[0] @ axis[0])
+
+
 class ApproachLegs:
     """Knows where the first legs of a program end."""
 

@@ -61,6 +61,7 @@ class CornerWord(NamedTuple):
     feed        its own; None: none
     feed_of     ``FEED_BEFORE`` or ``FEED_BEHIND``: whose feed it has otherwise; empty: nobody has said
     left_out    the control makes none where an element leaves the working plane, or none follows; else it stops there
+    least_turn  radians: a contour that turns by less has no corner
     modal       it is in force until it is switched off, so that nobody has asked for a corner here
     """
 
@@ -70,6 +71,7 @@ class CornerWord(NamedTuple):
     by_length: bool = False
     feed: float | None = None
     feed_of: str = FEED_BEFORE
+    least_turn: float = 0.0
     left_out: bool = False
     modal: bool = False
 
@@ -245,7 +247,7 @@ class ContourControl(CoordinateControl):
         if compensation.current != compensation.part(self.row - 1, self.row)[0]:
             raise ContourError(Wording("NC324", "compensation_changes"))
         angle = contours.corner_turn(before, behind, plane)
-        if not angle:
+        if not angle or abs(angle) < word.least_turn:
             return None
         if not word.chamfer:
             return contours.rounding(before, behind, word.size, plane)
@@ -265,9 +267,9 @@ class ContourControl(CoordinateControl):
             return word.feed
         behind = self.programmed_feed
         if not word.feed_of and feed_before != behind:
-            self.note(
-                Wording("NC224", "corner_feed", word=word.word, before=feed_before, behind=behind), Severity.ERROR
-            )
+            variant = "corner_feed" if word.left_out else "corner_feed_in_no_manual"
+            said = Wording("NC224", variant, word=word.word, before=feed_before, behind=behind)
+            self.note(said, Severity.ERROR)
         return behind if word.feed_of == FEED_BEHIND else feed_before
 
     def _add(self, end: Floats, arc: arcs.Arc | None = None, kind: Kind = Kind.LINEAR) -> None:

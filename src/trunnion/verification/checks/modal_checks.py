@@ -10,6 +10,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.approach_faults import approaches_through_part
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
 from trunnion.verification.checks.low_rapids import low_rapids
+from trunnion.verification.checks.passages import not_in_turn
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
@@ -38,6 +39,7 @@ def check_modal_state(context: Context) -> Check:
     places += _turned_under_tcp(context)
     places += low_rapids(context)
     places += approaches_through_part(context)
+    places += not_in_turn(context)
     places += wide_tolerances(context)
     places += _without_units(context)
     places += _cuts_from_unknown_places(context)

@@ -89,7 +89,7 @@ def setup_sheet(
         tool_length=machine.tool_length,
         system=_system(program, job),
         rotary=rotary,
-        tools=tuple(_with_bodies(_tools(calls, operations, run.uses_length_numbers), result.simulation)),
+        tools=tuple(_with_bodies(_tools(calls, operations, run.uses_length_numbers), job, result.simulation)),
         operations=operations,
         start=tuple(_start(program, run, operations, rotary)),
         to_check=tuple(clean(one_line(text)) for text in _to_check(program, job, result, run)),
@@ -184,11 +184,15 @@ def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion], codes: Mappi
     return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *others))))
 
 
-def _with_bodies(tools: Iterable[SheetTool], simulation: "SimulationResult | None") -> Iterator[SheetTool]:
-    """Yield tools with what a simulation knew of them, from libraries and arguments, where the CL file says nothing."""
-    shapes = {} if simulation is None else simulation.tools
+def _with_bodies(
+    tools: Iterable[SheetTool], job: PostJob, simulation: "SimulationResult | None"
+) -> Iterator[SheetTool]:
+    """Yield tools with what libraries and arguments say of them, where the CL file says nothing."""
     for tool in tools:
-        shape = shapes.get(tool.call)
+        if simulation is not None:
+            shape = simulation.tools.get(tool.call)
+        else:
+            shape = None if job.sheet_tools is None else job.sheet_tools.find(tool.call)
         if shape is None:
             yield tool
             continue

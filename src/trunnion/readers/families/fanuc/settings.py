@@ -13,8 +13,8 @@ from trunnion.readers.rs274.block import Block, Number, g_code_text
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
 
 #: Letters whose whole numbers count in least increments: lengths, and angles.
-LENGTHS: Final = "XYZUVWIJKRQ"
-ANGLES: Final = "ABC"
+LENGTHS: Final = (*"XYZUVWIJKRQ", ",R", ",C")
+ANGLES: Final = tuple("ABC")
 
 #: What decides on a Fanuc which modes a reset, and so the end of a program, ends.
 KEPT_BY: Final = "parameter 3402"

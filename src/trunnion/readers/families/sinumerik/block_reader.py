@@ -43,7 +43,7 @@ _MODES: Final = (
 )
 
 #: Words with a value that belong to circles and frames.
-_PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
+_PARAMS: Final = frozenset({"CR", "TURN", "AR", "ANG", "RPL"})
 
 #: Where a block holds the words of which it has one at most.
 _HELD: Final = {"T": "tool", "S": "speed", "F": "feed", "D": "edge"}

@@ -262,7 +262,7 @@ MODES: Final = frozenset({"TRAORI", "TRAFOOF", "SUPA", "CIP", "CT", "POLY"})
 
 #: Other words with an effect: circles, polynomials, corners, messages.
 ACTIVE: Final = (
-    MODES | CORNERS | CORNER_FEEDS | frozenset({"CR", "TURN", "AR", "RPL", "PO", "PL", "SPOS", "MSG", "SETAL"})
+    MODES | CORNERS | CORNER_FEEDS | frozenset({"CR", "TURN", "AR", "ANG", "RPL", "PO", "PL", "SPOS", "MSG", "SETAL"})
 )
 
 #: Values of predefined names; modes of CYCLE832 as the digits of S_TOLM.
