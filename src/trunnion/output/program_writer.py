@@ -72,7 +72,7 @@ def _with_printed_planes(program: Program) -> Program:
     else:
         adapt, number_format = with_plane_inside_limits, "plane_angle"
     decimals = program.control.number_formats(three_axis=False)[number_format].decimals
-    motions = [m if m.plane is None else adapt(program.machine, m, decimals) for m in program.motions]
+    motions = [m if m.plane is None else adapt(program.machine_of(m), m, decimals) for m in program.motions]
     return replace(program, motions=motions)
 
 
@@ -356,7 +356,7 @@ class _ProgramWriter:
         """Whether the rotary axes may turn to a plane where the CL file has left the tool."""
         if not self._is_retracted():
             return False
-        before, machine = self._previous_motion, self._program.machine
+        before, machine = self._previous_motion, self._program.machine_of(motion)
         assert before is not None
         if self._part is None:
             self._part = part_of(self._program)
@@ -384,5 +384,5 @@ class _ProgramWriter:
             return False
         last = self._last_tip(before)
         counts = self._blocks.writer.word("X").format.counts
-        reached = counts(tip_after_turn(self._program.machine, last, before, motion))
+        reached = counts(tip_after_turn(self._program.machine_of(motion), last, before, motion))
         return bool((reached == counts(operation.moves.tip[0])).all())

@@ -19,6 +19,8 @@ from trunnion.options.groups import (
     SETUP,
     SUBPROGRAMS,
     TOOL_LENGTH,
+    TOOL_LIBRARIES,
+    TOOL_UNIT,
     WORK_OFFSET,
     ZERO,
 )
@@ -73,7 +75,9 @@ _VERIFY: Final = job(
         key="frame",
     ),
     ZERO,
-    TOOL_LENGTH.but(help="length of the tool, for programs without TCP"),
+    TOOL_LENGTH,
+    TOOL_LIBRARIES.but(help="tool library that has the lengths of tools, as of simulate"),
+    TOOL_UNIT,
     RADIUS_REGISTER,
     FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed", key="feed"),
     Option(

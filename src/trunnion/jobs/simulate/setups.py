@@ -21,8 +21,9 @@ from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools,
 from trunnion.jobs.inputs.control_settings import rapid_feed_of, register_value_of
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_machine, as_run, as_toolpaths
-from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
+from trunnion.jobs.inputs.settings import work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import Observer
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase

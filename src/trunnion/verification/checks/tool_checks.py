@@ -10,6 +10,7 @@ from trunnion.arrays import Flags, Ints
 from trunnion.compensation.stretches import ADDED_RADII, RegisterValue
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
+from trunnion.model.tool_additions import REPLACED
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.spindle_and_tool import names_tool
@@ -85,7 +86,8 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
         if name in ADDED_RADII and context.settings.register_holds is RegisterValue.RADIUS:
             continue  # the check of compensation judges what comes of it
         if value and not any(abs(value - wanted) <= _DELTA for wanted in context.settings.tool_deltas.get(name, ())):
-            text = f"{name} adds {value:g} mm to the tool, which nothing asks for"
+            does = "puts {:g} mm in the place of the tool's length" if name in REPLACED else "adds {:g} mm to the tool"
+            text = f"{name} {does.format(value)}, which nothing asks for"
             yield context.place_of_event(event, value, text)
 
 

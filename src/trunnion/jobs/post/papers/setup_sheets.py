@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from trunnion.errors import Severity
+from trunnion.jobs.post.operation_setups import setup_notices
 from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
@@ -292,7 +293,6 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
 
 def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> Iterator[str]:
     """Yield what the proof cannot see."""
-    machine = program.machine
     offsets = ", ".join(_offsets(run)) or "the machine's zero"
     is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
     turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
@@ -300,7 +300,10 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     for notice in job.notices:
         if notice.startswith(PLACED_NOTICES):
             yield f"{notice}."
-    if machine.workpiece_zero is None:
+    single = list(setup_notices(job, result.toolpaths)) if job.setups or job.settings.get("delta_length") else []
+    for notice in dict.fromkeys(single):
+        yield f"Check that this is so: {notice}."
+    if run.machine.workpiece_zero is None:
         yield "Check the travel: nobody said where the workpiece zero is, and it is only proven to fit somewhere."
     else:
         yield "Check that the workpiece zero is where the sheet says: the limits of the linear axes were proven for it."
