@@ -465,7 +465,7 @@ def test_the_sheet_has_title_library_coolant_and_what_compensation_means(tmp_pat
     coolants = [each["coolant"] for each in data["operations"]]
     assert coolants[0].startswith("through the tool (THRU, M26)")
     (note,) = [note for each in data["operations"] for note in each["notes"] if "radius compensation" in note]
-    assert note.startswith("radius compensation with the radius of the tool: the path is that of the tool's centre")
+    assert note.startswith("radius compensation: the path is that of the tool's centre, so enter the radius minus 5 mm")
     assert "Our &lt;hub&gt;" in page.read_text("utf-8")
 
 
