@@ -36,6 +36,7 @@ TESTS = ("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal")  # neigh
 IMPELLER = Path("examples", "impeller", "impeller.toml")
 FUZZING = "60"  # seconds
 CELL = "0.25"  # mm, of the simulation of the impeller
+KEEPING = {"PYTHONDONTWRITEBYTECODE": ""}  # a shell may forbid it: each of many processes would compile all it imports
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
 CUT = ("1_contour_rough", "2_hub_rough", "3_blade_finish")  # programs of one part, in their order
 
@@ -56,7 +57,7 @@ def run(
     name, *arguments = command
     done = subprocess.run(
         [str(program_of(environment, str(name))), *map(str, arguments)],
-        cwd=HERE, check=False, env={**os.environ, **(variables or {})},
+        cwd=HERE, check=False, env={**os.environ, **KEEPING, **(variables or {})},
     )  # fmt: skip
     if done.returncode not in good:
         sys.exit(done.returncode)
@@ -135,8 +136,9 @@ def quick() -> None:
     set_up(".[test]")
     check()
     command = [str(program_of(HOME, "python")), "-m", "tests.support.reached"]
-    reached = subprocess.run(command, cwd=HERE, check=True, stdout=subprocess.PIPE, encoding="utf-8").stdout.split()
-    run(*TESTS, *(reached or ("-m", "not slow")))
+    environment = {**os.environ, **KEEPING}
+    reached = subprocess.run(command, cwd=HERE, check=True, stdout=subprocess.PIPE, encoding="utf-8", env=environment)
+    run(*TESTS, *(reached.stdout.split() or ("-m", "not slow")))
 
 
 def nightly(seed: str = "") -> None:

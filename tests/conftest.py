@@ -50,10 +50,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if item.path in slow:
             item.add_marker(pytest.mark.slow)
-    wanted = [item for item in items if is_wanted(item, nightly=config.getoption("nightly"))]
-    if len(wanted) < len(items):
-        config.hook.pytest_deselected(items=[item for item in items if item not in set(wanted)])
-        items[:] = wanted
+    nightly = config.getoption("nightly")
+    rest = [item for item in items if not is_wanted(item, nightly=nightly)]
+    if rest:
+        config.hook.pytest_deselected(items=rest)
+        items[:] = [item for item in items if is_wanted(item, nightly=nightly)]
 
 
 def is_wanted(item: pytest.Item, *, nightly: bool) -> bool:

@@ -3,7 +3,9 @@
 import ast
 import subprocess
 import sys
+from pathlib import Path
 
+import make
 import pytest
 
 from tests.support.locations import ROOT
@@ -38,6 +40,11 @@ def test_its_head_knows_nothing_that_is_new() -> None:
         "if sys.version_info < (3, 11)",
     ]
     assert not [node for node in ast.walk(check) if isinstance(node, ast.JoinedStr | ast.NamedExpr | ast.Lambda)]
+
+
+def test_what_its_programs_import_is_compiled_once_whatever_the_shell_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    make.run("python", "-S", "-c", "import sys; sys.exit(sys.dont_write_bytecode)", environment=Path(sys.prefix))
 
 
 def test_a_change_reaches_the_tests_that_import_it_and_belong_to_a_package_that_does() -> None:

@@ -65,7 +65,7 @@ def test_the_start_of_a_process_does_not_count(tmp_path: Path, monkeypatch: pyte
     # 100 s go by for the team while the first file is worked on, and none after that, however busy the computer is.
     clock = SimpleNamespace(monotonic=lambda: 100.0 * mark.exists())
     monkeypatch.setattr("trunnion.batch.local.time", clock)
-    write_files(tmp_path / "in", {"a.cls": f"cold {mark} 0.5", "b.cls": "quick"})
+    write_files(tmp_path / "in", {"a.cls": f"cold {mark} 0.5 0", "b.cls": "quick"})
     store = FolderStore(tmp_path / "out")
     result = run_jobs(simple_batch(tmp_path / "in"), store, lambda _: LocalWorkers(1, simple_work, timeout=0.1))
     assert result.counts == {Status.PASSED: 2}
@@ -73,7 +73,7 @@ def test_the_start_of_a_process_does_not_count(tmp_path: Path, monkeypatch: pyte
 
 
 def test_a_first_file_that_is_slow_again_is_late(tmp_path: Path) -> None:
-    write_files(tmp_path / "in", {"slow.cls": "sleep 0.6"})
+    write_files(tmp_path / "in", {"slow.cls": f"cold {tmp_path / 'mark'} 0.6 600"})
     store = FolderStore(tmp_path / "out")
     result = run_jobs(simple_batch(tmp_path / "in"), store, lambda _: LocalWorkers(1, simple_work, timeout=0.1))
     assert result.counts == {Status.TIMED_OUT: 1}

@@ -15,7 +15,7 @@ from trunnion.cli import main
 from trunnion.cli.completion import SCRIPTS
 from trunnion.jobs.registry import JOBS
 
-BASH, ZSH, FISH = (shutil.which(shell) for shell in ("bash", "zsh", "fish"))
+BASH, ZSH, FISH, PWSH = (shutil.which(shell) for shell in ("bash", "zsh", "fish", "pwsh"))
 
 #: What is typed, and what the shell makes of the last word.
 TYPED = {
@@ -87,6 +87,20 @@ def test_fish_completes_commands_options_words_and_files(tmp_path: Path) -> None
     )
     assert done.stderr == ""
     assert [line.partition("\t")[0] for line in done.stdout.splitlines()] == list(TYPED.values())
+
+
+@pytest.mark.skipif(PWSH is None, reason="there is no pwsh")
+def test_powershell_completes_commands_options_words_and_files(tmp_path: Path) -> None:
+    (tmp_path / "part.cls").touch()
+    (tmp_path / "trunnion.ps1").write_text(SCRIPTS["powershell"](), encoding="utf-8")
+    lines = [f"trunnion {' '.join(words)}" for words in TYPED]
+    asked = "; ".join(f"(TabExpansion2 '{line}' {len(line)}).CompletionMatches[0].CompletionText" for line in lines)
+    assert PWSH is not None
+    command = [PWSH, "-NoProfile", "-NonInteractive", "-Command", f". ./trunnion.ps1; {asked}"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert done.stderr == ""
+    found = [line.removeprefix("./").removeprefix(".\\") for line in done.stdout.splitlines()]
+    assert found == list(TYPED.values())
 
 
 @contextmanager

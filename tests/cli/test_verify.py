@@ -352,10 +352,10 @@ def test_a_program_for_another_control_is_asked_after_first(tmp_path: Path, capf
     program = tmp_path / "part.h"
     lines = "".join(f"{k} L X+{k} Y+0 FMAX\n" for k in range(1, 9))
     program.write_text(f"0 BEGIN PGM PART MM\n{lines}9 END PGM PART MM\n", encoding="utf-8")
-    code, _, err = verify(capfd, program)
+    code, out, _ = verify(capfd, program)
     assert code == 1
-    assert err.startswith(f"{program}: is this a Sinumerik 840D sl program? ")
-    assert "lines of it not understood; --machine names the machine that runs it, and yl569 has this control\n" in err
+    marks = "by 0 BEGIN PGM in line 1 and 1 L X+ in line 2"
+    assert f"{program}:1: this looks like a Heidenhain Klartext program, {marks}; name the machine that runs it" in out
 
 
 @pytest.mark.parametrize("machine", ["yl569", "haas_umc750", "dmu65"])

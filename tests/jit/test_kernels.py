@@ -185,7 +185,7 @@ import some_kernels as k
 from trunnion.jit import compile_ahead
 compile_ahead([k.double, k.fold, k.fold_again])
 import time
-until = time.monotonic() + 60
+until = time.monotonic() + 600
 while not (k.fold_again.is_kept and k.fold.is_kept and k.double.is_kept) and time.monotonic() < until:
     time.sleep(0.02)
 compile_ahead([k.double, k.fold, k.fold_again])

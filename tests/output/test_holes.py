@@ -251,7 +251,7 @@ def test_holes_in_any_planes_are_proven_on_every_machine(
 
 
 def drilled(folder: Path) -> tuple[Path, list[str]]:
-    """A CL file with cycles of all kinds, upright and in a plane off the zero, and its proven program."""
+    """A CL file with cycles of all kinds in a plane off the zero, behind an upright hole, and its proven program."""
     kinds = [
         f"DRILL,{HEIGHTS}RTRCTO,5.0,MMPM,250", f"DRILL,{HEIGHTS}DWELL,0.5,MMPM,250", f"TAP,{HEIGHTS}MMPR,1.25",
         f"TAP,BRKCHP,{HEIGHTS}STEP,6.0,MMPR,1.25", f"TAP,DEEP,{HEIGHTS}STEP,6.0,MMPR,1.25",
@@ -263,7 +263,8 @@ def drilled(folder: Path) -> tuple[Path, list[str]]:
     plane = "\n".join(f"MSYS/{frame}" if x.startswith("MSYS") else x for x in CLEAR.splitlines()) + "\n"
     end = "CYCLE/OFF\nRAPID\nGOTO/0,0,50\n" + FOOT
     cl, nc = folder / "holes.cls", folder / "holes.mpf"
-    cl.write_text(CLEAR + body + end + plane.replace("OP1", "OP2") + body + end, encoding="utf-8")
+    upright = f"CYCLE/{kinds[0]}\nGOTO/10,5,0\n"
+    cl.write_text(CLEAR + upright + end + plane.replace("OP1", "OP2") + body + end, encoding="utf-8")
     assert main(["post", str(cl), "--machine", "yl569", "--output", str(nc)]) == 0
     lines = nc.read_text(encoding="utf-8").splitlines()
     assert proven(lines, cl, folder) == []
@@ -289,7 +290,8 @@ def test_a_number_in_a_cycle_that_is_another_one_is_seen(tmp_path: Path) -> None
     blocks = [line.split(" ", 1)[1] for line in lines]
     unseen = []
     calls = [k for k, block in enumerate(blocks) if block.startswith("MCALL CYCLE")]
-    for k in calls[len(calls) // 2 :: 2]:  # in the plane, the first of each kind
+    assert len(calls) == 17
+    for k in calls[1::2]:  # in the plane, the first of each kind
         block = blocks[k]
         name, arguments = block[len("MCALL ") : -1].split("(")
         values = arguments.split(",")

@@ -1,8 +1,8 @@
 """Work that takes no time in place of posts, in worker processes too, which import little for it.
 
 What it does stands in the file: ``fail``, ``refuse``, ``several …``, ``die PATH`` (ends its process, unless PATH is
-there, and makes it), ``always die``, ``sleep SECONDS``, ``cold PATH SECONDS`` (makes PATH and sleeps, unless it is
-there); anything else passes.
+there, and makes it), ``always die``, ``sleep SECONDS``, ``cold PATH SECONDS AGAIN`` (makes PATH and sleeps; where it is
+there, AGAIN seconds); anything else passes.
 
 A file that is divided is put together from its shares: ``dies in 1 PATH`` and ``sleeps in 1 SECONDS`` mean share 1, and
 ``fail`` fails in all of them.
@@ -32,9 +32,11 @@ def simple_work(task: Task) -> Outcome:
         os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
     if text == "always die":
         os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
-    if word == "cold" and not Path(rest.split()[0]).exists():
-        Path(rest.split()[0]).write_text("cold", encoding="utf-8")
-        time.sleep(float(rest.split()[1]))
+    if word == "cold":
+        path, first, again = rest.split()
+        is_again = Path(path).exists()
+        Path(path).write_text("cold", encoding="utf-8")
+        time.sleep(float(again if is_again else first))
     if word == "sleep":
         time.sleep(float(rest))
     if word == "fail":

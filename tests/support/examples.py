@@ -1,6 +1,10 @@
-"""How many draws a property has: all in ``make.py nightly``, a third elsewhere."""
+"""How many draws a property has, and how many faults a sweep: all in ``make.py nightly``, a third elsewhere."""
 
+import pytest
 from hypothesis import settings
+
+#: Which thirds of all faults a sweep tries: the one that ``make.py test`` has, and those that are left to nightly.
+THIRDS = (0, *(pytest.param(part, marks=pytest.mark.nightly) for part in (1, 2)))
 
 #: A draw is seldom too few: the first one is the simplest.
 FEWEST = 3

@@ -75,7 +75,8 @@ class Trial:
 
     def first_failure(self, tests: list[str], seconds: float) -> str | None:
         """The first test that fails; empty: none does; None: they do not end in time."""
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(self.root / "src"), str(self.root)))}
+        path = os.pathsep.join((str(self.root / "src"), str(self.root)))
+        environment = {**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": ""}
         leave = [f"--deselect={test}" for test, fails in self._fails_anyway.items() if fails]
         command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no", "--hypothesis-seed=0", *leave, *tests]
         try:

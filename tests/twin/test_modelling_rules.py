@@ -1,9 +1,10 @@
-"""The objects of the twin are as their types ask for: what is mandatory is there, and no placeholder."""
+"""The objects of the twin are as their types ask for: what is mandatory is there, and no placeholder; it is served."""
 
 import asyncio
 import socket
 from collections.abc import AsyncIterator
 from contextlib import suppress
+from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
@@ -25,75 +26,94 @@ async def children(node: Node) -> dict[str, Node]:
     return {(await child.read_browse_name()).Name: child for child in await node.get_children()}
 
 
-async def mandatory(kind: Node) -> AsyncIterator[tuple[str, Node]]:
+async def mandatory(kind: Node) -> list[str]:
     """What a type and those that it extends ask for."""
-    rules = {ua.ObjectIds.ModellingRule_Mandatory}
+    rules, names = {ua.ObjectIds.ModellingRule_Mandatory}, list[str]()
     while kind is not None:
         for name, child in (await children(kind)).items():
             found = await child.get_references(ua.ObjectIds.HasModellingRule)
             if {reference.NodeId.Identifier for reference in found} & rules:
-                yield name, child
+                names.append(name)
         above = await kind.get_referenced_nodes(ua.ObjectIds.HasSubtype, ua.BrowseDirection.Inverse)
         kind = above[0] if above else None
+    return names
 
 
-async def faults(node: Node, path: str) -> AsyncIterator[str]:
-    """What is missing in an object or a variable, or stands for others, and in those below."""
-    there = await children(node)
-    for reference in await node.get_references(ua.ObjectIds.HasTypeDefinition):
-        kind = Node(node.session, reference.NodeId)
-        async for name, _ in mandatory(kind):
-            if name not in there:
-                yield f"{path}: no {name}"
-    for name, child in there.items():
-        if "<" in name:
-            yield f"{path}: {name} stands for others"
-        if await child.read_node_class() in (ua.NodeClass.Object, ua.NodeClass.Variable):
-            async for each in faults(child, f"{path}.{name}"):
-                yield each
+@dataclass
+class Look:
+    """A look at what a server has; of each type once at what it asks for."""
+
+    asked: dict[ua.NodeId, list[str]] = field(default_factory=dict)
+
+    async def faults(self, node: Node, path: str) -> AsyncIterator[str]:
+        """What is missing in an object or a variable, or stands for others, and in those below."""
+        there = await children(node)
+        for reference in await node.get_references(ua.ObjectIds.HasTypeDefinition):
+            kind = reference.NodeId
+            if kind not in self.asked:
+                self.asked[kind] = await mandatory(Node(node.session, kind))
+            for name in self.asked[kind]:
+                if name not in there:
+                    yield f"{path}: no {name}"
+        for name, child in there.items():
+            if "<" in name:
+                yield f"{path}: {name} stands for others"
+            if await child.read_node_class() in (ua.NodeClass.Object, ua.NodeClass.Variable):
+                async for each in self.faults(child, f"{path}.{name}"):
+                    yield each
 
 
-async def served() -> tuple[list[str], list[str], list[int]]:
-    program = twin_program(HUB_ROUGH, machine="yl569")
+@dataclass
+class Seen:
+    """What a server had, and what it answered to messages that stayed half open."""
+
+    found: list[str]
+    programs: list[str]
+    historized: int
+    answers: list[bytes]
+
+
+async def served() -> Seen:
     with socket.create_server(("127.0.0.1", 0)) as listening:
-        server = TwinServer(program, Nobody(), listening, "127.0.0.1", None)
+        server = TwinServer(twin_program(HUB_ROUGH, machine="yl569"), Nobody(), listening, "127.0.0.1", None)
         publisher = await server.prepare(1.0)
-        found = []
-        for root in ("MachineTool", "CncInterface"):
-            found += [each async for each in faults(server.space.node(root), root)]
+        look = Look()
+        found = [
+            each
+            for root in ("MachineTool", "CncInterface")
+            async for each in look.faults(server.space.node(root), root)
+        ]
         listed = server.space.node("MachineTool.Production.ProductionPlan.Job1.ProductionPrograms")
         names = [name for name in await children(listed) if name != "NodeVersion"]
-        historized = [
-            len(target.histories)
-            for key in ("program.feed", "block.line", "state.program")
-            for target in publisher._targets[key]
-        ]
-    return found, names, historized
+        keys = ("program.feed", "block.line", "state.program")
+        historized = sum(len(target.histories) for key in keys for target in publisher._targets[key])
+        await server.start()
+        answers = [await answer(begun, listening) for begun in (b"", b"HELF\x40\x00\x00\x00half")]
+        await server.stop()
+    return Seen(found, names, historized, answers)
 
 
-def test_all_that_types_ask_for_is_there_and_nothing_stands_for_others() -> None:
-    found, programs, historized = asyncio.run(served())
-    assert found == []
-    assert programs == [HUB_ROUGH.name]
-    assert sum(historized) == 3
+async def answer(begun: bytes, listening: socket.socket) -> bytes:
+    """What comes before the end of a connection on which a message was begun."""
+    reader, writer = await asyncio.open_connection(*listening.getsockname()[:2])
+    writer.write(begun)
+    with suppress(ConnectionResetError):
+        return await asyncio.wait_for(reader.read(1), 120)
+    return b""
 
 
-@pytest.mark.parametrize("begun", [b"", b"HELF\x40\x00\x00\x00half"])
-def test_a_message_that_stays_half_open_ends_its_connection(begun: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("trunnion.twin.opcua.transport._PATIENCE", 0.2)
+@pytest.fixture(scope="module")
+def seen() -> Seen:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("trunnion.twin.opcua.transport._PATIENCE", 0.2)
+        return asyncio.run(served())
 
-    async def asked() -> bytes:
-        with socket.create_server(("127.0.0.1", 0)) as listening:
-            server = TwinServer(twin_program(HUB_ROUGH, machine="yl569"), Nobody(), listening, "127.0.0.1", None)
-            await server.prepare(1.0)
-            await server.start()
-            reader, writer = await asyncio.open_connection(*listening.getsockname()[:2])
-            writer.write(begun)
-            with suppress(ConnectionResetError):
-                found = await asyncio.wait_for(reader.read(1), 120)
-                await server.stop()
-                return found
-            await server.stop()
-            return b""
 
-    assert asyncio.run(asked()) == b""
+def test_all_that_types_ask_for_is_there_and_nothing_stands_for_others(seen: Seen) -> None:
+    assert seen.found == []
+    assert seen.programs == [HUB_ROUGH.name]
+    assert seen.historized == 3
+
+
+def test_a_message_that_stays_half_open_ends_its_connection(seen: Seen) -> None:
+    assert seen.answers == [b"", b""]

@@ -27,7 +27,8 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.options.groups import BODIES, CUTTING
 from trunnion.wording import counted
 
-#: What is said of a simulation.
+#: What is said of the tools on a sheet, and what of a simulation.
+_OF_SHEET: Final = ("tools", "tool_libraries", "unit")
 _SIMULATED: Final = ("project", *(each.name for each in (*BODIES, *CUTTING)))
 
 
@@ -59,7 +60,7 @@ def post(
             check_unnamed(target, alone=len(targets) == 1)
     toolpaths = toolpaths if observer is not None else _with_dialects(toolpaths)
     stated = given.arguments("cl", "machine", "simulate", *_SIMULATED)
-    stated |= {"columns": False, "simulation": simulation_of(given)}
+    stated |= {"columns": False, "simulation": simulation_of(given), "sheet_tools": sheet_tools_of(given)}
     made: list[Path] = []
     results: list[PostResult] = []
     for target, files in targets.items():
@@ -100,9 +101,15 @@ def simulation_of(given: Given) -> dict[str, object] | None:
     stated = {name: getattr(given, name) for name in _SIMULATED if getattr(given, name)}
     if given.simulate:
         return stated
-    if stated:
-        raise InputError(argument_problem(next(iter(stated)), Wording("ARG130", "only_for_simulation")))
+    if unused := [name for name in stated if name not in (sheet_tools_of(given) or ())]:
+        raise InputError(argument_problem(unused[0], Wording("ARG130", "only_for_simulation")))
     return None
+
+
+def sheet_tools_of(given: Given) -> dict[str, object] | None:
+    """Return the tools and libraries that a sheet names without a simulation; None: there are none, or no sheet."""
+    stated = {name: getattr(given, name) for name in _OF_SHEET if getattr(given, name)}
+    return stated if stated and given.sheet and not given.simulate else None
 
 
 def _with_dialects(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:

@@ -7,18 +7,14 @@ from typing import Any, Final
 from trunnion.cli.printing import tell
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.controls import load_control
-from trunnion.errors import InputError, Severity, argument_problem
+from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
 from trunnion.jobs.verify.reports import add_report, write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.messages import Wording
 from trunnion.verification import Verification, check_lines, place_lines, stand_lines, time_lines
-from trunnion.wording import counted, one_line
-
-#: Fewer errors do not suggest that the program is for another control.
-_MANY_ERRORS: Final = 5
+from trunnion.wording import one_line
 
 #: Options that stand beside a manifest.
 _OF_MANIFESTS: Final = ("nc", "cl", "json")
@@ -35,8 +31,6 @@ def run(given: Given) -> int:
         columns=given.report is not None or given.json is not None,
         observer=Terminal(),
     )
-    if hint := _control_hint(verification):
-        tell(hint)
     lines = (
         *check_lines(verification), *place_lines(verification), *time_lines(verification),
         *stand_lines(verification.checks), verification.standing.told,
@@ -61,25 +55,6 @@ def _run_manifest(given: Given) -> int:
     if not found.proven:
         tell(f"{given.nc}: the program was written by force, and must not run as it is")
     return 0 if found.passed else 1
-
-
-def _control_hint(verification: Verification) -> str:
-    """Return a question where more blocks have errors than motions: the program may be for another control.
-
-    Else empty.
-    """
-    run, machine = verification.run, verification.machine
-    errors = len({one.line for one in run.diagnostics if one.severity is Severity.ERROR})
-    if errors < max(_MANY_ERRORS, len(run)):
-        return ""
-    try:
-        control = load_control(machine.control.unread_copy()).name
-    except InputError:  # its programs can be read, but not written
-        return ""
-    return (
-        f"{verification.program}: is this a {control} program? {counted(errors, 'line')} of it not understood;"
-        f" --machine names the machine that runs it, and {machine.key} has this control"
-    )
 
 
 def _report_data(verification: Verification) -> Any:

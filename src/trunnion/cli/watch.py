@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 from trunnion.cli.command_line.post_mistakes import names_project
-from trunnion.cli.post import files_by_target, simulation_of
+from trunnion.cli.post import files_by_target, sheet_tools_of, simulation_of
 from trunnion.cli.post_files import post_files
 from trunnion.cli.printing import print_result, tell
 from trunnion.cli.process import Ended
@@ -181,7 +181,7 @@ class _FilesWork:
         except (TrunnionError, OSError):  # those that it had before stay
             pass
         try:
-            named |= {str(file) for file in simulation_files(simulation_of(given) or {})}
+            named |= {str(file) for file in simulation_files(simulation_of(given) or sheet_tools_of(given) or {})}
         except (TrunnionError, OSError):  # a project that is broken; posting will tell
             named |= {given.project, *mentioned_files(Path(given.project))} if given.project else set()
             named |= {*given.tool_libraries, *given.fixtures, *filter(None, (given.part, given.stock))}

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import lru_cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Final
@@ -58,6 +59,7 @@ def shipped_controls() -> list[str]:
     return definition_names(control_library())
 
 
+@lru_cache(maxsize=16)  # one process posts many files on a machine
 def load_control(own: Table) -> Control:
     """Read the definition of a control.
 

@@ -8,11 +8,14 @@ from trunnion.controls.vocabulary import (
     DRAW_BACK,
     EVENT_PLACE,
     FIVE_AXIS,
+    FOLLOWING,
+    LEAVING,
     NEW_SPEED_WITH_TCP,
     PLACES,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
     SUBPROGRAM_TEMPLATES,
+    THREE_AXIS,
     WITHOUT_TCP,
 )
 from trunnion.definitions import Table
@@ -45,14 +48,17 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     """Return the names of the templates that a definition must have.
 
     Those of TCP, of operations without it and of each plane command are needed only if one of them is there. The
-    template that leads from home to the next tool axis of an operation with holes is optional, and so is the one that
-    retracts the tool where a tilted plane is taken from the rotary position: without it the tool always goes home.
+    template that leads from home to the next tool axis of an operation with holes is optional, and so are those of an
+    operation with the tool of the one before, and the one that retracts the tool where a tilted plane is taken from the
+    rotary position: without it the tool always goes home.
     """
     plane_parts = ("approach", "plane_on", "next_plane", "operation_end")
     groups: list[tuple[str, ...]] = [(SPINDLE_ON,), (NEW_SPEED_WITH_TCP,)]
     groups += [
         tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
     ]
+    groups += [(FOLLOWING,)]
+    groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, FIVE_AXIS, WITHOUT_TCP, *family.PLANE_COMMANDS)]
     groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
     groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
     groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]

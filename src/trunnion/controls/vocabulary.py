@@ -17,7 +17,7 @@ COMMON_TEMPLATE_FIELDS: Final = frozenset(
         "tool_set_length", "intol", "outtol", "machine",
         "gauge_length",
         "zero_x", "zero_y", "zero_z", "time", "total_time", "time_shown", "total_time_shown",
-        "home_x", "home_y", "home_z", "primary_home", "secondary_home",
+        "home_x", "home_y", "home_z", "primary_home", "secondary_home", "primary_returns", "secondary_returns",
         "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
         "spindle_speed", "new_speed", "spindle_code", "subprogram", "unit_word", "entry_unit", "operation_number",
         "next_tool",
@@ -41,6 +41,9 @@ LENGTH_WORDS: Final = frozenset({*"XYZIJK", "arc_radius", "arc_rise", "feed", "f
 #: Units of numbers in setting rules that a program in inches converts.
 LENGTH_UNITS: Final = ("mm", "mm/min")
 
+#: The setting for what the registers of the radius hold.
+RADIUS_REGISTER_SETTING: Final = "radius_register"
+
 #: Settings of a program that every control has: what it says about times and tools, which tools it calls, and the unit
 #: of its lengths. The default is the first value.
 PROGRAM_CHOICES: Final = {
@@ -55,7 +58,11 @@ PROGRAM_CHOICES: Final = {
     "restart": ("off", "on"),
     "standing_spindle": ("refused", "allowed"),
     "program_from": ("setting", "file"),
+    RADIUS_REGISTER_SETTING: ("unknown", "difference", "radius"),
     "stop_between": ("off", "on"),
+    "same_tool": ("home", "retract", "clearance"),
+    "keep_rotary": ("off", "same_tool", "on"),
+    "first_approach": ("as_control", "in_turn"),
 }
 
 #: What each of them changes.
@@ -76,7 +83,17 @@ PROGRAM_MEANINGS: Final = {
     "for tools that do not turn; they are refused otherwise.",
     "program_from": "Where the number or name of the program comes from: the setting program, or the name of its "
     "file, as 1234 of O1234.nc.",
+    RADIUS_REGISTER_SETTING: "What radius compensation works with: a difference (by how much the tool is larger than "
+    "in the CL file, in the register D or as the radius in the tool table), or the radius itself. The proof and the "
+    "simulation follow the path that the control makes of it; with unknown they say that nobody has stated it.",
     "stop_between": "With on, an optional stop (M1) stands between operations, where the tool is at home.",
+    "same_tool": "How the tool goes on to an operation that it cuts too: home; retract goes home along the spindle "
+    "only, and the rotary axes turn there; clearance leaves along the tool to operation_clearance where the tilt "
+    "stays, and retracts elsewhere.",
+    "keep_rotary": "With on, the rotary axes stay at their tilt on the way home where the next operation begins with "
+    "it; with same_tool only where the tool stays, too.",
+    "first_approach": "With in_turn, axes move one group after the other at the start of an operation: the rotary "
+    "axes, those across the tool, the one along it; as_control does so where the control's definition says it.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.
@@ -154,10 +171,10 @@ PROGRAM_TEMPLATES: Final = ("program_start", "program_end")
 
 #: Beginnings of template names in the order in which a program has them.
 TEMPLATE_ORDER: Final = (
-    "program_start", "tool_list", "before_operation", "operation_start", "first_tool", "tool_change", "same_tool",
-    "preselect", "spindle_on", "approach_", "plane_on_", "after_approach", "first_cut", "rewind", "stop", "event_",
-    "between_planes", "next_axis_", "draw_back_", "next_plane_", "retract", "operation_end_", "after_operation",
-    "program_end", "subprogram_",
+    "program_start", "tool_list", "before_operation", "operation_start", "operation_follows", "first_tool",
+    "tool_change", "same_tool", "preselect", "spindle_on", "approach_", "plane_on_", "after_approach", "first_cut",
+    "rewind", "stop", "event_", "between_planes", "next_axis_", "draw_back_", "next_plane_", "retract", "leave_",
+    "operation_end_", "after_operation", "program_end", "subprogram_",
 )  # fmt: skip
 
 #: Templates that say in which unit a file counts.
@@ -238,6 +255,10 @@ HOLE_APPROACH_HEIGHTS: Final = ("above", "retract", "initial")
 PHASES: Final = ("rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse")
 #: Beginning of the template that retracts the tool before it turns to the next plane where it stands.
 DRAW_BACK: Final = "draw_back"
+#: The header of an operation with the tool of the one before, and the beginning of the templates by which the one
+#: before leaves the part for it.
+FOLLOWING: Final = "operation_follows"
+LEAVING: Final = "leave"
 COOLANTS: Final = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES: Final = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")
 

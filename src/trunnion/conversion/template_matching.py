@@ -41,7 +41,9 @@ class TemplatePatterns:
         self._control = control
         axes = machine.axes
         primary, secondary = axes[machine.primary].name, axes[machine.secondary].name
-        self._known = {"primary": primary, "secondary": secondary, "machine": machine.name}
+        letters = {"primary": primary, "secondary": secondary}
+        returning = {"primary_returns": primary, "secondary_returns": secondary}
+        self._known = {**letters, **returning, "machine": machine.name}
         self._family_values = family_value_expressions(control)
         rules = {name: rule.one_of for name, rule in control.setting_rules.items() if rule.one_of}
         self._choices = {name: "|".join(map(re.escape, words)) for name, words in rules.items()}

@@ -6,6 +6,7 @@ compares the two. Keys contain their unit, because that of ``rapid`` or ``limits
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePath
@@ -98,8 +99,16 @@ def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | Non
 
     Raises ``InputError`` with every mistake of the definition, each at its file and line.
     """
-    key = PurePath(str(name_or_path)).name.removesuffix(".toml")
+    text = str(name_or_path)
+    if not overrides and not text.endswith(".toml"):
+        return _shipped_machine(text)
+    key = PurePath(text).name.removesuffix(".toml")
     return read_machine(load_table(name_or_path, machine_library(), overrides, kind="machine"), key)
+
+
+@lru_cache(maxsize=16)  # one process posts many files on a machine
+def _shipped_machine(name: str) -> Machine:
+    return read_machine(load_table(name, machine_library(), kind="machine"), PurePath(name).name)
 
 
 def read_machine(table: Table, key: str) -> Machine:

@@ -12,24 +12,27 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import DRAW_BACK
+from trunnion.controls.vocabulary import DRAW_BACK, FOLLOWING
 from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
-from trunnion.model.motion import Motion
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn, Stop
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.compensation_entries import compensation_entries, head_texts
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
 from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
 from trunnion.output.operation_list import operation_texts
+from trunnion.output.passages import Passage, Passages, Way
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
 from trunnion.output.template_printing import TemplatePrinting
 from trunnion.output.template_values import TemplateValues
 from trunnion.output.template_writer import TemplateWriter
 from trunnion.output.tool_calls import LoadedTool, tool_text
+from trunnion.planning.retracts.tool_retract import with_row_along_tool
 
 
 def write_program(
@@ -69,7 +72,7 @@ def _with_printed_planes(program: Program) -> Program:
     else:
         adapt, number_format = with_plane_inside_limits, "plane_angle"
     decimals = program.control.number_formats(three_axis=False)[number_format].decimals
-    motions = [m if m.plane is None else adapt(program.machine, m, decimals) for m in program.motions]
+    motions = [m if m.plane is None else adapt(program.machine_of(m), m, decimals) for m in program.motions]
     return replace(program, motions=motions)
 
 
@@ -92,6 +95,8 @@ class _ProgramWriter:
         self._operation = 0
         self._edge = ""
         self._calls_each = program.effective_setting("restart") == "on"
+        self._passages = Passages(program, self._template_values.tools)
+        self._way = Way()  # to the present operation
         self._previous_motion: Motion | None = None
         self._part: SweptPart | None = None
         self._files: SubprogramFiles | None = None
@@ -106,7 +111,9 @@ class _ProgramWriter:
         """Write the program, and return where its operations begin."""
         motions = self._program.motions
         values = self._values(motions[0], 0)
-        head = [*self._notices, *self._tool_list(values), *self._operation_list()]
+        calls = [call for call, *_ in self._tool_calls]
+        entered = self._comments(head_texts(compensation_entries(self._program, calls)))
+        head = [*self._notices, *entered, *self._tool_list(values), *self._operation_list()]
         self._templates.write("program_start", values, motions[0], head)
         for k, motion in enumerate(motions):
             ends_program = k + 1 == len(motions)
@@ -119,6 +126,7 @@ class _ProgramWriter:
                 raise error.at(self._program.file_of(motion.operation), motion.operation.line) from None
             if ends_operation:
                 self._switch_coolant_off(motion, k, ends_program)
+                self._way = self._way_from(k)
                 if "after_operation" in self._control.templates:
                     self._templates.write_place("after_operation", self._values(motion, k), motion)
                 self._end_operation_file(motion, k)
@@ -220,35 +228,69 @@ class _ProgramWriter:
 
     def _write_motion(self, motion: Motion, number: int, ends_operation: bool) -> None:
         """Write an operation, or the part of it in one plane."""
+        planned = motion
         motion = self._blocks.use_axis_coordinates(motion)
         suffix, values = self._program.template_suffix(motion), self._values(motion, number)
         if motion.starts_operation:
             self._blocks.writer.begin_operation()
             self._templates.write_place("before_operation", values, motion)
-            self._templates.write("operation_start", {**values, "edge": self._edge_of_spindle(motion)}, motion)
-            self._change_tool(motion, values)
+            if self._way.passage is Passage.HOME:
+                start = self._way.values(values) | {"edge": self._edge_of_spindle(motion)}
+                self._templates.write("operation_start", start, motion)
+            else:
+                self._templates.write(FOLLOWING, values, motion)
+            self._change_tool(motion, self._way.values(values))
             self._edge = str(values.get("edge") or "")
         else:
             self._templates.write_place("between_planes", values, motion)
         from_plane = self._continues_from_plane(motion)
         must_retract = from_plane and not self._may_turn_here(motion)
         retracted = must_retract or not from_plane
+        continues = motion.starts_operation and self._way.passage is Passage.CLEARANCE
+        in_force = self._blocks.writer.modal_state() if continues else {}
         self._blocks.begin_motion(motion, str(values["tool"]), from_plane=from_plane, retracted=retracted)
+        self._blocks.first_leg = self._first_leg(motion, planned, continues=continues)
         if must_retract:
             self._templates.write(f"{DRAW_BACK}_{suffix}", values, motion)
-        self._approach(motion, suffix, values)
+        if continues:
+            for word, count in in_force.items():
+                if word != "coolant":  # off between operations
+                    self._blocks.writer.remember(word, count)
+        else:
+            self._approach(motion, suffix, values)
         self._templates.write_place("after_approach", values, motion)
+        way = self._way_from(number) if ends_operation else Way()
+        if way.passage is Passage.CLEARANCE and way.distance > 0.0:
+            motion = with_row_along_tool(motion, way.distance)
         written = replace(motion, operation=motion.as_written())
         first = 1 if not must_retract and self._is_at_first_point(written) else 0
-        end = f"operation_end_{suffix}"
-        end_lines = self._templates.switching_lines(end, values, motion) if ends_operation else ()
+        end, end_values = way.end_template(suffix), way.values(values)
+        end_lines = self._templates.switching_lines(end, end_values, motion) if ends_operation and end else ()
         self._events.write(written, first, end_lines, values, restart_spindle=not from_plane)
         self._previous_motion = written
         if ends_operation:
             self._events.set_block_skip(False)  # the way home is for every run of the program
         self._blocks.restore_modal_state()
-        if ends_operation:
-            self._templates.write(end, values, motion)
+        if ends_operation and end:
+            self._templates.write(end, end_values, motion)
+
+    def _way_from(self, number: int) -> Way:
+        """Return the way from a motion that ends an operation; a subprogram of its own depends on nothing before it."""
+        return Way() if self._files is not None else self._passages.way(number)
+
+    def _first_leg(self, motion: Motion, planned: Motion, *, continues: bool) -> Floats | None:
+        """Return where the first leg to an operation ends, (3,) mm in coordinates of its blocks; None: the control's.
+
+        planned  the motion in coordinates of the workpiece
+        """
+        if not motion.starts_operation:
+            return None
+        if self._passages.in_turn(motion) and motion.mode is not MachiningMode.TCP:
+            self._blocks.xy_before_z = True
+        leg = self._passages.above(planned) if continues else self._passages.first_leg(planned)
+        if leg is None or motion.plane is None:
+            return leg
+        return np.asarray(motion.plane.matrix().T @ (leg - np.array(motion.plane.origin)))
 
     def _change_tool(self, motion: Motion, values: Mapping[str, Value]) -> None:
         tool = str(values["tool"])
@@ -281,7 +323,11 @@ class _ProgramWriter:
         if self._blocks.coolant == "OFF":
             return
         ends_program = ends_program and self._files is None
-        off, ends = f"M{self._control.coolant['OFF']}", [f"operation_end_{self._program.template_suffix(motion)}"]
+        off, end = (
+            f"M{self._control.coolant['OFF']}",
+            self._way_from(number).end_template(self._program.template_suffix(motion)),
+        )
+        ends = [end] if end else []
         ends += ["program_end"] if ends_program else []
         depends = any(self._control.templates[end].is_text for end in ends)
         values = self._values(motion, number) if depends else {}
@@ -310,7 +356,7 @@ class _ProgramWriter:
         """Whether the rotary axes may turn to a plane where the CL file has left the tool."""
         if not self._is_retracted():
             return False
-        before, machine = self._previous_motion, self._program.machine
+        before, machine = self._previous_motion, self._program.machine_of(motion)
         assert before is not None
         if self._part is None:
             self._part = part_of(self._program)
@@ -338,5 +384,5 @@ class _ProgramWriter:
             return False
         last = self._last_tip(before)
         counts = self._blocks.writer.word("X").format.counts
-        reached = counts(tip_after_turn(self._program.machine, last, before, motion))
+        reached = counts(tip_after_turn(self._program.machine_of(motion), last, before, motion))
         return bool((reached == counts(operation.moves.tip[0])).all())

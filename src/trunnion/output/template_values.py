@@ -64,7 +64,7 @@ class TemplateValues:
 
         Raises ``InputError`` if there is nothing to call the tool by.
         """
-        operation, machine = motion.operation, self._program.machine
+        operation, machine = motion.operation, self._program.machine_of(motion)
         position = self._operation_numbers[number]
         following = self.tools.next_call(position)
         found: dict[str, Value] = {
@@ -204,6 +204,8 @@ class TemplateValues:
         linear = {axis.name: self._printed_home(axis) for axis in machine.axes if not axis.is_rotary}
         return {
             **{f"home_{name.lower()}": linear.get(name) for name in "XYZ"},
+            "primary_returns": machine.axes[machine.primary].name,
+            "secondary_returns": machine.axes[machine.secondary].name,
             "primary_home": machine.axes[machine.primary].home,
             "secondary_home": machine.axes[machine.secondary].home,
         }

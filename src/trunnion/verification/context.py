@@ -6,6 +6,8 @@ from itertools import islice
 
 import numpy as np
 
+from trunnion.arrays import Floats
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.verification.expected.path import ExpectedPath, OperationSettings
@@ -28,6 +30,7 @@ class ExpectedValues:
     edge                   number of the cutting edge (D); None: any
     last_edge              ADJUST of LOAD/TOOL up to this number is the cutting edge; 0: it is not
     radius_offset          what is added to the tool's number for the register of the radius
+    register_holds         what radius compensation works with
     span                   how far the tool axis may be off between points, degrees; None: ``axis_tolerance``
     span_tip               how far the tip may be off its line between points without TCP, mm; None: reported, not
                            checked
@@ -49,6 +52,9 @@ class ExpectedValues:
     feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
+    clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
+    in_turn                axes move one group after the other from home to an operation
+    between_operations     the tool goes home, or above all operations, from one to the next
     without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     stop_between           an optional stop stands between operations
     demands                what the proof must stand on besides what the machine's definition demands
@@ -58,6 +64,7 @@ class ExpectedValues:
     work_offset: int | None = None
     edge: int | None = None
     radius_offset: int = 0
+    register_holds: RegisterValue = RegisterValue.UNKNOWN
     last_edge: int = 0
     span: float | None = None
     span_tip: float | None = None
@@ -80,6 +87,9 @@ class ExpectedValues:
     swivel_data: tuple[str, ...] = ()
     without_skipped: bool = False
     stop_between: bool = False
+    clearance: float | None = None
+    in_turn: bool = False
+    between_operations: bool = False
     demands: tuple[str, ...] = ()
 
     def for_operation(self, name: str) -> OperationSettings:
@@ -132,6 +142,10 @@ class ComparedContext(Context):
 
     expected: ExpectedPath
     matching: Matching
+
+    def highest_point(self, axis: Floats) -> float:
+        """Return how high the CL files come along a direction (3,), mm from the program's zero."""
+        return max(float((section.whole.moves.tip @ axis).max()) for section in self.expected.sections)
 
     def place_with_cl(self, row: int, value: float, text: str, cl: int) -> Place:
         """Return the place of a row, with that of a CL row."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from trunnion.errors import Problem
+from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.messages import phrase
@@ -72,6 +72,18 @@ class KnownTools:
         Raises ``InputError`` if nothing describes a tool, or nothing settles its form; with all of them.
         """
         return choose_tools(called, self.stated, self.libraries, self.of_cl_files)
+
+    def find(self, called: str) -> ToolShape | None:
+        """Return the body of a tool; None if nothing describes it.
+
+        Raises ``InputError`` if it is stated twice.
+        """
+        try:
+            return self.choose([called]).get(called)
+        except InputError as error:
+            if any(problem.code != "SIM150" for problem in error.problems):
+                raise
+            return None
 
 
 def known_tools(

@@ -208,12 +208,15 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
         raise InputError(Problem(str(program), 0, Wording("NC112", "file_empty")))
     try:
         run = readers.run_program(program, on, readers.RunOptions(subprograms=others))
-    except InputError:
+    except InputError as error:
         _refuse_cl_file(program)
+        if doubt := readers.kind_problem(program, on):
+            raise InputError((doubt, *error.problems)) from None
         raise
-    if run.errors:
-        _refuse_cl_file(program)
-    return run
+    if not run.errors:
+        return run
+    _refuse_cl_file(program)
+    return readers.with_kind(run, program)
 
 
 def _refuse_cl_file(program: Path) -> None:

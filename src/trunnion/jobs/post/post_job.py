@@ -18,24 +18,26 @@ from trunnion.files import OutputFiles
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.jobs.inputs.settings import (
     Settings,
-    apply_setup,
     as_texts,
     check_settings,
     number_setting,
     split_by_operation,
     with_limit_margin,
 )
+from trunnion.jobs.inputs.stated_setup import apply_setup
 from trunnion.jobs.result_output import PaperFiles
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
+from trunnion.output.program import OperationKey
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
 from trunnion.readers import check_reading
 
 if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.jobs.inputs.bodies import KnownTools
     from trunnion.jobs.inputs.simulation_input import SimulationInput
 
 #: Values of the setting ``mode``.
@@ -66,10 +68,12 @@ class PostJob:
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
     simulation    stock and all else that the program is simulated with; None: it is not; and the files of that
+    sheet_tools   tools that the sheet names without a simulation; None: those of the CL files alone
     notices       comments for the head of the program
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
     can_force     whether ``force`` can be asked for, which refusals then say
+    setups        the machine with the tool and the work offset of single operations
     strict        a basis of the proof that is missing is an error
     """
 
@@ -85,11 +89,13 @@ class PostJob:
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
     simulation_files: tuple[str | os.PathLike[str], ...] = ()
+    sheet_tools: "KnownTools | None" = None
     notices: tuple[str, ...] = ()
     clamping: Clamping = field(default_factory=Clamping)
     decisions: tuple[Decision, ...] = ()
     can_force: bool = True
     strict: bool = False
+    setups: Mapping[OperationKey, Machine] = field(default_factory=dict)
 
     @property
     def printed(self) -> dict[str, str]:
@@ -104,7 +110,11 @@ class PostJob:
     @property
     def planned_machine(self) -> Machine:
         """The machine with the margin to its limits that the planner keeps."""
-        return with_limit_margin(self.machine, self.settings)
+        return self.with_margin(self.machine)
+
+    def with_margin(self, machine: Machine) -> Machine:
+        """Return a machine with the margin to its limits that the planner keeps."""
+        return with_limit_margin(machine, self.settings)
 
     @property
     def has_normals(self) -> bool:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final, Unpack
 
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
@@ -115,6 +116,10 @@ def post(
         the path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come
         from the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
         ``gouge``; the result has it as ``simulation``.
+    sheet_tools
+        Tools that the sheet names by their libraries without a simulation: ``tools``, ``tool_libraries`` and ``unit``
+        as ``trunnion.simulate`` takes them. The CL files come first, and a tool that nothing describes is left as it
+        is.
     hooks
         Python files whose functions change what the CL files ask for (``trunnion.hooks``). They are run: name none that
         you have not read. The program is proven against what they make of the CL files, and ``problems`` says which
@@ -179,8 +184,15 @@ def post_beside(
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input
 
         read = tuple(simulation_files(simulation))
-        job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
+        simulated = simulation_input(simulation, job.machine, job.settings.get(RADIUS_REGISTER_SETTING))
+        job = replace(job, simulation=simulated, simulation_files=read)
         inputs += read
+    if (tools := found["sheet_tools"]) is not None:
+        from trunnion.jobs.inputs.bodies import known_tools
+
+        libraries = check_paths("tool_libraries", tools.get("tool_libraries") or ())
+        known = known_tools(tools.get("tools") or (), libraries, tools.get("unit"), ())
+        job, inputs = replace(job, sheet_tools=known), [*inputs, *libraries]
     places, edited = papers.by_name(), job.settings.get("edited", "")
     with open_target(found["output"], papers=places, inputs=inputs, group=work.group, edited=edited) as target:
         compile_ahead(kernels.POSTING)

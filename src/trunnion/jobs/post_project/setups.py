@@ -4,7 +4,7 @@ In:     a project, and where its files appear.
 Out:    the programs of each set-up, each of them proven.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeAlias
@@ -129,12 +129,19 @@ class _Program:
     papers: PaperFiles = NO_PAPERS
 
 
+def _sheet_tools(posting: ProjectPosting, setup: PostedSetup) -> Mapping[str, Any]:
+    """Return what the project says of the tools of a set-up; a simulation comes later, and knows more of them."""
+    project = posting.project
+    simulated = project.simulation.setups[next(k for k, each in enumerate(project.posted) if each is setup)]
+    return {name: getattr(simulated, name) for name in ("tools", "tool_libraries", "unit")}
+
+
 def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program: _Program) -> PostResult:
     project = posting.project
     given: Any = {
         **setup.arguments, **program.papers.by_name(), "output": program.output, "settings": program.settings,
         "strict": posting.is_strict, "explain": posting.options.explain, "hooks": project.hooks,
-        "columns": project.checks.longest_s is not None,
+        "columns": project.checks.longest_s is not None, "sheet_tools": _sheet_tools(posting, setup),
     }  # fmt: skip
     work = Work(posting.inputs, posting.group, can_force=False, later=posting.later)
     return post_beside(program.cl, machine, given, work, posting.observer)

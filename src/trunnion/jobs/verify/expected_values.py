@@ -5,7 +5,9 @@ Posts and verifications ask the same function; each adds what it alone knows.
 
 from collections.abc import Mapping
 
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.jobs.inputs.settings import m_code, work_offset_setting
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
@@ -35,12 +37,16 @@ def expected_values(
         work_offset=every.work_offset,
         edge=every.edge,
         radius_offset=every.radius_offset,
+        register_holds=RegisterValue(settings.get(RADIUS_REGISTER_SETTING) or RegisterValue.UNKNOWN),
         last_edge=every.last_edge,
         by_operation={name: _operation_settings(own, machine, control) for name, own in own_settings.items()},
         swivel_data=tuple(
             {each["swivel_data"] for each in (settings, *own_settings.values()) if "swivel_data" in each}
         ),
         rapid_feed=rapid_feed,
+        clearance=float(settings["operation_clearance"]) if settings.get("same_tool") == "clearance" else None,
+        between_operations=settings.get("same_tool", "home") != "home",
+        in_turn=settings.get("first_approach") == "in_turn",
         stop_between=settings.get("stop_between") == "on",
         below_rapid_feed=slower,
         coolant=control.coolant if control else {},

@@ -15,14 +15,20 @@ class FirstLegs:
         self._legs, self._writer = legs, writer
 
     def write(
-        self, motion: Motion, point: Floats, block: Mapping[str, int], first_words: dict[str, int]
+        self,
+        motion: Motion,
+        point: Floats,
+        block: Mapping[str, int],
+        first_words: dict[str, int],
+        leg: Floats | None = None,
     ) -> dict[str, int]:
         """Write the first leg to the point of a block; returns those of ``first_words`` that this block still needs.
 
         point        (3,) mm, in the coordinates of the blocks
         first_words  the family's words for the first motion block
+        leg          (3,) mm, where the first leg ends; None: as the machine wants it
         """
-        leg = self._legs.first(motion, point)
+        leg = self._legs.first(motion, point) if leg is None else leg
         if leg is None:
             self._writer.write_words({word: count for word, count in block.items() if word != "Z"})
             return first_words

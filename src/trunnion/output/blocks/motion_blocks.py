@@ -10,7 +10,7 @@ from typing import BinaryIO, Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, WordRangeError
@@ -64,6 +64,7 @@ class MotionBlockWriter:
     height_bound    after blocks that may be skipped: the tool may be lower than ``tool_height``, but not higher than
                     this, mm; None: it is at ``tool_height``
     xy_before_z     the tool goes to X and Y of the motion's first point before it goes down
+    first_leg       where it goes first instead, (3,) mm in the coordinates of the blocks; None: nowhere
     max_file_bytes  bytes up to which rows may fill a file; None: no limit
     on_file_full    called where a file has no room for another row; it switches to the next file
     """
@@ -85,6 +86,7 @@ class MotionBlockWriter:
         self.tool_height = 0.0
         self.height_bound: float | None = None
         self.xy_before_z = False
+        self.first_leg: Floats | None = None
         self.max_file_bytes: int | None = None
         self.on_file_full: Callable[[], None] = lambda: None
         self._file = program.file
@@ -104,7 +106,7 @@ class MotionBlockWriter:
         self._axis_coordinates = None
         if motion.mode is MachiningMode.WITHOUT_TCP:
             angle = self.control.number_formats(motion.three_axis)["angle"]
-            self._axis_coordinates = to_axis_coordinates(self.program.machine, motion, angle.decimals)
+            self._axis_coordinates = to_axis_coordinates(self.program.machine_of(motion), motion, angle.decimals)
             motion = self._axis_coordinates.motion
         return motion
 
@@ -125,7 +127,7 @@ class MotionBlockWriter:
             self._length_register = 0 if self.program.effective_setting("tool", motion.operation) else loads[-1].adjust
         in_plane = motion.mode is MachiningMode.TILTED
         level = in_plane or (self.control.level_approach and motion.mode is MachiningMode.THREE_AXIS)
-        self.xy_before_z = retracted and level
+        self.xy_before_z, self.first_leg = retracted and level, None
         self._words = self.program.block_words(motion)
         self.writer.use_words(self._words)
         if from_plane:
@@ -269,8 +271,9 @@ class MotionBlockWriter:
         other_end = self._add_arcs(table, motion, rows)
         if start == 0:
             first_words = self.first_block_words(motion)
-            if rapid[0] and self.xy_before_z:
-                first_words = self.legs.write(motion, moves.tip[0], table.words_of_row(0), first_words)
+            if rapid[0] and (self.xy_before_z or self.first_leg is not None):
+                words = table.words_of_row(0)
+                first_words = self.legs.write(motion, moves.tip[0], words, first_words, self.first_leg)
             table.set_words(0, first_words)
         for event in joining_events:
             table.set_words(event.row - start, self.event_words(event))

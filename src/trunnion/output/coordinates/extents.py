@@ -30,6 +30,16 @@ def cut_box(motions: Sequence[Motion]) -> tuple[Floats, Floats] | None:
     return _box([point for motion in motions for point in (*_cut_points(motion), *_passed_by_arcs(motion))])
 
 
+def highest_point(motions: Sequence[Motion], axis: Floats) -> float:
+    """Return how high the tip comes along a direction (3,) anywhere, at rapid too, mm from the program's zero."""
+    heights = []
+    for motion in motions:
+        heights.append(motion.operation.moves.tip @ axis)
+        low, high = _passed_by_arcs(motion)
+        heights.append(np.maximum(low * axis, high * axis).sum(axis=1))
+    return float(np.concatenate(heights).max())
+
+
 def _box(points: Sequence[Floats]) -> tuple[Floats, Floats] | None:
     cut = np.concatenate(points) if points else np.zeros((0, 3))
     if not len(cut):

@@ -25,6 +25,12 @@ def with_tool_retract(motion: Motion, distance: float) -> Motion:
     compensated = any(isinstance(event, CutterComp) for event in operation.events)
     if motion.mode is MachiningMode.THREE_AXIS or in_cycle or compensated or not len(operation.moves):
         return motion
+    return with_row_along_tool(motion, distance)
+
+
+def with_row_along_tool(motion: Motion, distance: float) -> Motion:
+    """Return a motion that ends with a rapid of ``distance`` mm along its tool axis, before its events at the end."""
+    operation = motion.operation
     moves, rows = operation.moves, len(operation.moves)
     last = Moves(
         moves.tip[-1:] + distance * moves.axis[-1:],

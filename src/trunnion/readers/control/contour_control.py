@@ -22,9 +22,9 @@ from trunnion.readers.control import arcs, contours
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
 from trunnion.readers.control.contours import ContourError, Corner, Element
-from trunnion.readers.control.coordinates import CoordinateControl
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import ScannedRows, within_limits
+from trunnion.readers.control.setup_control import SetupControl
 from trunnion.readers.scan.buffers import ScanSettings
 
 #: What the feed of a corner without one of its own is that of.
@@ -61,6 +61,7 @@ class CornerWord(NamedTuple):
     feed        its own; None: none
     feed_of     ``FEED_BEFORE`` or ``FEED_BEHIND``: whose feed it has otherwise; empty: nobody has said
     left_out    the control makes none where an element leaves the working plane, or none follows; else it stops there
+    least_turn  radians: a contour that turns by less has no corner
     modal       it is in force until it is switched off, so that nobody has asked for a corner here
     """
 
@@ -70,11 +71,12 @@ class CornerWord(NamedTuple):
     by_length: bool = False
     feed: float | None = None
     feed_of: str = FEED_BEFORE
+    least_turn: float = 0.0
     left_out: bool = False
     modal: bool = False
 
 
-class ContourControl(CoordinateControl):
+class ContourControl(SetupControl):
     """Knows the last element of the path, and adds elements."""
 
     def __init__(self, machine: Machine, note: Note) -> None:
@@ -87,6 +89,10 @@ class ContourControl(CoordinateControl):
         # The first row that programs an axis, by axis.
         self._first_rows: dict[int, int] = {}
         super().__init__(machine, note)
+
+    def forget_machine(self) -> None:
+        """Forget the map of the slides with the tool and the zero before."""
+        self._slide_map = None
 
     # Elements
 
@@ -245,7 +251,7 @@ class ContourControl(CoordinateControl):
         if compensation.current != compensation.part(self.row - 1, self.row)[0]:
             raise ContourError(Wording("NC324", "compensation_changes"))
         angle = contours.corner_turn(before, behind, plane)
-        if not angle:
+        if not angle or abs(angle) < word.least_turn:
             return None
         if not word.chamfer:
             return contours.rounding(before, behind, word.size, plane)
@@ -265,9 +271,9 @@ class ContourControl(CoordinateControl):
             return word.feed
         behind = self.programmed_feed
         if not word.feed_of and feed_before != behind:
-            self.note(
-                Wording("NC224", "corner_feed", word=word.word, before=feed_before, behind=behind), Severity.ERROR
-            )
+            variant = "corner_feed" if word.left_out else "corner_feed_in_no_manual"
+            said = Wording("NC224", variant, word=word.word, before=feed_before, behind=behind)
+            self.note(said, Severity.ERROR)
         return behind if word.feed_of == FEED_BEHIND else feed_before
 
     def _add(self, end: Floats, arc: arcs.Arc | None = None, kind: Kind = Kind.LINEAR) -> None:

@@ -57,6 +57,9 @@ class CoordinateControl(RowRecorder):
     #: What decides whether the latter do, for messages.
     reset_by = ""
 
+    #: Work offsets have zeros of their own: those without one are not known.
+    knows_zeros = False
+
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(machine, note)
         self._zero_slides, self._zero_tip = self._zero_positions()
@@ -297,6 +300,10 @@ class CoordinateControl(RowRecorder):
             self._note_left(wording, stays=stays)
         self.line = here
 
+    def sets_behind_use(self, name: str) -> bool:
+        """Whether the program sets a mode behind the last motion with a use for it, as is reported then."""
+        return any(mode.name == name for mode in self._trailing.changed())
+
     def report_left(self, left: Wording, *, may_begin: bool = False) -> None:
         """Report a plane, a rotation or a shift that the program leaves on: the next one begins with it, or may."""
         self._note_left(Wording("NC351", "may_be_left" if may_begin else "left", left=left))
@@ -341,7 +348,7 @@ class CoordinateControl(RowRecorder):
             return
         if code != self.no_offset:
             self._offsets.add(code)
-            if len(self._offsets) > 1:
+            if len(self._offsets) > 1 and not self.knows_zeros:
                 self.note(Wording("NC331", "work_offsets_not_known_here", name=name), Severity.WARNING)
         if self.no_offset in (code, offset.current):
             with self.frame_change():

@@ -131,6 +131,10 @@ class EventRecorder:
             return
         self.note(Wording("NC360", "tool_delta", word=name, value=value), Severity.WARNING)
 
+    def tool_delta(self, name: str) -> float:
+        """Return what a word has added to the tool so far, mm."""
+        return self._tool_deltas.get(name, 0.0)
+
     @property
     def tool_in_spindle(self) -> str:
         """Number or name of the tool in the spindle; empty before the first change."""

@@ -14,7 +14,6 @@ from trunnion.messages import Wording
 UNKNOWN: Final = "unknown"
 
 
-@lru_cache(maxsize=8)
 def family_of(machine: Machine) -> str:
     """Return the family of a machine's control."""
     return control_of(machine).text("family", DEFAULT_FAMILY)
@@ -46,4 +45,9 @@ def unit_of(table: Table) -> str:
 
 def control_of(machine: Machine) -> Table:
     """Return the definition of a machine's control, with what it extends."""
+    return _merged_control(machine).unread_copy()
+
+
+@lru_cache(maxsize=8)  # a run asks some twenty times
+def _merged_control(machine: Machine) -> Table:
     return resolve_extends(machine.control.unread_copy(), files("trunnion").joinpath("controls", "library"))

@@ -1,7 +1,7 @@
 """Blocks of languages of the RS274 kind: letters with numbers, in any order, blanks ignored."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -19,10 +19,11 @@ _NUMBERED = re.compile(r"N([0-9]{1,15})(?:\.[0-9]*)?")
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """The value of a word; ``whole`` if it is written without a point."""
+    """The value of a word; ``whole`` if it is a number without a point, ``point`` if one with a point."""
 
     value: float
     whole: bool = False
+    point: bool = False
 
 
 @dataclass(slots=True)
@@ -114,8 +115,13 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
     return Line(text, number, skip_level, tuple(comments))
 
 
-def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]) -> Block:
-    """Read the rest of a block; ``on_repeated_word`` is called with the letter of a word that is written twice."""
+def read_block(
+    reader: ExpressionReader, on_repeated_word: Callable[[str], None], corners: Collection[str] = ()
+) -> Block:
+    """Read the rest of a block; ``on_repeated_word`` is called with the letter of a word that is written twice.
+
+    corners  letters that may stand behind a comma: such a word is another one than that of the letter
+    """
     block = Block()
     while not reader.ended:
         letter = reader.letter()
@@ -123,8 +129,11 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
             key = reader.parameter_key()
             block.assignments.append((key, reader.assigned_value()))
             continue
-        if not "A" <= letter <= "Z":
+        if letter == "," and reader.rest[:1] in corners:
+            letter += reader.letter()
+        elif not "A" <= letter <= "Z":
             raise BlockError(Wording("NC210", "not_a_word", found=repr(letter)))
+        begin = reader.at
         value, whole = reader.signed_value()
         if value is None:
             # A word whose value is an unset parameter counts as not written.
@@ -136,7 +145,8 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
         else:
             if letter in block.words:
                 on_repeated_word(letter)
-            block.words[letter] = Number(value, whole)
+            written = reader.text[begin : reader.at]
+            block.words[letter] = Number(value, whole, "." in written and not {"#", "["} & set(written))
     return block
 
 

@@ -1,5 +1,6 @@
 """The part of interpreters that executes blocks by the table of a control's words."""
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Final, TypeVar
@@ -35,6 +36,9 @@ class WordInterpreter(Rs274Interpreter[A]):
     #: Whether M codes that the table does not have are words of the machine builder; else they are unknown.
     has_builders_words = True
 
+    #: Letters that make words of corners behind a comma.
+    corner_letters: tuple[str, ...] = ()
+
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
         self._acts: dict[str, Callable[[Word, Block], None]] = {
@@ -48,7 +52,7 @@ class WordInterpreter(Rs274Interpreter[A]):
 
     def _read_block(self, reader: ExpressionReader) -> Block:
         """Read the words of a block as those of the family."""
-        block = read_block(reader, self._report_repeated_word)
+        block = read_block(reader, self._report_repeated_word, self.corner_letters)
         for word in self.control.own_words.translate(block):
             self._note(Wording("NC211", "unknown_own_word", word=word), Severity.ERROR)
         self._check_groups(block)
@@ -211,6 +215,8 @@ class WordInterpreter(Rs274Interpreter[A]):
         control.set_mode("compensation", word.text, side.current, word.sets)
         side.set(control.row, word.sets)
         control.compensates_in_space = False
+        stated = block.words["D"].value if word.text in ("G41.1", "G42.1") and "D" in block.words else math.nan
+        control.modal.stated_radius.set(control.row, 0.5 * stated * control.length_unit)
         if word.text in ("G41", "G42"):
             self._begin_compensation(block)
 

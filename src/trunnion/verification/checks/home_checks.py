@@ -11,6 +11,7 @@ from trunnion.machines import Machine
 from trunnion.messages import phrase
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.passages import without_retract
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.context import Context, check_from_places
 from trunnion.verification.kinematics.home_tolerance import HOME_TOLERANCE, home_tolerance
@@ -71,6 +72,9 @@ def check_home(context: Context) -> Check:
 
     A program that never goes to the home of the machine's definition has positions of its own, which are not checked.
     """
+    unretracted = list(without_retract(context))
+    if unretracted:
+        return check_from_places("home", _TITLE, unretracted, "")
     motions = _HomeMotions.of(context.run)
     if not len(motions.rows):
         return _check_retracts_by_word(context)

@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.passages import passage_rows
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -32,6 +33,7 @@ def check_order(context: ComparedContext) -> Check:
     tolerance = expected.max_tip_tolerance
     retracts = find_rewind_retracts(run, matching.extra, tolerance)
     lawful = {row for retract in retracts for row in range(retract.first, retract.end)}
+    lawful |= passage_rows(context)
     lawful |= hole_approach_rows(run, matching.extra, match_holes(run, expected), tolerance)
     machine_positions = MachinePositions.of(run)
     measurable = [row for row in matching.extra if not machine_positions.crossed(np.array([row]))[0]]

@@ -70,6 +70,14 @@ def stands_away(context: Context) -> Callable[[int], bool]:
     return _Judge(context).stands_away
 
 
+def rows_away(context: Context) -> Ints | None:
+    """Return the rows that lead home along the spindle, and those behind which a word retracts the tool, increasing.
+
+    None for a program that has neither.
+    """
+    return _Judge(context).rows_away()
+
+
 def rotary_moves_at_part(context: Context) -> RotaryMovesAtPart:
     """Judge every turn of a rotary axis that positions it with TCP off."""
     return _Judge(context).result()
@@ -112,6 +120,12 @@ class _Judge:
             else:
                 self._judge_by_number(row, found)
         return found
+
+    def rows_away(self) -> Ints | None:
+        """Return the rows home along the spindle, and those before which a word retracts the tool; None: neither."""
+        if self._safe_height is None and not len(self._retracts):
+            return None
+        return np.unique(np.concatenate((np.array(sorted(self._homes), np.int64), self._retracts)))
 
     def stands_away(self, place: int) -> bool:
         """Whether the tool is away from the part at an event, as far as the program shows it."""

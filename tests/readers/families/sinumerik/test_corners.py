@@ -125,3 +125,29 @@ def test_ct_of_the_manual(run: Runner) -> None:
 
 def test_ct_without_a_direction_is_an_error(run: Runner) -> None:
     assert any("no direction" in text for text in _texts(run(f"{HEAD}Z5\nCT X60 Y20\n"), Severity.ERROR))
+
+
+# ANG
+
+
+def test_the_other_coordinate_follows_from_the_angle(run: Runner) -> None:
+    found = run(f"{HEAD}X40 ANG=30\nY40 ANG=90 RND=2\nX0 ANG=180\nG91 X-5 ANG=225\nG18 G90 Z10 ANG=-45\n")
+    assert found.diagnostics == ()
+    rise = 40 / math.sqrt(3.0)
+    wanted = [[40, rise, 0], [40, 38, 0], [38, 40, 0], [0, 40, 0], [-5, 35, 0], [-15, 35, 10]]
+    close(found.tip[1:], wanted, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("block", "said"),
+    [
+        ("ANG=30", "ANG=30 with both coordinates or none"),
+        ("X5 Y5 ANG=45", "ANG=45 with both coordinates or none"),
+        ("X5 ANG=90", "ANG=90 without a straight line, or along the axis"),
+        ("X5 ANG=180", "ANG=180 leads away from X"),
+        ("G2 X5 ANG=10 CR=9", "ANG=10 without a straight line"),
+    ],
+)
+def test_an_angle_that_makes_no_line_is_an_error(block: str, said: str, run: Runner) -> None:
+    errors = _texts(run(f"{HEAD}{block}\n"), Severity.ERROR)
+    assert any(said in text for text in errors), errors

@@ -1,8 +1,11 @@
 """The virtual control of a Fanuc: its frames, its tilted planes, and the rotary positioning by G53.1."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from trunnion.arrays import Codes, Floats
+from trunnion.compensation.styles import TYPE_A
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, Mount
 from trunnion.messages import Wording, phrase
@@ -33,6 +36,7 @@ class FanucControl(Rs274Control):
 
     # A reset, and with it the end of a program, keeps units and stroke limits in any case (docs/reader-fanuc.md).
     kept_modes = frozenset({"units", "limits"})
+    compensation_style = TYPE_A
     doubtful_modes = frozenset({"distances", "plane", "feed", "compensation", "offset", "length"})
 
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
@@ -51,6 +55,8 @@ class FanucControl(Rs274Control):
         self.preset = np.zeros(3)
         self.local = np.zeros(3)
         self.rotation = AffineMap()
+        # G51.1: the position about which an axis is mirrored, mm, by axis.
+        self.mirrored: dict[int, float] = {}
         self._rotated_in_space = False
         self.vectors = False
         self.plane_of_pose = False
@@ -99,18 +105,39 @@ class FanucControl(Rs274Control):
         return np.asarray(self.offset_of(self.system) - self.zero + self.preset + self.local)
 
     def left_on(self) -> Wording | None:
-        """Return the rotation, or the shift without use, that the end of the program leaves on; None if nothing.
+        """Return the mirror image, rotation or unused shift that the end of the program leaves on; None if nothing.
 
         The plane of the rotary position (G254 of a Haas) ends with M2 and M30.
         """
         shifts = {"G52": self.local.any(), "G92": self.preset.any()}
+        if self.mirrored:
+            return phrase("left_word", word="G51.1")
         if not self.rotation.is_identity:
             return phrase("left_word", word="G68")
         return next((phrase("left_word", word=word) for word, on in shifts.items() if on and self.unused_shift), None)
 
+    def mirror(self, axes: Mapping[int, float | None]) -> None:
+        """G51.1, G50.1: mirror axes about a position, mm, or no longer (None)."""
+        kept = {axis: place for axis, place in self.mirrored.items() if axis not in axes}
+        self.mirrored = kept | {axis: place for axis, place in axes.items() if place is not None}
+        self.update_frame()
+
+    def judge_mirror(self) -> None:
+        """Note what is not simulated together with a mirror image."""
+        rotated = self.tilted or self.tcp or not self.rotation.is_identity
+        if self.mirrored and (rotated or self.plane_axis in self.mirrored or self.modal.compensation.current):
+            self.note(Wording("NC220", "mirror_with_others"), Severity.ERROR)
+
     def update_frame(self) -> None:
-        """Put offsets and rotations into effect; the axes stay."""
-        if self.tilted:
+        """Put offsets, rotations and mirror images into effect; the axes stay."""
+        if self.mirrored:
+            signs, places = np.ones(3), np.zeros(3)
+            for axis, place in self.mirrored.items():
+                signs[axis], places[axis] = -1.0, 2.0 * place
+            mirror = AffineMap(np.diag(signs), places)
+            self.judge_mirror()
+            self.set_program_frame(AffineMap(np.eye(3), self._shift).compose(mirror), keep_base=False)
+        elif self.tilted:
             # The plane is fixed in the work offset that was in force when it was tilted.
             self.set_program_frame(self.rotation, keep_base=False)
         else:

@@ -16,9 +16,11 @@ from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR
 from trunnion.readers.families.fanuc import words
+from trunnion.readers.families.fanuc.corners import cut_corner
 from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
 from trunnion.readers.families.fanuc.nurbs import NurbsBlocks
+from trunnion.readers.families.fanuc.polar_positions import PolarPositions
 from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import ARITHMETIC
 from trunnion.readers.program.interpreter import ProgramEnd
@@ -37,6 +39,7 @@ class FanucInterpreter(CycleInterpreter):
     """Runs one Fanuc program on one machine."""
 
     table = words.TABLE
+    corner_letters = ("R", "C")
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
@@ -49,6 +52,7 @@ class FanucInterpreter(CycleInterpreter):
         # The row from which radius compensation begins or ends; -1: no motion waits for that.
         self._compensates_from = -1
         self._limits_set_at = 0
+        self._polar = PolarPositions(self.control)
         self._needs_number = self.control.settings.needs_program_number
         self._nurbs = NurbsBlocks(self.control)
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
@@ -62,7 +66,13 @@ class FanucInterpreter(CycleInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        in_doubt = self._spindle_stands or self._not_stated or self._needs_number or self.control.length_ended_at
+        in_doubt = (
+            self._polar.on
+            or self._spindle_stands
+            or self._not_stated
+            or self._needs_number
+            or self.control.length_ended_at
+        )
         return self._stack[-1].modal is None and not in_doubt and super()._may_scan(source)
 
     def _system_value(self, key: int) -> float | None:
@@ -149,7 +159,10 @@ class FanucInterpreter(CycleInterpreter):
         self._leave_program()
 
     def _execute_words(self, block: Block) -> None:
+        waits, row = self.control.awaits_element, self.control.row
         super()._execute_words(block)
+        if waits and row == self.control.row:
+            self.control.end_contour()  # the motion that makes a corner must be in the next block (PS0051)
         self._report_unused_words(block)  # behind the M codes after the motion, which take some
 
     def _scale_words(self, block: Block) -> None:
@@ -162,6 +175,7 @@ class FanucInterpreter(CycleInterpreter):
             control.settings.scale_dwell(block)
         if words.DWELL not in block.g:
             angles = "IJKR" if words.TILT in block.g else ""
+            angles += self._polar.letters[1] if self._is_polar(block) else ""
             mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
             plain = {letter for word in self.table.words("G", block.g) for letter in word.values}
             if in_cycle:
@@ -248,6 +262,7 @@ class FanucInterpreter(CycleInterpreter):
 
     def _begin_compensation(self, block: Block) -> None:
         self._check_look_ahead()
+        self.control.judge_mirror()
 
     def _numbers_length(self, block: Block) -> bool:
         """Whether the H in force names a tool length: H0 is none."""
@@ -288,10 +303,16 @@ class FanucInterpreter(CycleInterpreter):
         control.set_length(True)
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
         control.vectors = vectors
+        control.judge_mirror()
 
     def _may_be_left_on(self) -> list[str]:
         left = super()._may_be_left_on()
         left += ["G23"] if self._limits_off and self.control.cuts_behind(self._limits_set_at) else []
+        control = self.control
+        has_length = control.length_active and not control.tcp and control.cuts_behind(0)
+        left += ["G43"] if has_length and not control.sets_behind_use("length") else []
+        left += ["G68.2"] if control.tilted and not control.plane_of_pose else []
+        left += ["G16"] if self._polar.on else []
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
         return left
 
@@ -316,6 +337,8 @@ class FanucInterpreter(CycleInterpreter):
         axes = self._axis_words(block)
         if axes:
             self._check_cut(axes, of_machine=words.MACHINE in block.g)
+        if self._is_polar(block):
+            axes = self._polar.position(axes, block.words.get(control.settings.repeat_letter))
         vector = self._vector(block) if control.vectors and self.motion_code in (0, 10) else None
         if control.vectors and axes.keys() & set(control.rotary_names) and words.MACHINE not in block.g:
             self._note(Wording("NC340", "rotary_words_with_vector"), Severity.ERROR)
@@ -342,7 +365,15 @@ class FanucInterpreter(CycleInterpreter):
             control.move(axes, vector, feed_written=self._check_feed(block))
         else:
             self._move(block, axes)
+            cut_corner(control, block)
         self._call_modal_macro()
+
+    def _is_polar(self, block: Block) -> bool:
+        """Whether the axis words of a block, if they are a position, are radius and angle."""
+        return self._polar.on and words.MACHINE not in block.g
+
+    def _polar_positions(self, word: Word, block: Block) -> None:
+        self._polar.switch(word.sets)
 
     def _vector(self, block: Block) -> Floats | None:
         """G43.5: return the tool axis I J K; components that are not written are 0."""

@@ -49,6 +49,7 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError(Wording("NC210", "time_dwell_p_control"))
         for letter in "XU":
             block.take(letter)
+        self.control.settings.check_dwell(block)
         milliseconds = block.take("P")
         if (milliseconds or 0.0) < 0.0 or (number is not None and number.value < 0.0):
             raise BlockError(Wording("NC215", "negative_dwell"))
@@ -209,6 +210,21 @@ class OffsetInterpreter(CallInterpreter):
         if angle is None or not 1e-12 < length < MAX_POSITION or not abs(angle) < MAX_POSITION:
             raise BlockError(Wording("NC210", "g68_needs_angle_r_axis"))
         control.rotate(centre, axis / length, angle)
+
+    def _mirror(self, word: Word, block: Block) -> None:
+        """G51.1: mirror each axis of the block about its value."""
+        values = [block.take(letter) for letter in "XYZ"]
+        if all(value is None for value in values) or any(abs(value or 0.0) > MAX_POSITION for value in values):
+            raise BlockError(Wording("NC210", "mirror_needs_axes", word=word.text))
+        unit = self.control.length_unit
+        self.control.mirror({axis: value * unit for axis, value in enumerate(values) if value is not None})
+
+    def _end_mirror(self, word: Word, block: Block) -> None:
+        """G50.1: end the mirror image of the axes of the block."""
+        axes = [axis for axis, letter in enumerate("XYZ") if block.take(letter) is not None]
+        if not axes and self.control.mirrored:
+            raise BlockError(Wording("NC210", "mirror_needs_axes", word=word.text))
+        self.control.mirror(dict.fromkeys(axes))
 
     def _tilt(self, word: Word, block: Block) -> None:
         """G68.2: tilt the plane by its origin and Euler angles."""

@@ -1,5 +1,6 @@
 """The words of a Fanuc, by their meaning in its manuals."""
 
+import math
 from typing import Final
 
 from trunnion.readers.program.word_values import one_of, whole
@@ -33,8 +34,11 @@ TABLE: Final = WordTable(
     Word("G11", effect=_NONE),
     Word("G12.1", "polar coordinate interpolation is not simulated", effect=_ERROR, group="polar interpolation"),
     Word("G13.1", effect=_NONE, group="polar interpolation"),
-    Word("G15", effect=_NONE, group="polar positions"),
-    Word("G16", "polar positions are not simulated", effect=_ERROR, group="polar positions"),
+    Word("G15", "polar positions off", act="polar_positions", sets=False, group="polar positions"),
+    Word(
+        "G16", "positions in the plane are radius and angle", act="polar_positions", sets=True,
+        group="polar positions",
+    ),
     Word(
         "G22", "stroke limits on; with positions, which limit the axes, an error", effect=_NONE, act="stroke_limits",
         sets=False, group="limits", letters="XYZIJK", moves=False,
@@ -78,9 +82,11 @@ TABLE: Final = WordTable(
     ),
     Word("G45 G46 G47 G48", _POSITION, effect=_ERROR, letters="D"),
     Word("G50", effect=_NONE, group="scaling"),
-    Word("G50.1", effect=_NONE, group="mirror images", letters="XYZ", moves=False),
+    Word(
+        "G50.1", "mirror image off", act="end_mirror", group="mirror images", letters="XYZ", when=_BEHIND, moves=False,
+    ),
     Word("G51", "scaling is not simulated", effect=_ERROR, group="scaling", letters="XYZPIJK", moves=False),
-    Word("G51.1", "mirror images are not simulated", effect=_ERROR, group="mirror images", letters="XYZ", moves=False),
+    Word("G51.1", "mirror image", act="mirror", group="mirror images", letters="XYZ", when=_BEHIND, moves=False),
     Word("G52", "local shift", act="local_shift", when=_BEHIND, moves=False),
     Word("G53", "positions of the machine, with `G90`"),
     Word(
@@ -172,6 +178,12 @@ TILT: Final = TABLE.code("G68.2")
 
 #: Smooth interpolation and nano smoothing, which round the path within a tolerance of the control.
 SMOOTHING: Final = ("G5.1 Q2", "G5.1 Q3")
+
+#: Words that round or chamfer the corner at the end of their block. A contour that turns by less, radians, has none.
+ROUNDING: Final = ",R"
+CHAMFER: Final = ",C"
+CORNERS: Final = (ROUNDING, CHAMFER)
+LEAST_TURN: Final = math.radians(1.0)
 
 #: Threads.
 THREADS: Final = frozenset({TABLE.code("G74"), TABLE.code("G84")})

@@ -25,7 +25,7 @@ class Block:
 
     axes     X, Y, Z and rotary axes by name
     vector   A3, B3, C3 by letter
-    params   I, J, K, I1, J1, K1, CR, AR, TURN, RPL
+    params   I, J, K, I1, J1, K1, CR, AR, TURN, ANG, RPL
     words    words without a value
     polynomials  the end and the coefficients of each axis with PO[]; the empty name is the denominator
     interval     of their parameter, PL

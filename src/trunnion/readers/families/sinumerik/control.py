@@ -4,6 +4,7 @@ The tool length, if it is known, is that of the control's tool offset. Without T
 normal to the working plane, wherever the tool points; D0 removes it.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from typing import Final
@@ -11,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.compensation.styles import CIRCLES, MEETINGS, UNKNOWN_STYLE
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.messages import Wording
@@ -47,6 +49,7 @@ class SinumerikControl(VirtualControl):
                 control decide where X and Y point, and whether it is a frame of its own, which TRANS does not delete.
     """
 
+    compensation_style = CIRCLES
     no_offset = NO_OFFSET
     knows_units = True
 
@@ -116,8 +119,17 @@ class SinumerikControl(VirtualControl):
     def modify_compensation(self, word: str) -> None:
         """Execute a word that counts within radius compensation."""
         self._compensation_modes[WITHIN_COMPENSATION[word][0]] = word
+        if word in ("NORM", "KONT", "G450", "G451", "DISC"):
+            self._set_style()
         if self.modal.compensation.current:
             self._report_compensation_mode(word)
+
+    def _set_style(self) -> None:
+        """Note how corners are rounded; KONT, which may go round the first point, and DISC are not simulated."""
+        modes = self._compensation_modes
+        style = MEETINGS if modes.get("outer") == "G451" else CIRCLES
+        known = modes.get("approach") != "KONT" and modes.get("outer") != "DISC"
+        self.modal.compensation_style.set(self.row, style if known else UNKNOWN_STYLE)
 
     def _report_compensation_mode(self, word: str) -> None:
         if effect := WITHIN_COMPENSATION[word][1]:
@@ -215,6 +227,29 @@ class SinumerikControl(VirtualControl):
         if centre is None:
             raise arcs.ArcError(Wording("NC320", "circle_no_centre" if in_plane else "circle_neither_end_nor_centre"))
         return arcs.by_centre(start, end, centre, self.plane_axis, clockwise, turns)
+
+    def end_at_angle(self, axes: Mapping[str, AxisWord], angle: float) -> dict[str, AxisWord]:
+        """Return the axes of a line with the coordinate of the plane that follows from its angle, degrees.
+
+        The angle counts from the first axis of the plane. Raises ``arcs.ArcError`` where it makes no line.
+        """
+        names = ["XYZ"[(self.plane_axis + k) % 3] for k in (1, 2)]
+        given = [name for name in names if name in axes]
+        if len(given) != 1:
+            raise arcs.ArcError(Wording("NC220", "angle_of_contour", angle=angle))
+        name, other = given[0], names[1 - names.index(given[0])]
+        way = dict(zip(names, (math.cos(math.radians(angle)), math.sin(math.radians(angle))), strict=True))
+        if self.motion > LINEAR or abs(way[name]) < arcs.SAME_POINT:
+            raise arcs.ArcError(Wording("NC220", "angle_without_line", angle=angle))
+        value, how = axes[name]
+        step = value if self._is_incremental(how) else value - self._start_of(name)
+        if step / way[name] < 0.0:
+            raise arcs.ArcError(Wording("NC220", "angle_leads_away", angle=angle, axis=name))
+        return {**axes, other: (self._start_of(other) + step / way[name] * way[other], PositionMode.ABSOLUTE)}
+
+    def _start_of(self, name: str) -> float:
+        """Return the programmed position of an axis in the unit of the program."""
+        return float(self.programmed_position["XYZ".index(name)]) / self.length_unit
 
     # Frames along the tool
 

@@ -60,7 +60,15 @@ class CornerWords:
 
     def _cut(self, size: float, feed: float | None) -> None:
         control, word = self._control, self._word
-        own = feed * control.unit_of_feed if feed else self._feed or None
         control.cut_corner(
-            CornerWord(word, size, word[0] == "C", word == "CHF", own, self._feed_of, True, word == "RNDM")
+            CornerWord(
+                word,
+                size,
+                chamfer=word[0] == "C",
+                by_length=word == "CHF",
+                feed=feed * control.unit_of_feed if feed else self._feed or None,
+                feed_of=self._feed_of,
+                left_out=True,
+                modal=word == "RNDM",
+            )
         )

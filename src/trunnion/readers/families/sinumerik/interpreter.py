@@ -7,6 +7,7 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.readers.control.arcs import ArcError
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.sinumerik import cycles
@@ -241,7 +242,7 @@ class SinumerikInterpreter(WordInterpreter):
         if block.polynomials or block.interval is not None or (control.motion == POLYNOMIAL and block.params):
             move_along_polynomials(control, block, self._counter.count_motions)
             return True
-        has_motion = block.axes or block.vector or (block.params and control.motion > LINEAR)
+        has_motion = block.axes or block.vector or (block.params and control.motion > LINEAR) or "ANG" in block.params
         if not has_motion or G_NO_MOTION.intersection(block.g):
             return False
         if {"I", "J", "K"} & block.params.keys() and control.motion <= LINEAR:
@@ -253,10 +254,16 @@ class SinumerikInterpreter(WordInterpreter):
         if self._other_feed_radius and control.motion != RAPID and self._only_turns(block):
             self._note(Wording("NC220", "fgref_changes_feed_rotary_axes"), Severity.ERROR)
         self._corners.begin_motion()
+        axes = block.axes
+        if "ANG" in block.params:
+            try:
+                axes = control.end_at_angle(axes, block.params["ANG"][0])
+            except ArcError as error:
+                self._note(error.wording, Severity.ERROR)
         control.move(
-            block.axes,
+            axes,
             block.tool_axis,
-            circle=control.circle(block.params, block.axes),
+            circle=control.circle(block.params, axes),
             machine_frame="SUPA" in block.words or bool(G_MACHINE.intersection(block.g)),
             feed_written=block.feed is not None,
         )

@@ -110,11 +110,16 @@ DRIVING_MODES: Final = {
 #: How the control goes through the ends of blocks, by G code: ``RowRecorder.add_exact_stop``.
 EXACT_STOPS: Final = {9: "block", 60: "on", 64: "off", 641: "off", 642: "off", 643: "off", 644: "off", 645: "off"}
 
+#: What the message says of radius compensation.
+_COMPENSATION: Final = (
+    "radius compensation: the path is read as programmed, and the tool centre goes beside it by what the register holds"
+)
+
 #: G words that are not simulated: the message, and whether the path is wrong without them.
 G_NOT_SIMULATED: Final = {
     33: ("thread cutting is taken as a straight line", True),
-    41: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    42: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
+    41: (_COMPENSATION, False),
+    42: (_COMPENSATION, False),
     63: ("tapping is taken as a straight line", True),
     331: ("tapping is taken as a straight line", True),
     332: ("tapping is taken as a straight line", True),
@@ -149,6 +154,9 @@ WITHIN_COMPENSATION: Final = {
     "CFTCP": ("feed", "F counts at the tool centre"),
     "CFIN": ("feed", "F counts at the contour on inside corners only"),
     "CFCIN": ("feed", "F counts at the contour on inside corners only"),
+    "G450": ("outer", ""),
+    "G451": ("outer", ""),
+    "DISC": ("outer", ""),
     "NORM": ("approach", ""),
     "KONT": ("approach", ""),
     "KONTC": ("approach", "it is approached along a curve"),
@@ -277,7 +285,7 @@ MODES: Final = frozenset({"TRAORI", "TRAFOOF", "SUPA", "CIP", "CT", "POLY"})
 
 #: Other words with an effect: circles, polynomials, corners, messages.
 ACTIVE: Final = (
-    MODES | CORNERS | CORNER_FEEDS | frozenset({"CR", "TURN", "AR", "RPL", "PO", "PL", "SPOS", "MSG", "SETAL"})
+    MODES | CORNERS | CORNER_FEEDS | frozenset({"CR", "TURN", "AR", "ANG", "RPL", "PO", "PL", "SPOS", "MSG", "SETAL"})
 )
 
 #: Values of predefined names; modes of CYCLE832 as the digits of S_TOLM.

@@ -1,0 +1,191 @@
+"""What a file is by marks of its content: programs of controls and machines, listings and texts.
+
+A guess for messages, where a program is not understood; nothing is read otherwise because of it.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+from trunnion.errors import Problem
+from trunnion.families import FAMILIES
+from trunnion.machines import Machine
+from trunnion.messages import Wording
+from trunnion.model.run import Diagnostic, Run
+from trunnion.readers.program.settings import family_of
+
+#: So much of a file is looked at, bytes, and so many letters of each line.
+_HEAD: Final = 200_000
+_MOST_LETTERS: Final = 300
+
+#: A file is of a kind with so many different marks of it, or lines with one of them.
+_ENOUGH: Final = 2
+
+#: Fewer lines that are not understood say nothing of the program.
+_FEW_ERRORS: Final = 5
+
+#: Share of the lines that a text has without a single word of a program.
+_MOSTLY: Final = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramKind:
+    """A kind of files, and the marks of one: the letters of a line that match are shown.
+
+    languages  folders of the readers that read it; empty: none does
+    """
+
+    name: str
+    marks: tuple[re.Pattern[str], ...]
+    languages: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Recognized:
+    """What a file is, and by what: the first line with each mark, and its letters."""
+
+    kind: ProgramKind
+    found: tuple[tuple[int, str], ...]
+
+
+def _kind(name: str, *marks: str, languages: tuple[str, ...] = ()) -> ProgramKind:
+    return ProgramKind(name, tuple(re.compile(mark, re.IGNORECASE) for mark in marks), languages)
+
+
+_N: Final = r"^/? ?(?:N\d+ ?)?"
+
+#: The kinds, the most telling marks first; where two have as many, the first one counts.
+KINDS: Final = (
+    _kind(
+        "a listing of a postprocessor",
+        r"^[^(;\w]{0,5}[=_*]{20,}", r"\b(?:ISN|CLREC|CLDATA|CL REC)\b", r"\bPAGE +\d+",
+        r"^ {0,9}\d+ +\d+ +N\d+ ?G\d",
+    ),
+    _kind(
+        "a Heidenhain Klartext program",
+        r"^\d* ?(?:BEGIN|END) PGM ", r"^\d+ +TOOL CALL ", r"^\d+ +CYCL (?:DEF|CALL)", r"^\d+ +L +[XYZABC][+-]",
+        r"^\d+ +(?:CC|LBL|FN \d+:|PLANE|FUNCTION|STOP M)\b", languages=("heidenhain",),
+    ),
+    _kind(
+        "a Fagor program",
+        r"^%[^,]{1,30},M?X?M?,", r"#(?:TEE|RTCP|CS ON|MCS|HSC|MPOLY|ACS|TOOL AX|TLC)\b",
+        r"\((?:IF|CALL|PCALL|RPT|MSG)\b[^)]*P?\d",
+        r"\(P\d+ ?= ?",
+    ),
+    _kind(
+        "a program for a wire eroding machine",
+        r"^H\d{3} ?=", r"\bT8[46]\b", r"^ ?C\d{3}\b", r"\bG5[12] ?A-?[\d.]", r"\b[UV]-?[\d.]+ ?[UV]-?[\d.]+",
+    ),
+    _kind(
+        "a program for a lathe",
+        _N + r"G50 ?S\d", _N + r"G96 ?S\d", r"G7[0-3] ?P\d+ ?Q\d", r"G7[0-6] ?[UXZ]-?[\d.]+ ?[RWZ]", r"\bT0\d0\d\b",
+        r"G28 ?U0?\.? ?W0", r"\b[UX]-?[\d.]+ ?W-?[\d.]",
+    ),
+    _kind(
+        "an Okuma program",
+        r"^\$[\w-]+\.(?:MIN|SUB|SSB|LIB)%", r"\bG15 ?H\d", r"\bG56 ?H\d", r"\bCALL O\w", r"\bV[CSO]\d+ ?=",
+        r"\bG116 ?T",
+    ),
+    _kind(
+        "a Fadal program",
+        r"^N?\d* ?#(?:CLEAR|PRINT|IF|GOTO|R\d|[A-Z]\d* ?=)", r"\bE\d+ [XY]", _N + r"L\d{3,4}\b", r"\bE0\b.*\bH0\b",
+        _N + r"M4[59]\b",
+    ),
+    _kind("a Mach3 program", r"\bMach ?[34]\b", r"\bG40\.1\b", r"\bG80 ?G50\b", r"^M998\b"),
+    _kind(
+        "a tape with $ at the end of its blocks",
+        r"^N?\d*[GXYZFSTM][^$]*\$ *$", r"^(?:N\d+)?G0?[01]X[+-]?\d{4,}Y?[^$]*\$ *$",
+    ),
+    _kind(
+        "a Sinumerik program",
+        r"^%_N_\w+_(?:MPF|SPF)", r"\b(?:TRAORI|TRAFOOF|SUPA|ORIWKS|ORIAXES)\b", r"\bCYCLE\d{2,3} ?\(",
+        r"^(?:N\d+ )?MSG ?\(\"",
+        r"\bR\d+ ?= ?", r"^;\$PATH=", r"\bD\d+ ?M6\b|\bT ?= ?\"", languages=("sinumerik",),
+    ),
+    _kind(
+        "a LinuxCNC program",
+        r"\bO ?(?:<\w+>|\d+) (?:sub|endsub|call|if|while|return)\b", r"#<\w+>", r"\bG64 ?P", r"\bG43\.1 ?Z",
+        r"\bM6[2-8] ?[PE]\d",
+        languages=("linuxcnc",),
+    ),
+    _kind(
+        "a program for a Fanuc or Haas",
+        r"^:?O\d{1,8}\b", r"\bG5\.1 ?Q|\bG05\.1 ?Q", r"\bG43\.4\b|\bG68\.2\b|\bG234\b|\bG254\b",
+        r"\bG154 ?P|\bG54\.1 ?P",
+        languages=("fanuc",),
+    ),
+)  # fmt: skip
+
+#: A text that is no program.
+TEXT: Final = ProgramKind("a text, and no program", ())
+
+_WORD: Final = re.compile(r"(?:^|[\s(])[GMXYZFSTN] ?[-+]?\.?\d", re.IGNORECASE)
+
+
+def recognize(file: Path) -> Recognized | None:
+    """Return what a file is by its first lines; None where it says too little, or cannot be read."""
+    lines = list(_lines(file))
+    best: Recognized | None = None
+    for kind in KINDS:
+        found = [_first(mark, lines) for mark in kind.marks]
+        marks = tuple({each[0]: each for each in sorted(filter(None, found), reverse=True)}.values())[::-1]
+        repeated = len(marks) == 1 and _count(kind.marks[[bool(each) for each in found].index(True)], lines) >= _ENOUGH
+        if (len(marks) >= _ENOUGH or repeated) and (best is None or len(marks) > len(best.found)):
+            best = Recognized(kind, marks)
+    if best is None and lines and sum(not _WORD.search(line) for _, line in lines) >= _MOSTLY * len(lines):
+        return Recognized(TEXT, ())
+    return best
+
+
+def with_kind(run: Run, program: Path) -> Run:
+    """Return a run with errors that says first what its program seems to be, if that is nothing for its control."""
+    lines = len({(each.file, each.line) for each in run.errors})
+    doubt = _doubt(program, run.language, not len(run), lines >= max(_FEW_ERRORS, len(run)))
+    first = () if doubt is None else (Diagnostic(1, doubt, file=run.files[0]),)
+    return replace(run, diagnostics=(*first, *run.diagnostics)) if first else run
+
+
+def kind_problem(program: Path, machine: Machine) -> Problem | None:
+    """Return what a program that cannot be read seems to be, if that is nothing for the control of the machine."""
+    doubt = _doubt(program, FAMILIES[family_of(machine)].reader or "", True, False)
+    return None if doubt is None else Problem(str(program), 1, doubt)
+
+
+def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wording | None:
+    """Return what a program seems to be.
+
+    is_still    it has no motion, so that it may be a text
+    is_certain  at any rate it is none for the control
+    """
+    found = recognize(program)
+    reader = language.rsplit(".", 2)[-2]
+    if found and reader not in found.kind.languages and (found.found or is_still or is_certain):
+        said: dict[str, object] = {"kind": found.kind.name}
+        for name, (line, letters) in zip(("first", "second"), found.found, strict=False):
+            said |= {name: letters, f"{name}_line": line}
+        return Wording("NC113", ("is_text", "is_kind_by_one", "is_kind")[min(len(found.found), 2)], **said)
+    return Wording("NC113", "is_for_other_control") if is_certain else None
+
+
+def _lines(file: Path) -> Iterator[tuple[int, str]]:
+    """Lines of the head of a file that are not empty, with their numbers."""
+    try:
+        with file.open("rb") as opened:
+            text = opened.read(_HEAD).decode("utf-8", "replace")
+    except OSError:
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip():
+            yield number, line[:_MOST_LETTERS].rstrip()
+
+
+def _first(mark: re.Pattern[str], lines: list[tuple[int, str]]) -> tuple[int, str] | None:
+    """Return the first line with a mark, and its letters."""
+    hits = ((number, found[0].strip()) for number, line in lines if (found := mark.search(line)))
+    return next(hits, None)
+
+
+def _count(mark: re.Pattern[str], lines: list[tuple[int, str]]) -> int:
+    return sum(mark.search(line) is not None for _, line in lines)

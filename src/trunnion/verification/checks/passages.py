@@ -1,0 +1,178 @@
+"""Ways above the part: from one operation to the next without going home, and the last leg of a way from home.
+
+A program that stays at its tilt leaves straight up along the tool to a height above all operations, goes across at that
+height, and straight down to the first point. From home it comes to such a height over the first point, and goes down.
+These motions have no CL point; they are recognized by what they do. Any other motion without a CL point stays a fault.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.model.run import RowPositions, Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.rotary_moves_at_part import rows_away
+from trunnion.verification.context import ComparedContext, Context
+from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, only_positions_rotary_axes
+from trunnion.verification.matching.hole_matching import match_holes
+from trunnion.verification.matching.pairs import Matching
+from trunnion.verification.results import Place
+
+#: Tool axes are the same when no component differs by more than this.
+_SAME_AXIS = 1e-6
+
+#: Rotary motion of less than this is none, degrees; so far may a tool leave its axis by rounding, mm.
+_TURNS = 1e-3
+_ASIDE = 2e-3
+
+#: Motions between two operations at most: up, across.
+_MOST_ROWS = 2
+
+
+def passage_rows(context: ComparedContext) -> set[int]:
+    """Return the motions without a CL point that lead from one operation to the next above all of them, or from home
+    to a place above all of them from which the next motion goes straight down.
+    """
+    run, extra = context.run, context.matching.extra
+    found: set[int] = set()
+    rows: Ints = np.array(extra, np.int64)
+    for unbroken in np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1):
+        if not 0 < len(unbroken) <= _MOST_ROWS or unbroken[0] == 0 or unbroken[-1] + 1 >= len(run):
+            continue
+        first, down = int(unbroken[0]), int(unbroken[-1]) + 1
+        way = _Way(context, first, down)
+        if len(unbroken) == 1 and _comes_from_home(run, first):
+            wanted = context.settings.in_turn and run.state.tcp[first]  # a plane has first legs of its own
+            if wanted and way.comes_down_from(context.highest_point(way.axis)):
+                found.add(first)
+        elif context.settings.clearance is None or not _begins_operation(context, down):
+            continue
+        elif way.leaves_above(context.highest_point(way.axis) + context.settings.clearance):
+            found.update(unbroken.tolist())
+    return found
+
+
+def _comes_from_home(run: Run, row: int) -> bool:
+    """Whether the tool was at home, or retracted by a word, before a row; rotary axes may turn in between."""
+    before = row - 1
+    while before >= 0 and only_positions_rotary_axes(run, np.array([before]))[0]:
+        before -= 1
+    by_word = any(event.kind == "retract" and before < event.before_row <= row for event in run.events)
+    return before < 0 or by_word or bool(run.state.machine_frame[before])
+
+
+def without_retract(context: Context) -> Iterator[Place]:
+    """Yield the first row of each operation to which the tool comes neither from home nor above all.
+
+    Programs of others may stay at the part; so may one that never goes home, nor retracts by a word.
+    """
+    if not isinstance(context, ComparedContext) or not context.settings.between_operations:
+        return
+    away = rows_away(context)
+    if away is None:
+        return
+    lawful = passage_rows(context)
+    for last, first, operation in _bounds(context):
+        begin, end = np.searchsorted(away, (last, first), side="right")
+        between = range(last + 1, first)
+        if end == begin and not (between and all(row in lawful for row in between)):
+            yield context.place(first, 0.0, f"goes on to the operation {operation} without a retract")
+
+
+def not_in_turn(context: Context) -> Iterator[Place]:
+    """Yield the first row of each operation that moves axes together on the way from home, where the settings want one
+    group after the other: the rotary axes, those across the tool, the one along it.
+    """
+    away = rows_away(context) if isinstance(context, ComparedContext) and context.settings.in_turn else None
+    if away is None or not isinstance(context, ComparedContext):
+        return
+    run, last = context.run, -1
+    for section in context.expected.sections:
+        begin, end = context.matching.pair_range(section.first, section.end)
+        if begin == end:
+            continue
+        row, before, last = context.matching.nc[begin], last, context.matching.nc[end - 1]
+        first_row = context.matching.cl[begin] == section.first and section.kept is None
+        from_home = bool(((away > before) & (away <= row)).any())
+        if first_row and from_home and run.kind[row] == Kind.RAPID and row > 0 and not _moves_along_tool(run, row):
+            text = "moves axes together on the way from home: one group after the other is wanted (first_approach)"
+            yield context.place(row, 0.0, text)
+
+
+def _moves_along_tool(run: Run, row: int) -> bool:
+    """Whether a row moves the tool along its axis alone, or one linear axis alone."""
+    positions = run.positions(np.array([row - 1, row]))
+    step, axis = positions.tip[1] - positions.tip[0], positions.axis[1]
+    joints = np.abs(positions.joints[1] - positions.joints[0])
+    if joints[list(run.machine.rotary)].max() > _TURNS:
+        return False
+    aside = float(np.linalg.norm(step - float(step @ axis) * axis))
+    return aside <= _ASIDE or int((joints[list(run.machine.linear)] > _ASIDE).sum()) <= 1
+
+
+def _bounds(context: ComparedContext) -> Iterator[tuple[int, int, str]]:
+    """Yield the last row of each operation, the first of the next one with rows, and its name."""
+    matching, expected = context.matching, context.expected
+    holes = {hole.index: hole for hole in match_holes(context.run, expected)} if expected.holes else {}
+    last: int | None = None
+    for section, begin, end in zip(expected.sections, (0, *expected.hole_ends), expected.hole_ends, strict=False):
+        first_pair, end_pair = matching.pair_range(section.first, section.end)
+        rows = [matching.nc[first_pair], matching.nc[end_pair - 1]] if end_pair > first_pair else []
+        own = [holes[index] for index in range(begin, end) if index in holes]
+        rows += [row for hole in own for row in (hole.first, hole.end - 1)]
+        if rows and last is not None:
+            yield last, min(rows), section.operation.name
+        last = max(rows, default=last)
+
+
+def _begins_operation(context: ComparedContext, row: int) -> bool:
+    """Whether a row goes to the first CL point of an operation that is not the first one."""
+    matching: Matching = context.matching
+    k = matching.nc.count_before(row)
+    if not 0 < k < len(matching.nc) or matching.nc[k] != row:
+        return False
+    return context.expected.section_at(matching.cl[k]) is not context.expected.section_at(matching.cl[k - 1])
+
+
+class _Way:
+    """Rows ``first`` to ``down``, of which the last one goes to a CL point."""
+
+    def __init__(self, context: ComparedContext, first: int, down: int) -> None:
+        run: Run = context.run
+        rows = np.arange(first, down + 1)
+        self._near = 4.0 * context.expected.max_tip_tolerance + 1e-6
+        self._positions: RowPositions = run.positions(np.arange(first - 1, down + 1))
+        self.axis: Floats = self._positions.axis[-1]
+        turned = np.abs(self._positions.axis[1:] - self.axis).max() > _SAME_AXIS
+        words = int(np.bitwise_or.reduce(run.programmed[rows])) & int(ROTARY_WORDS)
+        moved = np.ptp(self._positions.joints[1:, list(run.machine.rotary)], axis=0).max() > _SAME_AXIS
+        at_rapid = bool((run.kind[rows] == Kind.RAPID).all())
+        self._is_free = at_rapid and not turned and not (words and moved) and not run.state.machine_frame.at(rows).any()
+
+    def comes_down_from(self, height: float) -> bool:
+        """Whether the last row goes straight down from a height or above."""
+        return self._is_free and self._goes_down() and self._heights[-2] >= height - self._near
+
+    def leaves_above(self, height: float) -> bool:
+        """Whether the first row goes straight up to a height or above, and the last one straight down from there."""
+        up, *_ = self._steps
+        aside = float(np.linalg.norm(up - float(up @ self.axis) * self.axis))
+        same = np.abs(self._positions.axis[0] - self.axis).max() <= _SAME_AXIS
+        starts_up = bool(aside <= self._near and float(up @ self.axis) >= -self._near and same)
+        # One row may be all: the operations end and begin over one place, or at the height itself.
+        level = bool((self._heights[1:-1] >= height - self._near).all())
+        return self._is_free and self._goes_down() and starts_up and level
+
+    @property
+    def _steps(self) -> Floats:
+        return np.asarray(np.diff(self._positions.tip, axis=0))
+
+    @property
+    def _heights(self) -> Floats:
+        return np.asarray(self._positions.tip @ self.axis)
+
+    def _goes_down(self) -> bool:
+        step = self._steps[-1]
+        along = float(step @ self.axis)
+        return along <= self._near and float(np.linalg.norm(step - along * self.axis)) <= self._near

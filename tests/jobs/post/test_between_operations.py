@@ -1,0 +1,209 @@
+"""Ways from one operation to the next: what the settings change, and that the proof misses what is taken from them."""
+
+import functools
+import re
+from pathlib import Path
+
+import pytest
+
+import trunnion
+
+MACHINES = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt")
+
+_OPERATION = """TOOL PATH/{name},TOOL,D{tool}
+TLDATA/MILL,1{tool}.0000,0.0000,75.0000,0.0000,0.0000
+MSYS/0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0,0.0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,{tool},ADJUST,{tool}
+SPINDL/RPM,3000,CLW
+COOLNT/ON
+RAPID
+GOTO/{x},0.0,30.0,{axis}
+FEDRAT/MMPM,500.0
+GOTO/{x},0.0,-1.0,{axis}
+GOTO/{end},0.0,-1.0,{last}
+RAPID
+GOTO/{end},0.0,30.0,{last}
+END-OF-PATH
+"""
+
+_UP, _TILTED, _MORE = "0.0,0.0,1.0", "0.0,0.5,0.8660254", "0.0,0.5150381,0.8571673"
+
+
+def _operation(name: str, x: float, axis: str = _UP, last: str = "", tool: int = 1) -> str:
+    return _OPERATION.format(name=name, x=x, end=x + 10.0, axis=axis, last=last or axis, tool=tool)
+
+
+#: Two operations with one tool: at the tool along Z, in one plane, under TCP from one tilt to another and back, and in
+#: planes that are tilted otherwise.
+PATHS = {
+    "three": _operation("FIRST", 0.0) + _operation("SECOND", 40.0),
+    "tilted": _operation("FIRST", 0.0, _TILTED) + _operation("SECOND", 40.0, _TILTED),
+    "tcp": _operation("FIRST", 0.0, _TILTED, _MORE) + _operation("SECOND", 40.0, _MORE, _TILTED),
+    "turned": _operation("FIRST", 0.0, _UP) + _operation("SECOND", 40.0, _TILTED),
+    "tools": _operation("FIRST", 0.0, _TILTED) + _operation("SECOND", 40.0, _TILTED, tool=2),
+}
+
+#: What leads home along the spindle, and what turns the rotary axes, in the words of each machine.
+_HOME = re.compile(r"SUPA G0 Z=|G53 G0 Z|L Z\+560 R0 FMAX M91|M242$")
+_TURN = re.compile(r"(?:G0?[01] |L )[ABC][-+\d.]+ [ABC][-+\d.]+( R0 FMAX| F3000)?$")
+
+
+class _Programs:
+    """Programs of this module, with what their checks say of changed ones."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self.post = functools.cache(self._post)
+
+    def _machine(self, base: str, settings: tuple[tuple[str, str], ...]) -> Path:
+        file = self._folder / f"{base}_{abs(hash(settings))}.toml"
+        text = "".join(f'{key} = "{value}"\n' for key, value in settings)
+        file.write_text(f'schema = 1\nextends = "{base}"\nname = "Shop"\n[control.settings]\n{text}', encoding="utf-8")
+        return file
+
+    def _source(self, path: str) -> Path:
+        source = self._folder / f"{path}.cls"
+        source.write_text(PATHS[path], encoding="utf-8")
+        return source
+
+    def _post(self, base: str, path: str, *settings: tuple[str, str]) -> list[str]:
+        result = trunnion.post(self._source(path), machine=self._machine(base, settings))
+        assert result.passed
+        return (result.text or "").splitlines()
+
+    def failing(self, lines: list[str], base: str, path: str, *settings: tuple[str, str]) -> set[str]:
+        program = self._folder / "changed.nc"
+        program.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        found = trunnion.verify(program, machine=self._machine(base, settings), cl=self._source(path))
+        return {check.key for check in found.checks if check.state == "FAIL"}
+
+
+@pytest.fixture(scope="module")
+def programs(tmp_path_factory: pytest.TempPathFactory) -> _Programs:
+    return _Programs(tmp_path_factory.mktemp("between"))
+
+
+def _plain(line: str) -> str:
+    """A line without its block number."""
+    return re.sub(r"^(N\d+|\d+) ", "", line)
+
+
+def _between(lines: list[str]) -> list[int]:
+    """The lines between the last cut of the first operation and the first cut of the second one."""
+    cuts = [k for k, line in enumerate(lines) if re.search(r"F500\.?$", line)]
+    return list(range(cuts[0] + 2, cuts[1]))
+
+
+_RETRACT = ("same_tool", "retract")
+_CLEARANCE = ("same_tool", "clearance")
+_IN_TURN = ("first_approach", "in_turn")
+
+
+@pytest.mark.parametrize("base", MACHINES)
+def test_a_tool_that_stays_goes_home_along_the_spindle_alone(base: str, programs: _Programs) -> None:
+    lines = programs.post(base, "turned", _RETRACT)
+    between = [_plain(lines[k]) for k in _between(lines)]
+    homes = [line for line in between if _HOME.search(line)]
+    assert len(homes) == 1
+    assert not any(re.search(r"SUPA G0 X|G53 G0 X|L X\+0 Y\+0 R0 FMAX M91|M0?5$", line) for line in between)
+    assert sum(bool(_TURN.search(line)) for line in between) == 1
+
+
+@pytest.mark.parametrize("base", MACHINES)
+def test_a_lost_retract_and_a_turn_before_it_are_faults(base: str, programs: _Programs) -> None:
+    lines = programs.post(base, "turned", _RETRACT)
+    between = _between(lines)
+    home = next(k for k in between if _HOME.search(_plain(lines[k])))
+    turn = next(k for k in between if _TURN.search(_plain(lines[k])))
+    lost = [line for k, line in enumerate(lines) if k != home]
+    early = [*lines[:home], lines[turn], *lines[home:turn], *lines[turn + 1 :]]
+    assert programs.failing(lines, base, "turned", _RETRACT) == set()
+    assert programs.failing(lost, base, "turned", _RETRACT)
+    assert "turns" in programs.failing(early, base, "turned", _RETRACT)
+
+
+@pytest.mark.parametrize("path", ["three", "tilted", "tcp"])
+@pytest.mark.parametrize("base", MACHINES)
+def test_at_one_tilt_the_tool_stays_above_all_operations(base: str, path: str, programs: _Programs) -> None:
+    lines = programs.post(base, path, _CLEARANCE)
+    between = [_plain(lines[k]) for k in _between(lines)]
+    assert not any(_HOME.search(line) or _TURN.search(line) for line in between)
+    assert programs.failing(lines, base, path, _CLEARANCE) == set()
+
+
+def _heights(lines: list[str]) -> tuple[int, int]:
+    """The line that draws the tool back, and that of the way across."""
+    moves = [k for k in _between(lines) if re.match(r"(G[01] |L )?[XYZ][-+.\d]", _plain(lines[k]))]
+    return moves[1], moves[2]
+
+
+@pytest.mark.parametrize("path", ["three", "tilted", "tcp"])
+@pytest.mark.parametrize("base", MACHINES)
+def test_a_height_that_is_lost_or_too_low_is_a_fault(base: str, path: str, programs: _Programs) -> None:
+    lines = programs.post(base, path, _CLEARANCE)
+    up, across = _heights(lines)
+    lost = [line for k, line in enumerate(lines) if k != up]
+    straight = [line for k, line in enumerate(lines) if k != across]
+    assert "home" in programs.failing(lost, base, path, _CLEARANCE)
+    assert programs.failing(straight, base, path, _CLEARANCE)
+    higher = ("operation_clearance", "12")
+    assert "order" in programs.failing(lines, base, path, _CLEARANCE, higher)
+    assert "order" in programs.failing(lines, base, path)  # where nothing allows the way
+
+
+@pytest.mark.parametrize("base", MACHINES)
+def test_a_post_that_stays_at_the_part_fails_its_own_proof(base: str, programs: _Programs) -> None:
+    """What a template of the shop takes from the way home, the post itself misses."""
+    templates = {"yl569": "TRAFOOF", "dmu65": "M5", "hs664rt": "M5"}
+    text = f"""schema = 1
+extends = "{base}"
+name = "Shop"
+[control.settings]
+same_tool = "retract"
+[control.templates]
+leave_three_axis = '''
+{templates.get(base, "M9")}
+'''
+"""
+    machine = programs._folder / f"stays_{base}.toml"
+    machine.write_text(text, encoding="utf-8")
+    with pytest.raises(trunnion.RefusedError, match="without a retract"):
+        trunnion.post(programs._source("three"), machine=machine)
+
+
+@pytest.mark.parametrize("path", ["tilted", "tools"])
+@pytest.mark.parametrize("base", [base for base in MACHINES if base != "hs664rt"])
+def test_rotary_axes_that_keep_their_tilt_do_not_return(base: str, path: str, programs: _Programs) -> None:
+    home = re.compile(r"B=_B_HOME|[ABC]\+?0\.? [ABC]\+?0\.?( R0 FMAX)?$")
+    returning = programs.post(base, path)
+    keeping = programs.post(base, path, ("keep_rotary", "on"))
+    of_tool = programs.post(base, path, ("keep_rotary", "same_tool"))
+    counts = [sum(bool(home.search(_plain(lines[k]))) for k in _between(lines)) for lines in (returning, keeping)]
+    assert counts[0] >= 2
+    assert counts[1] == 0
+    assert of_tool == (keeping if path == "tilted" else returning)
+    assert sum(bool(_HOME.search(_plain(line))) for line in keeping) == sum(
+        bool(_HOME.search(_plain(line))) for line in returning
+    )
+
+
+@pytest.mark.parametrize("path", ["three", "tcp"])
+@pytest.mark.parametrize("base", MACHINES)
+def test_the_first_approach_in_turn_is_proven(base: str, path: str, programs: _Programs) -> None:
+    lines = programs.post(base, path, _IN_TURN)
+    assert programs.failing(lines, base, path, _IN_TURN) == set()
+    together = programs.post(base, path)
+    if base in ("matsuura_mx330", "haas_umc750", "hs664rt") and path == "three":
+        assert together == lines  # these go to X and Y first anyway
+    else:
+        assert programs.failing(together, base, path, _IN_TURN) == {"modal"}
+
+
+def test_operations_of_other_tools_and_tilts_go_home(programs: _Programs) -> None:
+    assert programs.post("yl569", "tools", _CLEARANCE) == programs.post("yl569", "tools")
+    assert programs.post("yl569", "turned", _CLEARANCE) == programs.post("yl569", "turned", _RETRACT)
+    stopping = programs.post("yl569", "three", _CLEARANCE, ("stop_between", "on"))
+    stop = next(k for k, line in enumerate(stopping) if _plain(line) == "M1")
+    assert any(_HOME.search(_plain(line)) for line in stopping[stop - 4 : stop])
