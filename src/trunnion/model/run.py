@@ -25,6 +25,7 @@ from trunnion.machines import Machine, forward, kinematic_parameters, tool_axes
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.diagnostics import Diagnostic as Diagnostic
+from trunnion.model.mode_words import ModeWord
 from trunnion.model.run_columns import ModalState, SurfaceNormals
 from trunnion.model.run_positions import PositionChunk as PositionChunk
 from trunnion.model.run_positions import RowPositions as RowPositions
@@ -91,19 +92,6 @@ class RunEvent:
     value: EventValue = None
     file: int = 0
     tcp: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class ModeWord:
-    """A mode that holds from row ``before_row`` on because the program says so.
-
-    mode  what it is of, such as ``plane``
-    word  the word that holds; empty where the path shows which one: then it matters only that there is one
-    """
-
-    before_row: int
-    mode: str
-    word: str = ""
 
 
 #: ``Run.work_offset`` where work offsets are suppressed and positions count from the machine's zero (G500).

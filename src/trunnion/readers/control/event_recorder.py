@@ -6,7 +6,8 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.model.run import EventValue, ModeWord, RunEvent
+from trunnion.model.mode_words import ModeWord
+from trunnion.model.run import EventValue, RunEvent
 from trunnion.readers.control.modal_builder import ModalBuilder
 from trunnion.readers.control.row_buffer import RowBuffer
 from trunnion.wording import format_duration
