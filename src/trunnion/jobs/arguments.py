@@ -120,6 +120,7 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total
     frame: Literal["first", "absolute"]
     feed: Literal["programmed", "fastest"]
     feed_limit: float | None
+    radius_register: Literal["unknown", "difference", "radius"] | None
     tool_libraries: Sequence[FilePath]
     unit: Literal["mm", "inch"] | None
     recorded: "FilePath | Recording | None"
@@ -146,6 +147,7 @@ class SimulateArguments(
     machine: MachineLike | None
     cl: ToolpathLike | Iterable[ToolpathLike]
     subprograms: Sequence[FilePath]
+    radius_register: Literal["unknown", "difference", "radius"] | None
     stop_at: Literal["none", "first"] | None
     until: str | int | None
     threads: int | None

@@ -166,7 +166,7 @@ class Run:
     spindle        (n,)   int8     +1 M3, -1 M4, 0 off
     tool           (n,)   int32    index into ``tools``; 0, the empty name, before the first tool
     edge           (n,)   int32    D number, -1 before the first; Fanuc, LinuxCNC: H of the active length, else -1
-    compensation   (n,)   int8     cutter radius compensation: +1 left (G41), -1 right (G42), 0 off; not simulated
+    compensation   (n,)   int8     cutter radius compensation: +1 left (G41), -1 right (G42), 0 off; tips as programmed
     work_offset    (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
     tcp            (n,)   bool     tool centre point control is on
     machine_frame  (n,)   bool     the block programs positions of the machine axes: SUPA, G53, M91

@@ -119,6 +119,14 @@ TOOL_LENGTH: Final = Option(
     level=Level.OWN,
 )
 
+RADIUS_REGISTER: Final = Option(
+    "radius_register",
+    "--radius-register",
+    Choice(("unknown", "difference", "radius")),
+    "what radius compensation works with: a difference, or the radius of the tool; by default as the definition says",
+    key="radius_register",
+)
+
 SETUP: Final = Group("where the part sits", (ZERO, TOOL_LENGTH))
 
 #: The same where they are settings too.

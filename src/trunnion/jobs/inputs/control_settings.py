@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control, load_control
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.errors import InputError
 from trunnion.machines import Machine
 
@@ -24,3 +26,8 @@ def rapid_feed_of(machine: Machine) -> float | None:
     """Return the feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
     feed = default_settings(written_control(machine)).get("rapid_feed")
     return float(feed) if feed else None
+
+
+def register_value_of(machine: Machine) -> RegisterValue:
+    """Return what the registers of the radius hold on a machine, by its definition."""
+    return RegisterValue(default_settings(written_control(machine)).get(RADIUS_REGISTER_SETTING, "unknown"))

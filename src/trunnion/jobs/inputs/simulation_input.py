@@ -53,6 +53,7 @@ class SetupInput:
     zero: ZeroLike | None = None
     tool_length: LengthLike | None = None
     until: str | int | None = None
+    radius_register: str | None = None
     turn: float | None = None
     tilt: float | None = None
     cl_is_turned: bool = False

@@ -24,6 +24,7 @@ from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
+from trunnion.output.compensation_entries import with_radius_taken_off
 from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
@@ -208,7 +209,7 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     program = Program(
         job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings, setups=job.setups
     )
-    program = with_place_texts(program)
+    program = with_radius_taken_off(with_place_texts(program))
     problems = new_problems(program, observer)
     unproven = _missing_reader(job)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers

@@ -51,8 +51,10 @@ _OF_SETUP: Final = tuple(each.name for each in _STATED if each.level is not Leve
 _MOST_PLACES: Final = 50
 
 
-def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput:
+def simulation_input(given: SimulationLike, machine: Machine, radius_register: str | None = None) -> SimulationInput:
     """Return what is to be simulated; programs, and how the part is clamped, are not known yet.
+
+    radius_register  setting of the post, where the project does not state it
 
     Raises ``InputError`` if it names what is none, the project has several set-ups or is for another machine, or has no
     stock.
@@ -79,6 +81,7 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
         base = _of_project(check_path("simulation", project), machine, stated)
     own = {name: stated[name] for name in _OF_SETUP if name in stated}
     setup = replace(base.setups[0], machine=machine, **own)
+    setup = replace(setup, radius_register=setup.radius_register or radius_register)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
         raise InputError(argument_problem("stock", Wording("SIM110", "missing")))

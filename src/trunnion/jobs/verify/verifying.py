@@ -84,6 +84,9 @@ def verify(
         (check ``reach``), not by those of the CL files.
     feed_limit
         The setting ``feed_limit`` of that post, mm/min.
+    radius_register
+        What radius compensation works with: ``"difference"``, by how much the tool is larger than in the CL file, or
+        ``"radius"``, its radius; by default as the control's definition says.
     columns
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.

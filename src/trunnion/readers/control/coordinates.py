@@ -294,6 +294,10 @@ class CoordinateControl(RowRecorder):
             self._note_left(wording, stays=stays)
         self.line = here
 
+    def sets_behind_use(self, name: str) -> bool:
+        """Whether the program sets a mode behind the last motion with a use for it, as is reported then."""
+        return any(mode.name == name for mode in self._trailing.changed())
+
     def report_left(self, left: Wording, *, may_begin: bool = False) -> None:
         """Report a plane, a rotation or a shift that the program leaves on: the next one begins with it, or may."""
         self._note_left(Wording("NC351", "may_be_left" if may_begin else "left", left=left))

@@ -1,5 +1,6 @@
 """The part of interpreters that executes blocks by the table of a control's words."""
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Final, TypeVar
@@ -210,6 +211,8 @@ class WordInterpreter(Rs274Interpreter[A]):
         control.set_mode("compensation", word.text, side.current, word.sets)
         side.set(control.row, word.sets)
         control.compensates_in_space = False
+        stated = block.words["D"].value if word.text in ("G41.1", "G42.1") and "D" in block.words else math.nan
+        control.modal.stated_radius.set(control.row, 0.5 * stated * control.length_unit)
         if word.text in ("G41", "G42"):
             self._begin_compensation(block)
 

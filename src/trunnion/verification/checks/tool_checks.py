@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.compensation.stretches import ADDED_RADII, RegisterValue
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import REPLACED
@@ -82,6 +83,8 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
         if event.kind != "delta" or not isinstance(event.value, tuple):
             continue
         name, value = str(event.value[0]), float(event.value[1] or 0.0)
+        if name in ADDED_RADII and context.settings.register_holds is RegisterValue.RADIUS:
+            continue  # the check of compensation judges what comes of it
         if value and not any(abs(value - wanted) <= _DELTA for wanted in context.settings.tool_deltas.get(name, ())):
             does = "puts {:g} mm in the place of the tool's length" if name in REPLACED else "adds {:g} mm to the tool"
             text = f"{name} {does.format(value)}, which nothing asks for"

@@ -11,8 +11,8 @@ from typing import Final
 import numpy as np
 
 from trunnion.model.run import Run
+from trunnion.verification.spindle_words import TURNING, both_senses
 
-_TURNING: Final = ("clockwise", "counter-clockwise")
 _STOPS: Final = ("stop", "optional_stop")
 _PLANES: Final = ("tilt", "plane", "cycle800")
 
@@ -29,14 +29,12 @@ def conditions(run: Run) -> Iterator[tuple[int, str]]:
 
 def _of_spindle(run: Run) -> Iterator[tuple[int, str]]:
     """Yield tool changes while the spindle turns, and blocks that start it in both senses."""
-    turns, block = "", (0, 0, 0)
+    for before, event in both_senses(run):
+        yield event.before_row, f"one block turns the spindle {before.value} and {event.value}"
+    turns = ""
     for event in run.events:
         if event.kind == "spindle":
-            now = str(event.value) if event.value in _TURNING else ""
-            here = event.file, event.line, event.before_row
-            if turns and now and now != turns and here == block:
-                yield event.before_row, f"one block turns the spindle {turns} and {now}"
-            turns, block = now, here
+            turns = str(event.value) if event.value in TURNING else ""
         elif event.kind == "tool_change" and turns:
             yield event.before_row, f"tool change while the spindle turns {turns}"
 

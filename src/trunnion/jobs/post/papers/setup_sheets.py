@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Severity
 from trunnion.jobs.post.operation_setups import setup_notices
 from trunnion.jobs.post.papers import MADE_BY
@@ -21,7 +20,6 @@ from trunnion.model.run import NO_OFFSET, Run
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
-    CutterComp,
     CycleOn,
     Insert,
     Kind,
@@ -31,6 +29,7 @@ from trunnion.model.toolpath import (
     Stop,
     Tool,
 )
+from trunnion.output.compensation_entries import entries_of
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
@@ -129,7 +128,6 @@ def _operations(
     starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
     groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
     rows = zip(groups, verification.operations, usages, calls, strict=True)
-    names_radius = RADIUS_NUMBER_WORD in program.control.family.WORDS
     for number, (motions, own, usage, call) in enumerate(rows, 1):
         yield SheetOperation(
             number=number,
@@ -142,33 +140,28 @@ def _operations(
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),
             cuts=_with_asked_coolant(cut_ranges(verification.run, own), motions, program.control.coolant),
-            notes=tuple(
-                dict.fromkeys(_notes(motions, _own_register(program, motions, call), names_radius=names_radius))
-            ),
+            notes=tuple(dict.fromkeys((*_entries(program, motions, call), *_notes(motions)))),
         )
 
 
-def _own_register(program: Program, motions: Sequence[Motion], call: str) -> int:
-    """Return the register of the radius where CUTCOM names none, if it is not that of the tool's number; else 0."""
-    more = int(program.effective_setting("radius_offset", motions[0].operation) or 0)
-    return int(call) + more if more and call.isdigit() else 0
+def _entries(program: Program, motions: Sequence[Motion], call: str) -> Iterator[str]:
+    """Yield what the operator enters for radius compensation."""
+    for each in entries_of(program, motions, call):
+        larger = (
+            "" if each.holds == "radius" else ", by which the tool is larger than its size here (smaller: negative)"
+        )
+        yield (
+            f"radius compensation: the path is that of the tool's centre, so enter {each.value} {each.where}{larger}"
+        )
 
 
-def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) -> Iterator[str]:
-    """Yield what a setter must know of an operation: compensation with its register, pitches, and where it stops."""
+def _notes(motions: Sequence[Motion]) -> Iterator[str]:
+    """Yield what a setter must know of an operation: pitches, and where it stops."""
     rpm, sense = 0.0, Sense.CLW
     for event in (event for motion in motions for event in motion.operation.events):
         match event:
             case SpindleOn():
                 rpm, sense = event.rpm, event.sense
-            case CutterComp() if event.side != "OFF":
-                number = (event.register or own_register) if names_radius else 0
-                # Points of a CL file are those of the tool's centre; contours are refused.
-                yield (
-                    f"radius compensation with {f'D{number}' if number else 'the radius of the tool'}: the path is that"
-                    " of the tool's centre, so enter by how much the tool is larger than its size here (smaller:"
-                    " negative), and not its radius"
-                )
             case BlockSkip() if event.on:
                 yield "blocks that the operator may skip (/)"
             case Stop():

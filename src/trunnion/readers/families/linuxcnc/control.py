@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.compensation.styles import OWN_ENTRY
 from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, forward
 from trunnion.messages import Wording, phrase
@@ -74,6 +75,7 @@ class LinuxcncControl(Rs274Control):
     """
 
     # M2 and M30 set all others back: G54, G17, G90, G94, G40, G80 (docs/reader-linuxcnc.md).
+    compensation_style = OWN_ENTRY
     kept_modes = frozenset({"units", "centres", "length"})
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
