@@ -19,7 +19,7 @@ from trunnion.builder.likeness import definition_like
 from trunnion.builder.sample import shipped_sample
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.machines import forward
 from trunnion.viewer.serving import Access, listen
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import trunnion
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.model.run import Run
 
 CL = (

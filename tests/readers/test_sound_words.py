@@ -40,7 +40,8 @@ def test_m127_as_a_safe_start_asks_for_none_at_the_end(tmp_path: Path) -> None:
 )
 def test_a_fanuc_program_may_have_a_name_or_be_given_its_number(first: str, what: str, tmp_path: Path) -> None:
     program = changed("R2_fanuc_nonumber.nc", tmp_path, "(PART 12)", first)
-    found = notes(program, "matsuura_mx330")
+    # It ends with its tool length on, of which every such program is warned.
+    found = [each for each in notes(program, "matsuura_mx330") if not each[1].startswith("ends with G43 on")]
     assert [severity for severity, _ in found] == [Severity.WARNING] * bool(what)
     assert all(text.startswith(what) for _, text in found)
 

@@ -14,7 +14,7 @@ from tests.support.page_columns import decode_column
 from tests.support.recordings import BLADE_FINISH, IMPELLER, blade, impeller, recorded, with_gap
 from trunnion import read_program, verify, write_report
 from trunnion.arrays import Floats
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.machines import load_machine
 from trunnion.model.recording import Recording
 from trunnion.timing import time_run

@@ -13,7 +13,7 @@ from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file, open_page
 from tests.support.locations import GOLDEN
 from trunnion import Run, load_machine, read_program, write_view
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.machines import forward
 
 pytestmark = needs_browser

@@ -41,6 +41,9 @@ LENGTH_WORDS: Final = frozenset({*"XYZIJK", "arc_radius", "arc_rise", "feed", "f
 #: Units of numbers in setting rules that a program in inches converts.
 LENGTH_UNITS: Final = ("mm", "mm/min")
 
+#: The setting for what the registers of the radius hold.
+RADIUS_REGISTER_SETTING: Final = "radius_register"
+
 #: Settings of a program that every control has: what it says about times and tools, which tools it calls, and the unit
 #: of its lengths. The default is the first value.
 PROGRAM_CHOICES: Final = {
@@ -55,6 +58,7 @@ PROGRAM_CHOICES: Final = {
     "restart": ("off", "on"),
     "standing_spindle": ("refused", "allowed"),
     "program_from": ("setting", "file"),
+    RADIUS_REGISTER_SETTING: ("unknown", "difference", "radius"),
     "stop_between": ("off", "on"),
     "same_tool": ("home", "retract", "clearance"),
     "keep_rotary": ("off", "same_tool", "on"),
@@ -79,6 +83,9 @@ PROGRAM_MEANINGS: Final = {
     "for tools that do not turn; they are refused otherwise.",
     "program_from": "Where the number or name of the program comes from: the setting program, or the name of its "
     "file, as 1234 of O1234.nc.",
+    RADIUS_REGISTER_SETTING: "What radius compensation works with: a difference (by how much the tool is larger than "
+    "in the CL file, in the register D or as the radius in the tool table), or the radius itself. The proof and the "
+    "simulation follow the path that the control makes of it; with unknown they say that nobody has stated it.",
     "stop_between": "With on, an optional stop (M1) stands between operations, where the tool is at home.",
     "same_tool": "How the tool goes on to an operation that it cuts too: home; retract goes home along the spindle "
     "only, and the rotary axes turn there; clearance leaves along the tool to operation_clearance where the tilt "

@@ -153,7 +153,7 @@ def _swings(run: Run, rows: Ints) -> Flags:
     here = np.flatnonzero(turns & (run.kind[rows] == Kind.RAPID) & ~run.tcp[rows] & ~run.machine_frame[rows])
     if len(here):
         start, end = run.positions(before[here]), run.positions(rows[here])
-        half_way = forward(run.machine, 0.5 * (start.joints + end.joints))[0]
+        half_way = run.forward_at(rows[here], 0.5 * (start.joints + end.joints))[0]
         found[here] = np.linalg.norm(half_way - 0.5 * (start.tip + end.tip), axis=1) > _SWING
     return found
 

@@ -87,6 +87,10 @@ class TableAccount:
     def __contains__(self, key: object) -> bool:
         return key in self._values
 
+    def is_table(self, key: str) -> bool:
+        """Whether a key has a table. Does not count as reading."""
+        return key in self._values and isinstance(self._values[key].value, dict)
+
     def to_dict(self) -> dict[str, object]:
         """Return the whole table as plain dicts, lists and scalars. Does not count as reading."""
         plain = _plain(self.content)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, TypeVar, cast
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
 from trunnion.jobs.inputs.settings import Settings, reported_as_arguments
+from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike
 from trunnion.jobs.registry import JOBS
 from trunnion.jobs.result_output import OutputLike
 from trunnion.messages import Wording
@@ -40,8 +41,8 @@ class ReadingArguments(TypedDict, total=False):
 class SetUpArguments(TypedDict, total=False):
     """Where the part sits, and how long the tool is."""
 
-    zero: str | Iterable[float] | None
-    tool_length: str | float | None
+    zero: ZeroLike | None
+    tool_length: LengthLike | None
 
 
 class ClampingArguments(TypedDict, total=False):
@@ -119,6 +120,9 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total
     frame: Literal["first", "absolute"]
     feed: Literal["programmed", "fastest"]
     feed_limit: float | None
+    radius_register: Literal["unknown", "difference", "radius"] | None
+    tool_libraries: Sequence[FilePath]
+    unit: Literal["mm", "inch"] | None
     recorded: "FilePath | Recording | None"
     recorded_tolerance: float
     columns: bool
@@ -143,6 +147,7 @@ class SimulateArguments(
     machine: MachineLike | None
     cl: ToolpathLike | Iterable[ToolpathLike]
     subprograms: Sequence[FilePath]
+    radius_register: Literal["unknown", "difference", "radius"] | None
     stop_at: Literal["none", "first"] | None
     until: str | int | None
     threads: int | None

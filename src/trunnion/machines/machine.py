@@ -7,7 +7,7 @@ Limits, home and all axis values are those that the control displays and the pro
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
 from typing import Annotated, Final
@@ -19,7 +19,7 @@ from trunnion.definitions import LocatedValue, Table
 from trunnion.definitions.marked_values import MarkedValue
 from trunnion.machines.bodies import MachineBody
 from trunnion.machines.bodies import Vector as Vector
-from trunnion.results import Figure, to_data
+from trunnion.results import NOT_DATA, Figure, to_data
 
 #: Greatest component along the tool of a slide that is across it.
 _ACROSS = 1e-9
@@ -170,6 +170,12 @@ class MachineFacts:
     table_load_kg: float | None = None
 
 
+def tool_key(tool: str) -> str:
+    """Return the number or name of a tool as it is looked up: ``01`` is 1, and quotes do not count."""
+    name = tool.strip().strip('"')
+    return str(int(name)) if name.isascii() and name.isdecimal() else name
+
+
 def _no_control() -> Table:
     return Table(LocatedValue({}, "", 0), "control")
 
@@ -186,6 +192,11 @@ class Machine:
     spindle_point       gauge point (where tool lengths begin), mm, all axes at zero
     workpiece_zero      workpiece zero in the machine frame, all axes at zero, mm; None if it is not known
     tool_length         of the tool in the spindle, gauge point to tip, mm; None if it is not known, and counts as 0
+    tool_lengths        those of single tools by number or name; all others have ``tool_length``
+    length_sources      what has told a length that nobody stated, by tools
+    in_force            the tool and the work offset that it is set up for, in words; empty: no other differs
+    zeros               the workpiece zeros of single work offsets by their ``Run.work_offset``; all others have
+                        ``workpiece_zero``
     control             the ``[control]`` table of the definition, unread
     files               definition files that the machine comes from
     cl_words            words of the shop's own in its CL files, and the statements of CL files that they are
@@ -204,6 +215,10 @@ class Machine:
     spindle_point: Vector = (0.0, 0.0, 0.0)
     workpiece_zero: Vector | None = None
     tool_length: float | None = None
+    tool_lengths: Annotated[Mapping[str, float], NOT_DATA] = field(default_factory=dict)
+    length_sources: Annotated[Mapping[str, str], NOT_DATA] = field(default_factory=dict)
+    in_force: Annotated[str, NOT_DATA] = ""
+    zeros: Annotated[Mapping[int, Vector], NOT_DATA] = field(default_factory=dict)
     spindle_max_rpm: float | None = None
     description: str = ""
     facts: MachineFacts = MachineFacts()
@@ -263,6 +278,19 @@ class Machine:
     def has_rotary_head(self) -> bool:
         """Whether a rotary axis carries the tool, so that the direction of the tool length changes with it."""
         return any(axis.is_rotary and axis.mount is Mount.TOOL for axis in self.axes)
+
+    @property
+    def has_single_values(self) -> bool:
+        """Whether a tool has a length, or a work offset a zero, of its own."""
+        return bool(self.tool_lengths or self.zeros)
+
+    def set_up_for(self, tool: str, work_offset: int) -> "Machine":
+        """Return the machine with a tool in the spindle and a work offset in force, as programs call them."""
+        if not self.has_single_values:
+            return self
+        length = self.tool_lengths.get(tool_key(tool), self.tool_length)
+        zero = self.zeros.get(work_offset, self.workpiece_zero)
+        return replace(self, tool_length=length, workpiece_zero=zero, tool_lengths={}, zeros={}, length_sources={})
 
     def is_placed(self, column: int) -> bool:
         """Whether it is known where an axis stands when the tip is at a point of the workpiece.

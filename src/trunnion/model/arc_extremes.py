@@ -159,7 +159,7 @@ def run_reach(run: Run, first: int, end: int, positions: PositionChunk) -> tuple
     at = rows - first  # the chunk begins with the row before
     paths = ArcPaths.of(run.arcs, part, positions.tip[at], positions.tip[at + 1])
     rotary = positions.joints[:, list(run.machine.rotary)]
-    return rows, axis_reach(run.machine, paths, rotary[at], rotary[at + 1])
+    return rows, axis_reach(run.machine_at(first), paths, rotary[at], rotary[at + 1])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -74,5 +74,7 @@ def row_feed_path_lengths(run: Run, rows: Ints) -> Floats:
     if len(turning):
         those = rows[turning]
         ends = run.positions(those - 1).joints, run.positions(those).joints
-        length[turning] = feed_path_lengths(run.machine, *ends, run.state.feed_path.at(those))
+        path = run.state.feed_path.at(those)
+        for machine, at in run.by_machine(those):
+            length[turning[at]] = feed_path_lengths(machine, ends[0][at], ends[1][at], path[at])
     return length

@@ -18,14 +18,19 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.arrays import Codes, Floats, Ints, Lines, make_read_only
+from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.concurrency import prefetch
 from trunnion.errors import Severity
-from trunnion.machines import KinematicParameters, Machine, forward, kinematic_parameters, tool_axes
-from trunnion.messages import Wording
+from trunnion.machines import Machine, forward, kinematic_parameters, tool_axes
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
+from trunnion.model.diagnostics import Diagnostic as Diagnostic
+from trunnion.model.mode_words import ModeWord
 from trunnion.model.run_columns import ModalState, SurfaceNormals
+from trunnion.model.run_positions import PositionChunk as PositionChunk
+from trunnion.model.run_positions import RowPositions as RowPositions
+from trunnion.model.run_positions import joined_chunks
+from trunnion.model.run_setups import RunSetups
 from trunnion.model.spindle_work import SpindleHole
 from trunnion.model.splines import Splines
 from trunnion.model.toolpath import Arcs
@@ -51,32 +56,6 @@ class Orientation(IntEnum):
 
     ANGLES = 0
     GREAT_CIRCLE = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
-    """Something in a program that the reader does not know, does not simulate or finds odd; ``line`` counts from 1."""
-
-    line: int
-    wording: Wording
-    severity: Severity = Severity.ERROR
-    file: str = ""
-
-    @property
-    def text(self) -> str:
-        """What it says, with its cure."""
-        what, cure = self.wording.what, self.wording.cure
-        return f"{what}; {cure}" if cure else what
-
-    @property
-    def code(self) -> str:
-        """Of what kind it is, such as ``NC211``."""
-        return self.wording.code
-
-    def __str__(self) -> str:
-        """Return ``file:line: severity: text [code]``."""
-        code = f" [{self.code}]" if self.code else ""
-        return f"{self.file}:{self.line}: {self.severity}: {self.text}{code}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,25 +99,6 @@ NO_OFFSET = 500
 
 #: ``ModalState.orientation`` before the program sets an ``Orientation``: a block with a vector moves on a great circle.
 ORIENTATION_FROM_WORDS = 2
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class RowPositions:
-    """Axes and tool at the end of k rows: ``joints`` (k, 5), ``tip`` and ``axis`` (k, 3) as in ``Run``, read-only."""
-
-    joints: Floats
-    tip: Floats
-    axis: Floats
-
-    def __post_init__(self) -> None:
-        make_read_only(self.joints, self.tip, self.axis)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PositionChunk(RowPositions):
-    """Consecutive rows; ``midpoint_axis`` (k - 1, 3) is the tool axis with every joint half-way from row to row."""
-
-    midpoint_axis: Floats
 
 
 _Item = TypeVar("_Item", bound=np.generic)
@@ -185,6 +145,8 @@ class Run:
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
     work_offset_name               what programs of this control call a value of the column ``work_offset``
     compensation_planes  (k, 3)    unit normals of the planes in which radius compensation works, workpiece frame
+    setups                         lengths and zeros where tools or work offsets have their own. None: ``machine`` has
+                                   them throughout; else it is that of which the most is known
     planes         (k, 3, 4)       tilted planes and rotated frames in which positions are tips: maps from programmed
                                    positions to the workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
@@ -205,7 +167,7 @@ class Run:
     spindle        (n,)   int8     +1 M3, -1 M4, 0 off
     tool           (n,)   int32    index into ``tools``; 0, the empty name, before the first tool
     edge           (n,)   int32    D number, -1 before the first; Fanuc, LinuxCNC: H of the active length, else -1
-    compensation   (n,)   int8     cutter radius compensation: +1 left (G41), -1 right (G42), 0 off; not simulated
+    compensation   (n,)   int8     cutter radius compensation: +1 left (G41), -1 right (G42), 0 off; tips as programmed
     work_offset    (n,)   uint16   work offset as the program numbers it (G54, preset 2), 0 before the first
     tcp            (n,)   bool     tool centre point control is on
     machine_frame  (n,)   bool     the block programs positions of the machine axes: SUPA, G53, M91
@@ -238,6 +200,8 @@ class Run:
     spindle_holes: tuple[SpindleHole, ...] = ()
     compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     planes: Floats = field(default_factory=lambda: np.zeros((0, 3, 4)))
+    mode_words: tuple[ModeWord, ...] = ()
+    setups: RunSetups | None = None
     skipped: tuple[SkippedRun, ...] = ()
 
     def __post_init__(self) -> None:
@@ -273,9 +237,37 @@ class Run:
         rows = np.flatnonzero((self.programmed[: self.units_from] & positions) != 0)
         return int(rows[0]) if len(rows) else None
 
-    @cached_property
-    def _kinematics(self) -> KinematicParameters:
-        return kinematic_parameters(self.machine)
+    # Set-ups
+
+    def machine_at(self, row: int) -> Machine:
+        """Return the machine with the tool and the work offset of a row; -1: those of the first."""
+        return self.machine if self.setups is None else self.setups.at(row).machine
+
+    def by_machine(self, rows: Ints) -> Iterator[tuple[Machine, Ints]]:
+        """Yield the machines that rows run on, each with the indices of its rows."""
+        if self.setups is None:
+            yield self.machine, np.arange(len(rows))
+        else:
+            yield from self.setups.by_machine(rows)
+
+    def forward_at(self, rows: Ints, joints: Floats) -> tuple[Floats, Floats]:
+        """Return tips and tool axes (k, 3) at axis values (k, 5) within rows (k,)."""
+        if self.setups is None:
+            return forward(self.machine, joints)
+        tip, axis = np.empty((len(rows), 3)), np.empty((len(rows), 3))
+        for machine, at in self.by_machine(rows):
+            tip[at], axis[at] = forward(machine, joints[at])
+        return tip, axis
+
+    def solved_at(self, rows: Ints, xyz_is_tip: Flags, xyz: Floats, rotary: Floats) -> Floats:
+        """Return axis values (k, 5) within rows (k,), as ``joints_from_rows`` does."""
+        if self.setups is None:
+            return joints_from_rows(self.machine, kinematic_parameters(self.machine), xyz_is_tip, xyz, rotary)
+        joints = np.empty((len(rows), 5))
+        for machine, at in self.by_machine(rows):
+            kinematics = kinematic_parameters(machine)
+            joints[at] = joints_from_rows(machine, kinematics, xyz_is_tip[at], xyz[at], rotary[at])
+        return joints
 
     def positions(self, rows: Ints) -> RowPositions:
         """Return axes and tool at the end of rows, in any order; row -1 is the start of the program."""
@@ -284,35 +276,56 @@ class Run:
             return RowPositions(joints, *forward(self.machine, joints))
         xyz_is_tip = self.state.xyz_is_tip.at(rows)
         xyz = self.xyz[rows]
-        joints = joints_from_rows(self.machine, self._kinematics, xyz_is_tip, xyz, self.rotary[rows])
+        joints = self.solved_at(rows, xyz_is_tip, xyz, self.rotary[rows])
         first = rows < 0
         joints[first] = self.start
-        tip, axis = forward(self.machine, joints)
+        tip, axis = self.forward_at(rows, joints)
         xyz_is_tip &= ~first
         tip[xyz_is_tip] = xyz[xyz_is_tip]
         return RowPositions(joints, tip, axis)
 
     def chunk(self, first: int, end: int) -> PositionChunk:
-        """Return axes and tool of consecutive rows, preceded by those of the row before: (end - first + 1) rows."""
-        rows = slice(max(first - 1, 0), end)
-        xyz_is_tip = self.state.xyz_is_tip.part(rows.start, end)
+        """Return axes and tool of consecutive rows, preceded by those of the row before: (end - first + 1) rows.
+
+        Where another set-up comes into force within them, each row has the tip of its own; ``chunks`` yields none such.
+        """
+        return joined_chunks([self._chunk(*bounds) for bounds in self._in_one_setup(first, end)])
+
+    def _in_one_setup(self, first: int, end: int) -> list[tuple[int, int]]:
+        """Return the bounds of consecutive rows, divided where another set-up comes into force."""
+        return [(first, end)] if self.setups is None else self.setups.divided(first, end)
+
+    def _chunk(self, first: int, end: int) -> PositionChunk:
+        machine, rows = self.machine_at(first), slice(max(first - 1, 0), end)
+        xyz_is_tip = self.state.xyz_is_tip.part(rows.start, end).copy()
         xyz = self.xyz[rows]
-        joints = joints_from_rows(self.machine, self._kinematics, xyz_is_tip, xyz, self.rotary[rows])
+        joints = joints_from_rows(machine, kinematic_parameters(machine), xyz_is_tip, xyz, self.rotary[rows])
         if first == 0:
             joints = np.concatenate((self.start[None], joints))
+        elif self.machine_at(first - 1) is not machine:
+            # The axes stay where the set-up before has put them; their tip is another one now.
+            joints[0] = self.positions(np.array([first - 1])).joints[0]
+            xyz_is_tip[0] = False
         if first and xyz_is_tip.all():
-            return PositionChunk(joints, xyz, *tool_axes(self.machine, joints))
-        tip, _ = forward(self.machine, joints)
+            return PositionChunk(joints, xyz, *tool_axes(machine, joints))
+        tip, _ = forward(machine, joints)
         reached = tip[1:] if first == 0 else tip
         reached[xyz_is_tip] = xyz[xyz_is_tip]
-        return PositionChunk(joints, tip, *tool_axes(self.machine, joints))
+        return PositionChunk(joints, tip, *tool_axes(machine, joints))
+
+    def chunk_bounds(self, rows: int) -> list[tuple[int, int]]:
+        """Return the bounds of the chunks of the first rows, each in one set-up."""
+        parts = self._in_one_setup(0, rows) if rows else []
+        return [
+            (first, min(first + CHUNK_ROWS, end)) for begin, end in parts for first in range(begin, end, CHUNK_ROWS)
+        ]
 
     def chunks(self) -> Iterator[tuple[int, int, PositionChunk]]:
         """Yield all rows, ``CHUNK_ROWS`` at a time: first row, row after the last, and their ``chunk``.
 
         Another thread computes the next chunk while the caller works on this one.
         """
-        bounds = [(first, min(first + CHUNK_ROWS, len(self))) for first in range(0, len(self), CHUNK_ROWS)]
+        bounds = self.chunk_bounds(len(self))
         for (first, end), poses in zip(bounds, prefetch(lambda rows: self.chunk(*rows), bounds), strict=True):
             yield first, end, poses
 

@@ -42,6 +42,8 @@ class ModalState:
     xyz_is_tip  ``Run.xyz`` is the tool tip, not the positions of the linear axes
     plane       the row of ``Run.planes`` in whose coordinates words are; -1: in none of them
     compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
+    compensation_style  how the control compensates, a key of ``compensation.styles.STYLES``; 0: not known
+    stated_radius  the radius that the program states for it, mm (G41.1 D of LinuxCNC); NaN: none
     radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
     machine_steps  in coordinates of the machine: bits of the linear axes that a block moves from where they are (G91)
     feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
@@ -59,6 +61,8 @@ class ModalState:
     compensation: StepColumn
     radius: StepColumn
     compensation_plane: StepColumn
+    compensation_style: StepColumn
+    stated_radius: StepColumn
     work_offset: StepColumn
     tcp: StepColumn
     machine_frame: StepColumn

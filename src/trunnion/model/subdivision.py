@@ -15,7 +15,6 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import forward
-from trunnion.machines.inverse import kinematic_parameters
 from trunnion.model import axis_positions
 from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
@@ -72,10 +71,8 @@ def subdivide(run: Run, pieces: int | Ints, rows: slice = slice(None)) -> Sample
     if by_tip.any():
         rotary = joints[np.ix_(by_tip, run.machine.rotary)]
         every = np.ones(len(rotary), np.bool_)
-        joints[by_tip] = axis_positions.joints_from_rows(
-            run.machine, kinematic_parameters(run.machine), every, tip[by_tip], rotary
-        )
-    reached, axis = forward(run.machine, joints)
+        joints[by_tip] = run.solved_at(row[by_tip], every, tip[by_tip], rotary)
+    reached, axis = run.forward_at(row, joints)
     tip[~by_tip] = reached[~by_tip]
     ends = fraction == 1.0
     joints[ends], tip[ends], axis[ends] = run.joints[row[ends]], run.tip[row[ends]], run.axis[row[ends]]
@@ -101,7 +98,7 @@ def _cut(run: Run, pieces: int | Ints, rows: slice) -> _Pieces:
 
 def _interpolated_tips(run: Run, row: Ints, fraction: Floats, start_joints: Floats) -> Floats:
     """Return tips on lines and circles, (k, 3)."""
-    start = forward(run.machine, start_joints)[0]
+    start = run.forward_at(row, start_joints)[0]
     end = run.tip[row]
     tip = start + fraction[:, None] * (end - start)
     on_arc = run.kind[row] == Kind.ARC

@@ -19,7 +19,10 @@ from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run, RunEvent
 
 #: Words that add to the length along the tool axis.
-LENGTHS: Final = frozenset({"DL", "TOFFL", "TOFFLR"})
+LENGTHS: Final = frozenset({"DL", "TOFFL", "TOFFLR", "G43.2 Z"})
+
+#: Words whose value stands in the place of the length: the rows have it already.
+REPLACED: Final = frozenset({"G43.1 Z"})
 
 #: Sizes that Klartext gives a tool, in place of those of the tool table: they add nothing.
 SIZES: Final = ("TOOL DEF L", "TOOL DEF R")

@@ -102,16 +102,29 @@ POSTING: Final = Group(
 LONGEST_TOOL: Final = 10_000.0
 
 ZERO: Final = Option(
-    "zero", "--zero", Point("X,Y,Z"), "the workpiece zero on the machine, mm", key="zero_mm", level=Level.OWN
+    "zero",
+    "--zero",
+    Point("X,Y,Z", by_name=True),
+    "the workpiece zero on the machine, mm; G54=X,Y,Z,G55=X,Y,Z: of each work offset",
+    key="zero_mm",
+    level=Level.OWN,
 )
 
 TOOL_LENGTH: Final = Option(
     "tool_length",
     "--tool-length",
-    Measure("MM", above=0.0, most=LONGEST_TOOL),
-    "length of the tool, gauge point to tip",
+    Measure("MM", above=0.0, most=LONGEST_TOOL, by_name=True),
+    "length of the tool, gauge point to tip; 1=MM,2=MM: of each tool",
     key="tool_length_mm",
     level=Level.OWN,
+)
+
+RADIUS_REGISTER: Final = Option(
+    "radius_register",
+    "--radius-register",
+    Choice(("unknown", "difference", "radius")),
+    "what radius compensation works with: a difference, or the radius of the tool; by default as the definition says",
+    key="radius_register",
 )
 
 SETUP: Final = Group("where the part sits", (ZERO, TOOL_LENGTH))
@@ -155,6 +168,20 @@ TOOLS: Final = Option(
     key="tools",
 )
 
+TOOL_LIBRARIES: Final = Option(
+    "tool_libraries",
+    "--tool-library",
+    FileIn("LIBRARY", leads="library"),
+    "tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl",
+    many=Many.REPEAT,
+    key="tool_libraries",
+    aliases=("--tools",),
+)
+
+TOOL_UNIT: Final = Option(
+    "unit", "--unit", Choice(("mm", "inch")), "length unit of tool tables, which state none", key="unit"
+)
+
 #: Stock, part, fixtures and tools: what is cut, and what must not be met.
 BODIES: Final = Group(
     "stock, part, fixtures and tools",
@@ -169,16 +196,8 @@ BODIES: Final = Group(
             level=Level.OWN,
         ),
         TOOLS,
-        Option(
-            "tool_libraries",
-            "--tool-library",
-            FileIn("LIBRARY", leads="library"),
-            "tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl",
-            many=Many.REPEAT,
-            key="tool_libraries",
-            aliases=("--tools",),
-        ),
-        Option("unit", "--unit", Choice(("mm", "inch")), "length unit of tool tables, which state none", key="unit"),
+        TOOL_LIBRARIES,
+        TOOL_UNIT,
         Option(
             "fixtures",
             "--fixture",

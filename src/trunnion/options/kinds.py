@@ -45,7 +45,12 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Point(Text):
-    """Three numbers with commas, in files a list of them; the function that takes it judges the text."""
+    """Three numbers with commas, in files a list of them; the function that takes it judges the text.
+
+    by_name  files may state a table with several, each under its name
+    """
+
+    by_name: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +59,14 @@ class Measure(Text):
 
     above, least, most  bounds in files, which state it as a number
     is_whole            it has no decimals
+    by_name             files may state a table with several, each under its name
     """
 
     above: float | None = None
     least: int | None = None
     most: float | None = None
     is_whole: bool = False
+    by_name: bool = False
 
 
 @dataclass(frozen=True, slots=True)

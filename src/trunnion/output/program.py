@@ -1,8 +1,8 @@
 """The input of a program: machine, control, planned motions and the settings of the run."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, TypeAlias
 
 from trunnion.controls.definition import Control
 from trunnion.controls.words import Word
@@ -27,6 +27,15 @@ class RotaryWord(NamedTuple):
     column: int
 
 
+#: File, line and name of an operation, which its parts and copies share.
+OperationKey: TypeAlias = tuple[str, int, str]
+
+
+def operation_key(operation: Operation) -> OperationKey:
+    """Return what an operation and its parts have in common."""
+    return operation.file, operation.line, operation.name
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Program:
     """All that a program is made from.
@@ -35,6 +44,7 @@ class Program:
     own_settings     those of single operations, by their names; they take precedence over all others
     file             the first CL file, for messages
     notices          comments at the start of the program
+    setups           the machine with the tool and the work offset of single operations; others have ``machine``
     time_token       letters that begin the tokens for machining times, until these are known; empty: there are none
     """
 
@@ -46,6 +56,18 @@ class Program:
     notices: Sequence[str] = ()
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     time_token: str = ""
+    setups: Mapping[OperationKey, Machine] = field(default_factory=dict)
+
+    def machine_of(self, motion: Motion) -> Machine:
+        """Return the machine with the tool and the work offset of a motion."""
+        return self.setups.get(operation_key(motion.operation), self.machine)
+
+    def called_machine_of(self, motion: Motion) -> Machine:
+        """Return the machine of a motion with the tool as long as its call makes it for the control (DL)."""
+        machine, delta = self.machine_of(motion), self.effective_setting("delta_length", motion.operation)
+        if not delta or machine.tool_length is None:
+            return machine
+        return replace(machine, tool_length=machine.tool_length + float(delta))
 
     def settings_of(self, operation: Operation) -> dict[str, str]:
         """Return the settings of the run, with those of an operation over them."""

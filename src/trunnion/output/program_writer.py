@@ -20,6 +20,7 @@ from trunnion.model.operation_start import OperationStart
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn, Stop
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.compensation_entries import compensation_entries, head_texts
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
 from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
@@ -71,7 +72,7 @@ def _with_printed_planes(program: Program) -> Program:
     else:
         adapt, number_format = with_plane_inside_limits, "plane_angle"
     decimals = program.control.number_formats(three_axis=False)[number_format].decimals
-    motions = [m if m.plane is None else adapt(program.machine, m, decimals) for m in program.motions]
+    motions = [m if m.plane is None else adapt(program.machine_of(m), m, decimals) for m in program.motions]
     return replace(program, motions=motions)
 
 
@@ -110,7 +111,9 @@ class _ProgramWriter:
         """Write the program, and return where its operations begin."""
         motions = self._program.motions
         values = self._values(motions[0], 0)
-        head = [*self._notices, *self._tool_list(values), *self._operation_list()]
+        calls = [call for call, *_ in self._tool_calls]
+        entered = self._comments(head_texts(compensation_entries(self._program, calls)))
+        head = [*self._notices, *entered, *self._tool_list(values), *self._operation_list()]
         self._templates.write("program_start", values, motions[0], head)
         for k, motion in enumerate(motions):
             ends_program = k + 1 == len(motions)
@@ -353,7 +356,7 @@ class _ProgramWriter:
         """Whether the rotary axes may turn to a plane where the CL file has left the tool."""
         if not self._is_retracted():
             return False
-        before, machine = self._previous_motion, self._program.machine
+        before, machine = self._previous_motion, self._program.machine_of(motion)
         assert before is not None
         if self._part is None:
             self._part = part_of(self._program)
@@ -381,5 +384,5 @@ class _ProgramWriter:
             return False
         last = self._last_tip(before)
         counts = self._blocks.writer.word("X").format.counts
-        reached = counts(tip_after_turn(self._program.machine, last, before, motion))
+        reached = counts(tip_after_turn(self._program.machine_of(motion), last, before, motion))
         return bool((reached == counts(operation.moves.tip[0])).all())

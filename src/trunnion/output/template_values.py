@@ -64,7 +64,7 @@ class TemplateValues:
 
         Raises ``InputError`` if there is nothing to call the tool by.
         """
-        operation, machine = motion.operation, self._program.machine
+        operation, machine = motion.operation, self._program.machine_of(motion)
         position = self._operation_numbers[number]
         following = self.tools.next_call(position)
         found: dict[str, Value] = {

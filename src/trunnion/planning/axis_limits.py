@@ -39,13 +39,16 @@ def exceeds_travel(machine: Machine, extremes: Floats) -> Flags:
 def limit_violation_text(machine: Machine, column: int, value: float) -> Wording:
     """Such as ``axis B would go to 110.00000, above its limit 100 degrees``."""
     axis = machine.axes[column]
-    below = value < axis.low
+    below, said = value < axis.low, dict[str, str]()
     if _lacks_length(machine, column):
         variant = "below_limit_without_length" if below else "above_limit_without_length"
+    elif machine.in_force and not axis.is_rotary:
+        variant = "below_limit_in_force" if below else "above_limit_in_force"
+        said = {"in_force": machine.in_force}
     else:
         variant = "below_limit" if below else "above_limit"
     limit, unit = axis.low if below else axis.high, "degrees" if axis.is_rotary else "mm"
-    return phrase(variant, axis=axis.name, value=value, limit=limit, unit=unit)
+    return phrase(variant, axis=axis.name, value=value, limit=limit, unit=unit, **said)
 
 
 def limit_remedy(machine: Machine, column: int, value: float, remark: Wording | str = "") -> Wording:

@@ -1,7 +1,8 @@
 """From toolpaths to motions, stage by stage."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final
 
 from trunnion.errors import InputError, Problem, RefusedError, setting_problem
@@ -27,6 +28,7 @@ def plan(
     chord_tolerance: float,
     options: PlanOptions | None = None,
     capabilities: ControlCapabilities | None = None,
+    machine_of: Callable[[Operation], Machine] | None = None,
 ) -> Plan:
     """Plan all operations of one program.
 
@@ -37,6 +39,7 @@ def plan(
     chord_tolerance  the greatest distance between an arc and the lines that replace it, mm
     options          what the user asks; by default the defaults of ``PlanOptions``
     capabilities     what the control can be told; by default everything
+    machine_of       the machine with the tool and the work offset of an operation; by default it is the same for all
 
     Raises ``InputError`` when nothing is to be planned, an option names an operation that is not there, or slide
     positions depend on something unknown (without TCP).
@@ -51,10 +54,13 @@ def plan(
     _check_names(options, sources)
     remedy = _frame_remedy(sources[0][1].frame, options)
     request = PlanRequest(machine, chord_tolerance, options, capabilities, remedy)
-    prepared = prepare_operations(sources, request)
+    requests = [
+        request if machine_of is None else replace(request, machine=machine_of(operation)) for _, operation in sources
+    ]
+    prepared = prepare_operations(sources, requests)
     planned = [plan_operation(operation) for operation in prepared]
     problems = _check_reach_and_travel(planned, request)
-    linearized = _linearize(planned, request)
+    linearized = _linearize(planned)
     # Where an operation has errors at CL points, those between them only follow from these.
     problems += [problem for operation, one in linearized if not operation.has_errors for problem in one.problems]
     log = [decision for operation in planned for decision in operation.log]
@@ -78,13 +84,15 @@ def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRe
     problems = [warning for operation in planned for warning in operation.prepared.warnings]
     problems += unknown_speed_problems(planned[0].prepared.file, request)
     for one in planned:
-        problems += spindle_speed_problems(one.prepared.file, one.prepared.original, request.machine)
+        problems += spindle_speed_problems(one.prepared.file, one.prepared.original, one.prepared.request.machine)
     problems += [problem for operation in planned for problem in operation.problems]
     if any(operation.is_out_of_reach for operation in planned):
         raise RefusedError(problems)
-    if not request.keeps_slide_limits:
-        operations = [(one.prepared.file, one.operation.moves, one.poses) for one in planned]
-        problems += travel_problems(operations, request.machine)
+    anywhere = [one for one in planned if not one.prepared.request.keeps_slide_limits]
+    for machine in dict.fromkeys(one.prepared.request.machine for one in anywhere):
+        alike = [one for one in anywhere if one.prepared.request.machine is machine]
+        operations = [(one.prepared.file, one.operation.moves, one.poses) for one in alike]
+        problems += travel_problems(operations, machine)
     return problems
 
 
@@ -99,12 +107,11 @@ def _frame_remedy(first: Frame, options: PlanOptions) -> Wording | str:
     return phrase("write_frame_msys", tilt=tilt)
 
 
-def _linearize(
-    planned: Sequence[PlannedOperation], request: PlanRequest
-) -> list[tuple[PlannedOperation, LinearizedMotion]]:
+def _linearize(planned: Sequence[PlannedOperation]) -> list[tuple[PlannedOperation, LinearizedMotion]]:
     """Return the motions of all operations with the points that they need between CL points."""
     motions = [(operation, motion) for operation in planned for motion in operation.motions()]
-    without_tcp = [motion.operation for _, motion in motions if motion.mode is MachiningMode.WITHOUT_TCP]
-    if without_tcp:
-        check_slides_are_known(planned[0].prepared.file, without_tcp, request.machine)
-    return [(operation, linearize(operation.prepared.file, motion, request)) for operation, motion in motions]
+    without_tcp = [(one, motion) for one, motion in motions if motion.mode is MachiningMode.WITHOUT_TCP]
+    for machine in dict.fromkeys(one.prepared.request.machine for one, _ in without_tcp):
+        operations = [motion.operation for one, motion in without_tcp if one.prepared.request.machine is machine]
+        check_slides_are_known(planned[0].prepared.file, operations, machine)
+    return [(one, linearize(one.prepared.file, motion, one.prepared.request)) for one, motion in motions]

@@ -44,20 +44,23 @@ _ACROSS = 1e-6
 _SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
 
 
-def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRequest) -> list[PreparedOperation]:
+def prepare_operations(
+    sources: Sequence[tuple[str, Operation]], requests: Sequence[PlanRequest]
+) -> list[PreparedOperation]:
     """Prepare all operations of a program.
 
-    sources  CL file and operation, in the order in which they are cut
+    sources   CL file and operation, in the order in which they are cut
+    requests  that of each
 
     Raises ``RefusedError`` with everything that cannot be made: modes that the control lacks or the tool axis does not
     fit, and cycles.
     """
-    frame = Frame() if request.options.absolute_frame else sources[0][1].frame
+    frame = Frame() if requests[0].options.absolute_frame else sources[0][1].frame
     prepared: list[PreparedOperation] = []
     errors: list[Problem] = []
     lines = 0
     spindle: SpindleState | None = None
-    for file, original in sources:
+    for (file, original), request in zip(sources, requests, strict=True):
         try:
             operation, conflicts = _in_mode(_in_frame(request, file, original, frame))
             errors += conflicts

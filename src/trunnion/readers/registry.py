@@ -11,6 +11,7 @@ from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run, SkippedRun
+from trunnion.readers.control.setup_recorder import lengths_of_other_tools
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions, skip_meanings
@@ -28,8 +29,8 @@ def run_program(
     """Read a program and run it on a machine.
 
     path            the program
-    machine         three linear axes X, Y and Z, and two rotary axes. Every tool has the length
-                    ``machine.tool_length``, or 0, which puts the tip where the control assumes it
+    machine         three linear axes X, Y and Z, and two rotary axes. A tool without a length
+                    has the length 0, which puts the tip where the control assumes it
     options         how it is run
     family          the family of controls whose language the program has, a key of ``FAMILIES``; None for the machine's
                     control
@@ -49,6 +50,8 @@ def run_program(
 
     def read(how: RunOptions) -> Run:
         run = reader.interpreter(Path(path), machine, how).run(None if how.skip else write_progress)
+        if reader.uses_length_numbers:
+            run = replace(run, diagnostics=(*run.diagnostics, *lengths_of_other_tools(run, machine)))
         return replace(
             run,
             language=language,

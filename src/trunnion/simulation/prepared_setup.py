@@ -1,11 +1,13 @@
 """A set-up that has been read, and what of it is cut."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.errors import InputError, argument_problem
+from trunnion.compensation.stretches import RegisterValue
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
@@ -19,7 +21,7 @@ from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.turned_parts import run_of_drawn_part
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class PreparedSetup:
     """A set-up that has been read: its machine, runs, tools by their names in programs, and meshes as they are drawn.
 
@@ -27,6 +29,7 @@ class PreparedSetup:
     clamping   how the part is clamped
     name       for findings; empty where there is one set-up only
     pose       where the last set-up's workpiece frame lies in this one's
+    register_holds  what the registers of the radius hold
     until      N number of the block of the last program before which the simulation ends; None: at its end
     until_line  the line of that block instead, which may be skipped; 0: none
     """
@@ -41,6 +44,7 @@ class PreparedSetup:
     name: str = ""
     pose: Pose = field(default_factory=Pose)
     until: str | int | None = None
+    register_holds: RegisterValue = RegisterValue.UNKNOWN
     until_line: int = 0
 
     @property
@@ -50,7 +54,15 @@ class PreparedSetup:
 
     def clamped_runs(self) -> list[Run]:
         """Return the runs on the machine, where the part is as it is clamped."""
-        return [as_the_tool_goes(run)[0] for run in self.runs]
+        return [run for run, _ in self._real_runs]
+
+    def problems(self) -> list[Problem]:
+        """Return what of the runs cannot be simulated."""
+        return [problem for _, found in self._real_runs for problem in found]
+
+    @cached_property
+    def _real_runs(self) -> list[tuple[Run, list[Problem]]]:
+        return [as_the_tool_goes(run, self.tools, self.register_holds) for run in self.runs]
 
     def programs(self) -> list[SimulatedProgram]:
         """Return the programs as far as they are simulated, about the part as it is drawn.

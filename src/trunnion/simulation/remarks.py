@@ -160,13 +160,6 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
             for each in run.diagnostics
             if each.severity is Severity.WARNING and not is_told_of_length(run, each.line, each.wording)
         )
-        compensated = run.state.compensation.rows_with(1), run.state.compensation.rows_with(-1)
-        rows = np.concatenate(compensated)
-        if len(rows):
-            row = int(rows.min())
-            found.append(
-                warning(file_of_row(run, row), int(run.line[row]), Wording("SIM147", "radius_compensation_programmed"))
-            )
         found += _unjudged(run)
         is_placed = run.machine.workpiece_zero is not None and run.machine.tool_length is not None
         if not is_placed and bool(run.state.machine_frame.values.any()):

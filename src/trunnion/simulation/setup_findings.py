@@ -179,9 +179,11 @@ _ROLES: Final = {What.SHANK: (Role.SHANK,), What.HOLDER: (Role.HOLDER,), What.NE
 def setup_findings(cut: CutSetup) -> CutFindings:
     """Return records of what programs have cut, hit and come near to in a set-up, with their blocks and times."""
     found, programs, touched, setup = cut.simulation, cut.programs, cut.touched, cut.setup.name
-    # Runs are taken as they were read; their rows are those of the programs.
+    # Runs are taken as they were read, unless radius compensation inserts rows: their rows are those of the programs.
+    toolpaths = cut.setup.toolpaths if len(programs) == 1 else ()
     verified = [
-        verify_run(run, cut.setup.toolpaths if len(programs) == 1 else ()) for run in cut.setup.runs[: len(programs)]
+        verify_run(run, toolpaths) if len(run) == len(real) else verify_run(real)
+        for run, real, _ in zip(cut.setup.runs, cut.setup.clamped_runs(), programs, strict=False)
     ]
     slack = 0.5 * float(found.stock.lattice.cell.max())
     seconds = [np.cumsum(each.seconds) for each in verified]

@@ -17,7 +17,6 @@ from trunnion.simulation.simulator import CuttingModel, SimulatedProgram, Simula
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.stock.turning import turned_stock
 from trunnion.simulation.sunk_bodies import sunk_bodies
-from trunnion.simulation.tool_deltas import as_the_tool_goes
 from trunnion.simulation.turned_parts import as_clamped, places_of_drawing
 
 
@@ -119,7 +118,7 @@ class SetupSteps:
         clamped, programs = own.clamped_runs(), own.programs()
         runs = [program.run for program in programs]
         remarks += simulation_remarks(model, runs, own.tools)
-        remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
+        remarks += own.problems()
         remarks += [
             Problem(program.run.files[0], 0, program.broken_off)
             for program in programs

@@ -19,7 +19,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.machines.links import link_chain
 from trunnion.messages import Wording
-from trunnion.model.run import CHUNK_ROWS, ProgrammedWord, Run
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.stated_tips import StatedTips, turns_without_tcp
 from trunnion.timing.row_interpolation import RowInterpolation
 
@@ -73,8 +73,8 @@ def axis_pieces(
     """
     rows = len(run) if end is None else min(end, len(run))
     motion = _Motion(run, lengths, most)
-    for first in range(0, rows, CHUNK_ROWS):
-        yield motion.pieces(first, min(first + CHUNK_ROWS, rows))
+    for first, last in run.chunk_bounds(rows):
+        yield motion.pieces(first, last)
 
 
 class _Motion:
@@ -83,7 +83,7 @@ class _Motion:
     def __init__(self, run: Run, lengths: Mapping[int, float], most: int | None) -> None:
         self.run, self.lengths = run, lengths
         self._most, self._made = most, 0
-        self.read_with = run.machine.tool_length or 0.0
+        self.read_with = 0.0
         self.joints = np.array(run.start, np.float64)
         self.from_machine = np.ones(3, np.bool_)
         self._inside = RowInterpolation(run)
@@ -95,6 +95,7 @@ class _Motion:
     def pieces(self, first: int, end: int) -> AxisPieces:
         """Return the pieces of rows, which follow those of the last call."""
         run, n = self.run, end - first
+        self.read_with = self._inside.take_rows(first).tool_length or 0.0
         tool = run.state.tool.part(first, end).astype(np.int64)
         length = np.array([self.lengths.get(int(k), self.read_with) for k in tool.tolist()]) if n else np.zeros(0)
         xyz_is_tip = run.state.xyz_is_tip.part(first, end)

@@ -37,7 +37,13 @@ class RowInterpolation:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self._machines: dict[float, Machine] = {}
+        self._of_rows = run.machine
+        self._machines: dict[tuple[int, float], Machine] = {}
+
+    def take_rows(self, first: int) -> Machine:
+        """Take the set-up of rows from ``first`` on, and return its machine."""
+        self._of_rows = self.run.machine_at(first)
+        return self._of_rows
 
     def solved(self, length: float, xyz_is_tip: Flags, xyz: Floats, rotary: Floats) -> Floats:
         """Return axis values at positions of rows, (k, 5), with a tool of this length."""
@@ -47,11 +53,12 @@ class RowInterpolation:
     def counts(self, first: int, before: Floats, length: Floats, least_turn: float = _STILL) -> Ints:
         """Return into how many pieces rows are cut, (k,).
 
-        first       the first of the rows
+        first       the first of the rows, which are in one set-up
         before      (k + 1, 5)  axis values before the first and after each
         length      (k,)        of the tools, mm
         least_turn  rows in which rotary axes turn by no more than this, degrees, stay whole
         """
+        self.take_rows(first)
         counts = np.ones(len(before) - 1, np.int64)
         bent = np.flatnonzero(self._may_bend(first, before, least_turn))
         if len(bent):
@@ -63,6 +70,7 @@ class RowInterpolation:
 
         The last are those at the ends of the pieces, (m, 5). Arguments as of ``counts``, and what that returns.
         """
+        self.take_rows(first)
         row = np.repeat(np.arange(len(counts)), counts)
         place = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
         done = (place + 1) / counts[row]
@@ -95,7 +103,7 @@ class RowInterpolation:
         arc = self.run.kind[first + rows] == Kind.ARC
         if arc.any():
             k = np.searchsorted(self.run.arcs.row, first + rows[arc])
-            ends = forward(self.run.machine, before[rows[arc] + 1])[0]
+            ends = forward(self._of_rows, before[rows[arc] + 1])[0]
             reach = np.linalg.norm(ends - self.run.arcs.centre[k], axis=1)
             turns = self.run.arcs.full_turns[k]
             # The middle of one turn or less says how far it is from its chord; that of several says nothing.
@@ -155,6 +163,7 @@ class RowInterpolation:
 
     def _machine(self, length: float) -> Machine:
         """Return the machine with a tool of this length."""
-        if length not in self._machines:
-            self._machines[length] = replace(self.run.machine, tool_length=length)
-        return self._machines[length]
+        key = id(self._of_rows), length
+        if key not in self._machines:
+            self._machines[key] = replace(self._of_rows, tool_length=length)
+        return self._machines[key]

@@ -55,7 +55,6 @@ class RunTimer:
         self._path = PathBuilder(run, self._schedule.stops)
         self._travel = np.empty(len(run))
         self._untimed = np.zeros(len(run), np.bool_)
-        self._read_with = run.machine.tool_length or 0.0
         self._spare = _SPARE_PIECES
 
     def add(self, first: int, positions: PositionChunk, feeds: Floats) -> None:
@@ -68,7 +67,7 @@ class RunTimer:
         if free.any():
             moves = (np.abs(np.diff(joints[:, free], axis=0)) > _NO_MOTION).any(axis=1)
             self._untimed[first : first + n] = np.isinf(feeds[FeedRow.RATE]) & moves
-        length = np.full(n, self._read_with)
+        length = np.full(n, self._run.machine_at(first).tool_length or 0.0)
         counts = self._inside.counts(first, joints, length, _STRAIGHT_TURN)
         pieces = int(counts.sum())
         if pieces == n:

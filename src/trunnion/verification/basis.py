@@ -1,6 +1,6 @@
 """What checks stand on besides the program: what somebody has to state, and what of it is missing.
 
-In:     a machine as it was set up for a run.
+In:     a run, whose machine was set up for it.
 Out:    for each basis what is missing of it, in words; none where it is stated.
 
 A check whose basis is missing was not made, or only in part: its state is ``not checked``, never ``ok``. A definition
@@ -17,6 +17,7 @@ from trunnion.machines.unmeasured import ValueKind, unmeasured_values
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
+from trunnion.verification.kinematics.unknown_setups import offsets_without_zero, tools_without_length
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +25,7 @@ class Basis:
     """Something that a check stands on; ``missing`` says what is not stated of it."""
 
     key: str
-    missing: Callable[[Machine], Wording | None]
+    missing: Callable[[Run], Wording | None]
 
 
 def _without(machine: Machine, is_stated: Callable[[Axis], bool]) -> tuple[str, ...]:
@@ -32,35 +33,39 @@ def _without(machine: Machine, is_stated: Callable[[Axis], bool]) -> tuple[str, 
     return tuple(axis.name for axis in machine.axes if not is_stated(axis))
 
 
-def _no_zero(machine: Machine) -> Wording | None:
-    return phrase("no_zero") if machine.workpiece_zero is None else None
+def _no_zero(run: Run) -> Wording | None:
+    if names := offsets_without_zero(run):
+        return phrase("no_zero_of", names=names)
+    return phrase("no_zero") if run.machine.workpiece_zero is None else None
 
 
-def _no_tool_length(machine: Machine) -> Wording | None:
-    return phrase("no_tool_length") if machine.tool_length is None else None
+def _no_tool_length(run: Run) -> Wording | None:
+    if names := tools_without_length(run):
+        return phrase("no_length_of", names=names)
+    return phrase("no_tool_length") if run.machine.tool_length is None else None
 
 
-def _no_travel(machine: Machine) -> Wording | None:
-    names = _without(machine, lambda axis: axis.endless or axis.has_limits)
+def _no_travel(run: Run) -> Wording | None:
+    names = _without(run.machine, lambda axis: axis.endless or axis.has_limits)
     return phrase("no_travel_of", axes=names) if names else None
 
 
-def _no_rapid(machine: Machine) -> Wording | None:
-    names = _without(machine, lambda axis: axis.rapid is not None)
-    if len(names) == len(machine.axes):
+def _no_rapid(run: Run) -> Wording | None:
+    names = _without(run.machine, lambda axis: axis.rapid is not None)
+    if len(names) == len(run.machine.axes):
         return phrase("no_rapid")
     return phrase("no_rapid_of", axes=names) if names else None
 
 
-def _no_acceleration(machine: Machine) -> Wording | None:
-    names = _without(machine, lambda axis: axis.acceleration is not None)
-    if len(names) == len(machine.axes):
+def _no_acceleration(run: Run) -> Wording | None:
+    names = _without(run.machine, lambda axis: axis.acceleration is not None)
+    if len(names) == len(run.machine.axes):
         return phrase("no_acceleration")
     return phrase("no_acceleration_of", axes=names) if names else None
 
 
-def _no_spindle_speeds(machine: Machine) -> Wording | None:
-    return None if states_spindle_range(machine) else phrase("no_spindle_speeds")
+def _no_spindle_speeds(run: Run) -> Wording | None:
+    return None if states_spindle_range(run.machine) else phrase("no_spindle_speeds")
 
 
 ZERO: Final = Basis("zero", _no_zero)
@@ -79,16 +84,16 @@ DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
 }
 
 
-def missing_of(bases: Iterable[Basis], machine: Machine) -> tuple[Wording, ...]:
+def missing_of(bases: Iterable[Basis], run: Run) -> tuple[Wording, ...]:
     """Return what is missing of some bases."""
-    return tuple(found for basis in bases if (found := basis.missing(machine)) is not None)
+    return tuple(found for basis in bases if (found := basis.missing(run)) is not None)
 
 
 def missing_demands(demands: Iterable[str], run: Run) -> Iterator[Wording]:
     """Yield what is missing of what is demanded for a program, each once."""
     for name in DEMANDS:
         if name in demands:
-            yield from missing_of(DEMANDS[name], run.machine)
+            yield from missing_of(DEMANDS[name], run)
     if "measured" in demands:
         kinds = set(ValueKind) - {ValueKind.BODIES, ValueKind.TABLE}
         if names := tuple(map(str, unmeasured_values(run.machine, kinds, joint_samples(run)))):

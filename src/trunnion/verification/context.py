@@ -7,6 +7,7 @@ from itertools import islice
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.verification.expected.path import ExpectedPath, OperationSettings
@@ -29,6 +30,7 @@ class ExpectedValues:
     edge                   number of the cutting edge (D); None: any
     last_edge              ADJUST of LOAD/TOOL up to this number is the cutting edge; 0: it is not
     radius_offset          what is added to the tool's number for the register of the radius
+    register_holds         what radius compensation works with
     span                   how far the tool axis may be off between points, degrees; None: ``axis_tolerance``
     span_tip               how far the tip may be off its line between points without TCP, mm; None: reported, not
                            checked
@@ -62,6 +64,7 @@ class ExpectedValues:
     work_offset: int | None = None
     edge: int | None = None
     radius_offset: int = 0
+    register_holds: RegisterValue = RegisterValue.UNKNOWN
     last_edge: int = 0
     span: float | None = None
     span_tip: float | None = None

@@ -12,6 +12,7 @@ from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import with_added_lengths
 from trunnion.model.toolpath import Operation, Toolpath
+from trunnion.verification.checks.driven_path import driven_path
 from trunnion.verification.checks.table import Compared, Measured, all_checks
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.declared_deviations import accept_deviations
@@ -57,7 +58,7 @@ def verify(
         seen: Measured = _compare_all(_expected_path(run, toolpaths, tolerances, settings), run, settings, analyzer)
     else:
         seen = _measure_alone(run, settings, analyzer)
-    seen = replace(seen, motion=_with_added_lengths(run, seen.motion))
+    seen = replace(seen, motion=_as_the_tool_goes(seen.context, seen.motion))
     context, motion = seen.context, seen.motion
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
@@ -122,18 +123,23 @@ def with_recording(verification: Verification, recording: Recording, tolerance: 
     return replace(verification, checks=(*verification.checks, check), recorded=compared)
 
 
-def _with_added_lengths(run: Run, motion: AxisMotion) -> AxisMotion:
-    """Return the motion with the extremes of the axes as the tool really goes, where the program makes it longer."""
-    longer = with_added_lengths(run)
-    if longer is run:
+def _as_the_tool_goes(context: Context, motion: AxisMotion) -> AxisMotion:
+    """Return the motion with the extremes of the axes as the tool really goes: where the program makes it longer, and
+    where the control compensates its radius.
+    """
+    run, centre = context.run, driven_path(context).centre
+    real = with_added_lengths(centre.run)
+    if real is run:
         return motion
-    analyzer = AxisMotionAnalyzer(longer, 0, times=False)
-    for first, end, positions in longer.chunks():
+    analyzer = AxisMotionAnalyzer(real, 0, times=False)
+    for first, end, positions in real.chunks():
         analyzer.add(first, end, positions)
     found = analyzer.result()
+    # What is inserted before a row belongs to it.
+    rows = np.searchsorted(centre.row_of, found.extreme_rows)
     return replace(
-        motion, extremes=found.extremes, extreme_rows=found.extreme_rows, within_lines=found.within_lines,
-        unknown=found.unknown,
+        motion, extremes=found.extremes, extreme_rows=np.where(found.extreme_rows < 0, -1, rows),
+        within_lines=found.within_lines, unknown=found.unknown if len(real) == len(run) else motion.unknown,
     )  # fmt: skip
 
 

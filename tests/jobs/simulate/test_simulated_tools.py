@@ -6,6 +6,7 @@ import pytest
 
 import trunnion
 from tests.support.simulating import SLOT, TOOL, simulate
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.simulation.tool_deltas import as_the_tool_goes
 
 KLARTEXT = (
@@ -30,7 +31,7 @@ SINUMERIK = "T1 D1\nM6\nG54 G17 G90\nS3000 M3\nG0 X-20 Y0 Z20\nTOFFL=0.5\nG0 Z-5
         ),
         (SINUMERIK, "yl569", 2250.0, ""),
         (SINUMERIK.replace("TOFFL", "TOFF[3]"), "yl569", None, "TOFF moves the tool by 0.5 mm"),
-        (SLOT.replace("N50", "G43.2 Z0.5\nN50"), "xyzac_trt", None, "G43.2 Z moves the tool by 0.5 mm"),
+        (SLOT.replace("N50", "G43.2 Z0.5\nN50"), "xyzac_trt", 2250.0, ""),
         (SLOT.replace("G43 H1", "G43 H5"), "xyzac_trt", 2500.0, "is taken for its own length"),
     ],
     ids=["DL", "DL and DR", "DR compensated", "TOFFL", "TOFF", "G43.2", "H5"],
@@ -59,7 +60,7 @@ def test_a_length_goes_along_the_tool_and_not_into_machine_positions(tmp_path: P
     nc = tmp_path / "part.mpf"
     nc.write_text(program)
     run = trunnion.read_program(nc, machine="yl569")
-    longer, problems = as_the_tool_goes(run)
+    longer, problems = as_the_tool_goes(run, {}, RegisterValue.UNKNOWN)
     assert not problems
     moved = longer.tip - run.tip
     assert moved[-1] == pytest.approx(2.0 * run.axis[-1])

@@ -19,7 +19,7 @@ from trunnion.cli import main
 from trunnion.controls import Control, control_library, load_control
 from trunnion.families import FAMILIES as CONTROL_FAMILIES
 from trunnion.families import load_writer
-from trunnion.jobs.inputs.settings import apply_setup
+from trunnion.jobs.inputs.stated_setup import apply_setup
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import CycleOn

@@ -18,7 +18,7 @@ from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
 from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import LengthLike, set_up_for_all
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.placing import place, unknown_length
 from trunnion.jobs.place.posting import post_placed
@@ -254,13 +254,13 @@ def _stated_length(toolpaths: Sequence[Toolpath]) -> float | None:
 def _fit(
     asked: MachineLike,
     toolpaths: Sequence[Toolpath],
-    tool_length: str | float | None,
+    tool_length: LengthLike | None,
     stated: FitArguments,
 ) -> MachineFit:
     """Return what a machine makes of it; whatever is wrong with the machine is its reason."""
     key, hooks = asked.key if isinstance(asked, Machine) else os.fspath(asked), stated["hooks"]
     try:
-        machine = set_up_machine(as_machine(asked, "machines"), None, tool_length)
+        machine = set_up_for_all(as_machine(asked, "machines"), None, tool_length)
         if not np.isfinite(machine.limits[list(machine.linear)]).any():
             return _without_limits(machine, toolpaths, hooks)
         found = place(toolpaths, machine=machine, turns=stated["turns"], hooks=hooks)

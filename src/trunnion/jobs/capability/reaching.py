@@ -17,7 +17,7 @@ from trunnion.jobs.arguments import ReachArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import set_up_for_all
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.messages import phrase
@@ -81,7 +81,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     found = taken(ReachArguments, "reach", given)
     degrees, part = _number("step", found["step"], *_STEPS), found["part"]
     leaning = _number("lean", found["lean"], 0.0, _MOST_LEAN)
-    loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
+    loaded = set_up_for_all(as_machine(machine), found["zero"], found["tool_length"])
     toolpaths = hooked_toolpaths(
         as_toolpaths(found["cl"], observer, ClReading(found["units"], found["dialect"], found["strict"])),
         loaded,

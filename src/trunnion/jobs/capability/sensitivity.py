@@ -12,7 +12,7 @@ from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.arguments import SensitivityArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase

@@ -20,7 +20,7 @@ from trunnion.jobs.convert.result import ConvertResult
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path, check_paths, is_stream
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, as_machine, read_program
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths

@@ -13,11 +13,14 @@ from trunnion.options.groups import (
     JSON,
     MACHINE,
     OTHER_MACHINE,
+    RADIUS_REGISTER,
     READING,
     REPORT,
     SETUP,
     SUBPROGRAMS,
     TOOL_LENGTH,
+    TOOL_LIBRARIES,
+    TOOL_UNIT,
     WORK_OFFSET,
     ZERO,
 )
@@ -72,7 +75,10 @@ _VERIFY: Final = job(
         key="frame",
     ),
     ZERO,
-    TOOL_LENGTH.but(help="length of the tool, for programs without TCP"),
+    TOOL_LENGTH,
+    TOOL_LIBRARIES.but(help="tool library that has the lengths of tools, as of simulate"),
+    TOOL_UNIT,
+    RADIUS_REGISTER,
     FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed", key="feed"),
     Option(
         "feed_limit", "--feed-limit", length(phrase("kind_feed"), "2000", "MM_MIN"),
@@ -140,6 +146,7 @@ _SIMULATE: Final = job(
     READING.but(strict={"key": ""}),
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that they call; no others are opened"),
+    RADIUS_REGISTER,
     SETUP,
     CLAMPING.but(
         turn={

@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control, load_control
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.errors import InputError
 from trunnion.machines import Machine
 
@@ -20,7 +22,18 @@ def default_settings(control: Control | None) -> Mapping[str, str]:
     return control.settings if control else {"edge": "1"}
 
 
+def blocks_in_compensation(machine: Machine) -> int:
+    """Return how many blocks without motion a control reads across within radius compensation; unknown ones read 1."""
+    control = written_control(machine)
+    return control.blocks_in_compensation if control else 1
+
+
 def rapid_feed_of(machine: Machine) -> float | None:
     """Return the feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
     feed = default_settings(written_control(machine)).get("rapid_feed")
     return float(feed) if feed else None
+
+
+def register_value_of(machine: Machine) -> RegisterValue:
+    """Return what the registers of the radius hold on a machine, by its definition."""
+    return RegisterValue(default_settings(written_control(machine)).get(RADIUS_REGISTER_SETTING, "unknown"))

@@ -109,7 +109,7 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     "zero": RunSetting(
         "Position of the workpiece zero on the machine, mm. With it, and tool_length for linear axes along the "
         "tool, every linear axis is checked against its limits; without it only whether the program fits into the "
-        "travel somewhere.",
+        "travel somewhere. G54=X,Y,Z,G55=X,Y,Z gives each work offset its own; one that is left out is not known.",
         "the definition's workpiece.zero_mm",
         form="X,Y,Z",
         example="0,0,120.5",
@@ -122,7 +122,8 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     ),
     "tool_length": RunSetting(
         "Length from the spindle's gauge point to the tip. Limits of linear axes are checked with it; without TCP it "
-        "is required on machines whose head turns the tool.",
+        "is required on machines whose head turns the tool. 1=MM,2=MM gives tools their own by number or name; of "
+        "those left out a tool library or the CL file may have it.",
         bounds=(0.0, 1e4),
         form="MM",
         example="120.5",

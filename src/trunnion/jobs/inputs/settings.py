@@ -24,16 +24,18 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 
 #: A setting as text, as a number, as several numbers (``zero``), on or off, or None: it is not set.
-SettingValue: TypeAlias = str | float | bool | datetime.date | Iterable[float] | None
+SettingValue: TypeAlias = (
+    str | float | bool | datetime.date | Iterable[float] | Mapping[str, float] | Mapping[str, Iterable[float]] | None
+)
 
 #: Settings by their keys.
 Settings: TypeAlias = Mapping[str, SettingValue]
 
+#: Settings that may have a value for each tool, or for each work offset.
+SINGLE_VALUES: Final = ("zero", "tool_length")
+
 #: What True and False mean, as far as a setting has such a word.
 _SWITCHES: Final = {True: ("on", "yes"), False: ("off", "no")}
-
-#: The farthest that the workpiece zero may be from the origin of the machine, mm.
-_FARTHEST_ZERO: Final = 1e5
 
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6
@@ -74,6 +76,10 @@ def _as_text(key: str, value: object) -> str | None:
         return str(value)
     if isinstance(value, float | np.floating):
         return np.format_float_positional(value, trim="-") if np.isfinite(value) else None
+    if isinstance(value, Mapping) and key in SINGLE_VALUES:
+        texts = {name: _as_text(key, part) for name, part in value.items()}
+        known = all(isinstance(name, str | int) and text is not None for name, text in texts.items())
+        return ",".join(f"{name}={text}" for name, text in texts.items()) if texts and known else None
     # Several numbers are for the few settings that have them; a text of numbers that nobody wrote is none.
     several = key in RUN_SETTINGS and "," in RUN_SETTINGS[key].form
     if not several or isinstance(value, bytes | Mapping) or not isinstance(value, Iterable):
@@ -225,14 +231,6 @@ def number_setting(settings: Mapping[str, str], key: str) -> float | None:
     return value
 
 
-def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
-    """Return the machine with the workpiece zero and the tool length of the settings."""
-    if "zero" in settings:
-        machine = replace(machine, workpiece_zero=_point_setting(settings["zero"]))
-    length = number_setting(settings, "tool_length")
-    return machine if length is None else replace(machine, tool_length=length)
-
-
 def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
     """Return the machine for planning: every limit is nearer by the setting ``limit_margin``.
 
@@ -249,22 +247,6 @@ def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
         wording = Wording("ARG220", "no_travel_left", margin=margin, axis=lost[0])
         raise InputError(setting_problem("limit_margin", wording))
     return replace(machine, axes=tuple(axes))
-
-
-def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> Machine:
-    """Return the machine with its workpiece zero and its tool length, mm, where they are given.
-
-    Raises
-    ------
-    InputError
-        Of the argument, if it cannot be.
-    """
-    for name, value in (("zero", zero), ("tool_length", tool_length)):
-        try:
-            machine = apply_setup(machine, as_texts({name: value}))
-        except InputError as error:
-            raise InputError([as_argument(problem, name) for problem in error.problems]) from None
-    return machine
 
 
 def as_argument(problem: Problem, name: str) -> Problem:
@@ -323,14 +305,3 @@ def work_offset_setting(text: str, machine: Machine) -> int | None:
         wording = Wording("ARG220", "no_work_offset", value=repr(text), form=offsets.form)
         raise InputError(argument_problem("work_offset", wording))
     return value
-
-
-def _point_setting(text: str) -> tuple[float, float, float]:
-    """Return the setting ``zero``: X, Y and Z in mm."""
-    try:
-        x, y, z = (float(part) for part in text.split(","))
-    except ValueError:
-        x = y = z = math.nan
-    if not max(abs(x), abs(y), abs(z)) <= _FARTHEST_ZERO or math.isnan(x + y + z):
-        raise InputError(setting_problem("zero", RUN_SETTINGS["zero"].fault("zero", text)))
-    return x, y, z

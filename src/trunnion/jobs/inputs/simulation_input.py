@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike
 from trunnion.model.run import Run
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.stock.turning import Pose
@@ -49,9 +50,10 @@ class SetupInput:
     strict: bool = False
     hooks: Sequence[FilePath] = ()
     subprograms: Sequence[FilePath] = ()
-    zero: str | Iterable[float] | None = None
-    tool_length: str | float | None = None
+    zero: ZeroLike | None = None
+    tool_length: LengthLike | None = None
     until: str | int | None = None
+    radius_register: str | None = None
     turn: float | None = None
     tilt: float | None = None
     cl_is_turned: bool = False

@@ -10,7 +10,8 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.arguments import PlaceArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine
-from trunnion.jobs.inputs.settings import apply_setup, as_texts, set_up_machine
+from trunnion.jobs.inputs.settings import as_texts
+from trunnion.jobs.inputs.stated_setup import apply_setup, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.bodies import BodiesInput, read_bodies, stated_lengths
 from trunnion.jobs.place.inputs import read_input

@@ -18,11 +18,13 @@ from trunnion.jobs.inputs.settings import Settings, check_operation_names, numbe
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
+from trunnion.jobs.post.operation_setups import planned_machines, with_operation_setups
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
+from trunnion.output.compensation_entries import with_radius_taken_off
 from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
@@ -91,7 +93,7 @@ def plan(
     check_observer(observer)
     job = prepare(as_machine(machine), settings, explain=explain)
     toolpaths = load_toolpaths(cl, job, strict, observer)
-    return _planned(toolpaths, job)
+    return _planned(toolpaths, with_operation_setups(toolpaths, job))
 
 
 def load_toolpaths(
@@ -166,7 +168,9 @@ def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
 def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
     """Return the plan, with the margin to limits and the retracts that the job asks for."""
     machine, chord_tolerance = job.planned_machine, job.control.arcs.chord_tolerance
-    found = planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities)
+    # Without TCP the positions of slides are those of the tool itself: the control adds the rest.
+    machine_of = planned_machines(job, with_delta=job.options.tcp or not machine.has_rotary_head)
+    found = planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities, machine_of)
     distance = number_setting(job.settings, "tool_retract")
     if not distance:
         return found
@@ -202,8 +206,10 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     planned = replace(planned, decisions=(*job.decisions, *planned.decisions))
     observer.planned(planned)
     file = toolpaths[0].file
-    program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
-    program = with_place_texts(program)
+    program = Program(
+        job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings, setups=job.setups
+    )
+    program = with_radius_taken_off(with_place_texts(program))
     problems = new_problems(program, observer)
     unproven = _missing_reader(job)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers

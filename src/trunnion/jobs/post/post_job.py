@@ -18,19 +18,20 @@ from trunnion.files import OutputFiles
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.jobs.inputs.settings import (
     Settings,
-    apply_setup,
     as_texts,
     check_settings,
     number_setting,
     split_by_operation,
     with_limit_margin,
 )
+from trunnion.jobs.inputs.stated_setup import apply_setup
 from trunnion.jobs.result_output import PaperFiles
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
+from trunnion.output.program import OperationKey
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
 from trunnion.readers import check_reading
@@ -72,6 +73,7 @@ class PostJob:
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
     can_force     whether ``force`` can be asked for, which refusals then say
+    setups        the machine with the tool and the work offset of single operations
     strict        a basis of the proof that is missing is an error
     """
 
@@ -93,6 +95,7 @@ class PostJob:
     decisions: tuple[Decision, ...] = ()
     can_force: bool = True
     strict: bool = False
+    setups: Mapping[OperationKey, Machine] = field(default_factory=dict)
 
     @property
     def printed(self) -> dict[str, str]:
@@ -107,7 +110,11 @@ class PostJob:
     @property
     def planned_machine(self) -> Machine:
         """The machine with the margin to its limits that the planner keeps."""
-        return with_limit_margin(self.machine, self.settings)
+        return self.with_margin(self.machine)
+
+    def with_margin(self, machine: Machine) -> Machine:
+        """Return a machine with the margin to its limits that the planner keeps."""
+        return with_limit_margin(machine, self.settings)
 
     @property
     def has_normals(self) -> bool:

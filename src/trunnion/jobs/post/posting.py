@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final, Unpack
 
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
@@ -183,7 +184,8 @@ def post_beside(
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input
 
         read = tuple(simulation_files(simulation))
-        job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
+        simulated = simulation_input(simulation, job.machine, job.settings.get(RADIUS_REGISTER_SETTING))
+        job = replace(job, simulation=simulated, simulation_files=read)
         inputs += read
     if (tools := found["sheet_tools"]) is not None:
         from trunnion.jobs.inputs.bodies import known_tools

@@ -9,10 +9,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from trunnion.controls.vocabulary import HOOKS_NOTICE
+from trunnion.jobs.post.operation_setups import setup_notices, with_operation_setups
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
+from trunnion.model.clamping_notices import clamped_notices
 from trunnion.model.toolpath import Message, Toolpath
-from trunnion.placing.program_heads import placed_notices
 
 if TYPE_CHECKING:
     from trunnion.hooks.calling import Hooks
@@ -29,9 +30,10 @@ def as_clamped(
     clamping = clamped_after(stated, angles, toolpaths[0].file)
     toolpaths, carried = _without_notices(toolpaths, job)
     toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
+    job = with_operation_setups(toolpaths, job)
     notices: tuple[str, ...] = ()
     if is_placed or stated is not None or not clamping.is_as_drawn:
-        notices = placed_notices(clamping, job.machine.workpiece_zero, job.machine.tool_length)
+        notices = (*clamped_notices(clamping), *setup_notices(job, toolpaths))
     job = replace(job, notices=(*notices, *carried), clamping=clamping)
     if hooks is not None:
         decisions = tuple(hooks.decisions) if job.options.explain else ()

@@ -100,7 +100,7 @@ def _in_program_frame(program: Program, motion: Motion, half: Mapping[str, float
         return _plane_error(motion, tip, 0.0) + 2.0 * widest * math.radians(2.0 * angle), angle, normal
     decimals = control.number_formats(three_axis=False)["plane_angle"].decimals
     tilt = max(angle, 1.5 * 10.0**-decimals)  # three angles of a plane, or a rotary position
-    if with_plane_inside_limits(program.machine, motion, decimals) is not motion:
+    if with_plane_inside_limits(program.machine_of(motion), motion, decimals) is not motion:
         tilt += 1.5 * 10.0**-decimals
     tip, angle = _plane_error(motion, tip, tilt), math.sqrt(2.0) * tilt + _ANGLE_SLACK
     return tip, angle, math.sqrt(3.0) * (normal + math.radians(tilt))

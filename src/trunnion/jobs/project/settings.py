@@ -47,7 +47,7 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
         if name in found:
             own.add_problem(name, Wording("DEF330", "setting_and_key", key=key))
         value = table.to_dict()[key]
-        if isinstance(value, str | float | int | list):  # anything else is a mistake that is told already
+        if isinstance(value, str | float | int | list | dict):  # anything else is a mistake that is told already
             found[name], places[name] = value, (*table.location(key), table.key_path(key))
     if "divide" in table:
         places["programs"] = (*table.location("divide"), table.key_path("divide"))

@@ -20,6 +20,8 @@ class StatedValues:
     def value(self, table: Table, option: Option) -> Any:
         """Return what a table states of an option; None, or nothing of a list, where it does not."""
         key, kind = option.key, option.kind
+        if isinstance(kind, Point | Measure) and kind.by_name and (table.is_table(key) or key not in table):
+            return _by_name(table, key, kind)
         if isinstance(kind, FileIn):
             return self._files(table, option, kind)
         if isinstance(kind, Number | Measure):
@@ -57,6 +59,19 @@ class StatedValues:
             return self.stock(table, option.key)
         name = table.text(option.key, "")
         return self.paths.file(table, option.key, name) if name or option.key in table else None
+
+
+def _by_name(table: Table, key: str, kind: Point | Measure) -> dict[str, Any] | None:
+    """Return values by their names; None if there are none."""
+    single = table.table(key)
+    found = {name: _one(single, name, kind) for name in single.names()}
+    if key not in table:  # the other form, for the schema
+        _one(table, key, kind)
+    return found or None
+
+
+def _one(table: Table, key: str, kind: Point | Measure) -> Any:
+    return table.vector(key, 3, None) if isinstance(kind, Point) else _number(table, key, kind)
 
 
 def _number(table: Table, key: str, kind: Number | Measure) -> float | None:

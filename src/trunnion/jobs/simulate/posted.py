@@ -17,6 +17,7 @@ from trunnion.jobs.arguments import with_present_names
 from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.project.file import is_project, read_project
 from trunnion.jobs.project.named_files import library_files, project_files
@@ -50,8 +51,10 @@ _OF_SETUP: Final = tuple(each.name for each in _STATED if each.level is not Leve
 _MOST_PLACES: Final = 50
 
 
-def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput:
+def simulation_input(given: SimulationLike, machine: Machine, radius_register: str | None = None) -> SimulationInput:
     """Return what is to be simulated; programs, and how the part is clamped, are not known yet.
+
+    radius_register  setting of the post, where the project does not state it
 
     Raises ``InputError`` if it names what is none, the project has several set-ups or is for another machine, or has no
     stock.
@@ -78,6 +81,7 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
         base = _of_project(check_path("simulation", project), machine, stated)
     own = {name: stated[name] for name in _OF_SETUP if name in stated}
     setup = replace(base.setups[0], machine=machine, **own)
+    setup = replace(setup, radius_register=setup.radius_register or radius_register)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
         raise InputError(argument_problem("stock", Wording("SIM110", "missing")))
@@ -147,17 +151,24 @@ def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> Simu
                 subject=key_subject(key),
             )
         )
-    for name, own in (("zero", machine.workpiece_zero), ("tool_length", machine.tool_length)):
-        wanted = getattr(setup, name)
-        if wanted is not None and wanted != own:
+    asked = set_up_machine(machine, setup.zero, setup.tool_length)
+    for name, own, wanted in (
+        ("zero", (machine.workpiece_zero, machine.zeros), (asked.workpiece_zero, asked.zeros)),
+        ("tool_length", (machine.tool_length, machine.tool_lengths), (asked.tool_length, asked.tool_lengths)),
+    ):
+        if wanted != own:
             file, line, key = setup.places[name]
-            value = ",".join(f"{number:g}" for number in wanted) if isinstance(wanted, tuple) else f"{wanted:g}"
+            stated = getattr(setup, name)
+            value = ",".join(f"{number:g}" for number in stated) if isinstance(stated, tuple) else f"{stated}"
             raise InputError(
                 Problem(
                     file,
                     line,
                     Wording(
-                        "SIM113", "not_of_the_post" if own is None else "other_than_of_the_post", name=name, value=value
+                        "SIM113",
+                        "not_of_the_post" if own == (None, {}) else "other_than_of_the_post",
+                        name=name,
+                        value=value,
                     ).of_key(key),
                     subject=key_subject(key),
                 )

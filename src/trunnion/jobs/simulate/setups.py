@@ -14,14 +14,16 @@ import numpy as np
 
 from trunnion import readers
 from trunnion.cl.read import ClReading
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
-from trunnion.jobs.inputs.control_settings import rapid_feed_of
+from trunnion.jobs.inputs.control_settings import rapid_feed_of, register_value_of
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_machine, as_run, as_toolpaths
-from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
+from trunnion.jobs.inputs.settings import work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import Observer
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
@@ -76,7 +78,7 @@ def prepare_setup(
         remarks += _other_offsets(runs, given.work_offset, machine)
     return PreparedSetup(
         machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
-        given.until,
+        given.until, RegisterValue(given.radius_register or register_value_of(machine)),
     )  # fmt: skip
 
 

@@ -69,6 +69,8 @@ def simulate(
         ``"first"``: end after the block of the first finding.
     until
         N number of the block before which the last program ends.
+    radius_register
+        As for ``verify``: the tool's centre goes beside the path under radius compensation.
     zero, tool_length
         As for ``verify``: without both, machine positions (G53, M91) are taken as retracts along the tool axis.
     turn, tilt

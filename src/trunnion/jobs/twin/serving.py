@@ -2,7 +2,7 @@
 
 import ipaddress
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -17,7 +17,7 @@ from trunnion.jobs.inputs.arguments import check_path, check_paths, wrong_argume
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike, set_up_machine
 from trunnion.jobs.result_output import check_output_name
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
@@ -117,8 +117,8 @@ def write_device_xml(
     machine: MachineLike,
     output: FilePath,
     subprograms: Sequence[FilePath] = (),
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
+    zero: ZeroLike | None = None,
+    tool_length: LengthLike | None = None,
 ) -> None:
     """Write the device model of a twin for an MTConnect agent.
 
@@ -141,8 +141,8 @@ def twin_program(
     *,
     machine: MachineLike,
     subprograms: Sequence[FilePath] = (),
-    zero: str | Iterable[float] | None = None,
-    tool_length: str | float | None = None,
+    zero: ZeroLike | None = None,
+    tool_length: LengthLike | None = None,
 ) -> TwinProgram:
     """Read a program, run it, and give it its times; arguments as for ``serve_twin``.
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Final
 
 from trunnion.controls import Control
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.control_settings import default_settings
 from trunnion.jobs.inputs.settings import check_operation_names
@@ -37,6 +38,7 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
         settings = {key: value for key, value in usual.items() if key not in ("work_offset", "edge")}
     offset, of_operations = _work_offsets(given["work_offset"], on.control, read.toolpaths)
     own = {"tool": given["tool"], "work_offset": offset, "edge": given["edge"]}
+    own[RADIUS_REGISTER_SETTING] = given["radius_register"]
     settings |= {key: str(value) for key, value in own.items() if value is not None}
     by_operation = {name: {**settings, "work_offset": value} for name, value in of_operations.items()}
     return replace(

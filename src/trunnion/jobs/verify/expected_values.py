@@ -5,7 +5,9 @@ Posts and verifications ask the same function; each adds what it alone knows.
 
 from collections.abc import Mapping
 
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.jobs.inputs.settings import m_code, work_offset_setting
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
@@ -35,6 +37,7 @@ def expected_values(
         work_offset=every.work_offset,
         edge=every.edge,
         radius_offset=every.radius_offset,
+        register_holds=RegisterValue(settings.get(RADIUS_REGISTER_SETTING) or RegisterValue.UNKNOWN),
         last_edge=every.last_edge,
         by_operation={name: _operation_settings(own, machine, control) for name, own in own_settings.items()},
         swivel_data=tuple(

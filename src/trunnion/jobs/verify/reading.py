@@ -4,7 +4,7 @@ In:     a program, the machine that runs it, and the arguments of the verificati
 Out:    the run and the toolpaths; warnings about them have been reported.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from trunnion.cl.read import ClReading
@@ -13,6 +13,7 @@ from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
+from trunnion.jobs.inputs.tool_lengths import with_lengths_of_tools
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.verify.arguments import angles_of
 from trunnion.jobs.verify.program_warnings import program_warnings
@@ -51,6 +52,7 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
     Raises ``InputError`` if a file cannot be used, or a CL file states that its part is clamped otherwise.
     """
     toolpaths = as_toolpaths(given["cl"], observer, ClReading(given["units"], given["dialect"], given["strict"]))
+    on = replace(on, machine=with_lengths_of_tools(on.machine, toolpaths))
     run = as_run(nc, on.machine, given["subprograms"])
     observer.problems(program_warnings(run))
     if len(run.normals):

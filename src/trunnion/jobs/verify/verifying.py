@@ -1,6 +1,5 @@
 """Verification of any NC program, with or without the CL files that it was made from."""
 
-from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from typing import Unpack
@@ -10,10 +9,11 @@ from trunnion.errors import Problem, warning
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
 from trunnion.jobs.arguments import VerifyArguments, taken
-from trunnion.jobs.inputs.arguments import check_observer
+from trunnion.jobs.inputs.arguments import check_observer, check_paths
 from trunnion.jobs.inputs.control_settings import written_control
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine
-from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike, set_up_machine
+from trunnion.jobs.inputs.tool_lengths import library_tools, with_lengths_of_tools
 from trunnion.jobs.observer import SILENT, Observer, Remembering
 from trunnion.jobs.verify.arguments import checked
 from trunnion.jobs.verify.expectation import expected, tolerances
@@ -67,8 +67,12 @@ def verify(
         Coordinate system of the program: that of the ``first`` operation, or the CAM's ``absolute`` one.
     zero : (3,) float, mm
         Workpiece zero on the machine; needed to check the travel of the linear axes against their limits.
+        ``{"G54": (0, 0, 80), "G55": (150, 0, 80)}`` for each work offset; those without one are not known.
     tool_length
-        From the gauge point of the spindle to the tip, mm; for programs without TCP.
+        From the gauge point of the spindle to the tip, mm, of all tools, or ``{"1": 110.0, "2": 85.0}`` of each. Where
+        there is none, libraries and CL files may have it.
+    tool_libraries, unit
+        Tool libraries that have lengths of tools, and the length unit of those that state none.
     recorded
         What the machine did: a recording of ``trunnion record``, or its file. Each of its positions is compared with
         the path of the program; with the linear axes in the machine's own coordinates, ``zero`` and ``tool_length`` are
@@ -80,6 +84,9 @@ def verify(
         (check ``reach``), not by those of the CL files.
     feed_limit
         The setting ``feed_limit`` of that post, mm/min.
+    radius_register
+        What radius compensation works with: ``"difference"``, by how much the tool is larger than in the CL file, or
+        ``"radius"``, its radius; by default as the control's definition says.
     columns
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.
@@ -120,6 +127,8 @@ def verify(
 
         recording = as_recording(recording)
     on = _set_up(as_machine(machine), found["zero"], found["tool_length"])
+    tools = library_tools(check_paths("tool_libraries", found["tool_libraries"]), found["unit"])
+    on = replace(on, machine=with_lengths_of_tools(on.machine, (), tools))
     read = read_program(nc, on, found, observer)
     proof = verification.verify(
         read.run, read.toolpaths, settings=expected(on, read, found), tolerances=tolerances(on, read, found),
@@ -142,7 +151,7 @@ def _skipping(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments, ru
     return verification.verify(run, read.toolpaths, settings=settings, tolerances=limits, columns=False)
 
 
-def _set_up(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> VerifiedMachine:
+def _set_up(machine: Machine, zero: ZeroLike | None, tool_length: LengthLike | None) -> VerifiedMachine:
     """Return the machine with its zero and tool; the kernels of its reader are compiled meanwhile."""
     readers.reader_of(machine)
     compile_ahead(kernels.VERIFYING)

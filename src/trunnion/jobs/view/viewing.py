@@ -11,7 +11,8 @@ from trunnion.jobs.arguments import ViewArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.bodies import KnownTools, known_tools
 from trunnion.jobs.inputs.reading import FilePath, as_machine
-from trunnion.jobs.inputs.settings import Settings, set_up_machine
+from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
 from trunnion.jobs.result_output import declared_output

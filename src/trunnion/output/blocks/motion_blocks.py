@@ -106,7 +106,7 @@ class MotionBlockWriter:
         self._axis_coordinates = None
         if motion.mode is MachiningMode.WITHOUT_TCP:
             angle = self.control.number_formats(motion.three_axis)["angle"]
-            self._axis_coordinates = to_axis_coordinates(self.program.machine, motion, angle.decimals)
+            self._axis_coordinates = to_axis_coordinates(self.program.machine_of(motion), motion, angle.decimals)
             motion = self._axis_coordinates.motion
         return motion
 

@@ -65,7 +65,7 @@ class ApproachLegs:
     """Knows where the first legs of a program end."""
 
     def __init__(self, program: Program) -> None:
-        self._program, self._machine = program, program.machine
+        self._program = program
         axes, spindle = program.machine.axes, program.machine.spindle_direction
         # Column of the linear axis along the spindle, all axes at zero.
         self._along = max(program.machine.linear, key=lambda k: abs(float(np.dot(axes[k].direction, spindle))))
@@ -75,8 +75,8 @@ class ApproachLegs:
 
         point  (3,) mm in the plane
         """
-        machine = self._machine
-        if motion.plane is None or not (tilts_tool(machine, motion) and self.placed and self.goes_home):
+        machine = self._program.called_machine_of(motion)
+        if motion.plane is None or not (tilts_tool(machine, motion) and self.is_placed(motion) and self.goes_home):
             return None
         turn, origin = motion.plane.matrix(), np.array(motion.plane.origin)
         target = slide_positions(machine, (turn @ point + origin)[None], motion.rotary[:1])[0]
@@ -85,18 +85,18 @@ class ApproachLegs:
         home = target.copy()
         home[list(machine.linear)] = machine.home[list(machine.linear)]
         ends = list(self._ends(home, target, from_home=motion.starts_operation))
-        end = next((each for each in ends if self._is_clear(home, each, target)), ends[0])
+        end = next((each for each in ends if self._is_clear(machine, home, each, target)), ends[0])
         return np.asarray(turn.T @ (forward(machine, end[None])[0][0] - origin))
 
-    @property
-    def placed(self) -> bool:
+    def is_placed(self, motion: Motion) -> bool:
         """Whether it is known where home is in the workpiece."""
-        return self._machine.workpiece_zero is not None and self._machine.tool_length is not None
+        machine = self._program.machine_of(motion)
+        return machine.workpiece_zero is not None and machine.tool_length is not None
 
     @cached_property
     def goes_home(self) -> bool:
         """Whether the templates retract to the home position: a word for it does not say how far it goes."""
-        home = f"home_{self._machine.axes[self._along].name.lower()}"
+        home = f"home_{self._program.machine.axes[self._along].name.lower()}"
         return any(
             name == home for template in self._program.control.templates.values() for name, _ in template.fields()
         )
@@ -110,7 +110,7 @@ class ApproachLegs:
 
         from_home  all axes come from home; else only that along the spindle does
         """
-        across = [column for column in self._machine.linear if column != self._along]
+        across = [column for column in self._program.machine.linear if column != self._along]
         orders: list[tuple[int, ...]] = [tuple(across)]
         if from_home:
             orders += [(column,) for column in across]
@@ -122,12 +122,12 @@ class ApproachLegs:
                 end[self._along] += np.clip((target - home)[self._along], -_FROM_HOME, _FROM_HOME)
             yield end
 
-    def _is_clear(self, *stations: Floats) -> bool:
+    def _is_clear(self, machine: Machine, *stations: Floats) -> bool:
         """Whether the tip stays out of the box around all cuts on its way, if the way does not end within it."""
         if self._box is None:
             return True
         shares = np.linspace(0.0, 1.0, _PLACES)[:, None]
         way = np.concatenate([a + shares * (b - a) for a, b in pairwise(stations)])
-        tips = forward(self._machine, way)[0]
+        tips = forward(machine, way)[0]
         inside = np.asarray(((tips > self._box[0]) & (tips < self._box[1])).all(axis=1))
         return bool(inside[-1]) or not inside.any()

@@ -39,8 +39,12 @@ def machine_problems(program: Program) -> list[Problem]:
     if unlimited:
         problems.append(_warning(program, Wording("CTL720", "travel_not_stated", unlimited=tuple(unlimited))))
     legs = ApproachLegs(program)
-    tilted = dict.fromkeys(motion.operation.name for motion in program.motions if tilts_tool(machine, motion))
-    if tilted and not (legs.placed and legs.goes_home):
+    tilted = dict.fromkeys(
+        motion.operation.name
+        for motion in program.motions
+        if tilts_tool(machine, motion) and not (legs.is_placed(motion) and legs.goes_home)
+    )
+    if tilted:
         variant = "way_not_known" if legs.goes_home else "retract_not_known"
         problems.append(_warning(program, Wording("CTL730", variant, operations=tuple(tilted)[:_MOST_SHOWN])))
     return problems

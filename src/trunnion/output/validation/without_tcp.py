@@ -35,7 +35,7 @@ def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
             Problem(program.file_of(operation), operation.line, Wording("CTL220", "cutter_radius_compensation_without"))
         )
     decimals = control.number_formats(motion.three_axis)["angle"].decimals
-    coordinates = to_axis_coordinates(program.machine, motion, decimals)
+    coordinates = to_axis_coordinates(program.machine_of(motion), motion, decimals)
     cuts = np.flatnonzero(coordinates.rotary_moves & (moves.kind != Kind.RAPID) & (moves.feed > 0))
     problems += _feed_problems(program, motion, coordinates, cuts)
     wraps = np.flatnonzero(coordinates.wraps.any(axis=1))

@@ -22,9 +22,9 @@ from trunnion.readers.control import arcs, contours
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
 from trunnion.readers.control.contours import ContourError, Corner, Element
-from trunnion.readers.control.coordinates import CoordinateControl
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import ScannedRows, within_limits
+from trunnion.readers.control.setup_control import SetupControl
 from trunnion.readers.scan.buffers import ScanSettings
 
 #: What the feed of a corner without one of its own is that of.
@@ -76,7 +76,7 @@ class CornerWord(NamedTuple):
     modal: bool = False
 
 
-class ContourControl(CoordinateControl):
+class ContourControl(SetupControl):
     """Knows the last element of the path, and adds elements."""
 
     def __init__(self, machine: Machine, note: Note) -> None:
@@ -89,6 +89,10 @@ class ContourControl(CoordinateControl):
         # The first row that programs an axis, by axis.
         self._first_rows: dict[int, int] = {}
         super().__init__(machine, note)
+
+    def forget_machine(self) -> None:
+        """Forget the map of the slides with the tool and the zero before."""
+        self._slide_map = None
 
     # Elements
 

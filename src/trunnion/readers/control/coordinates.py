@@ -32,6 +32,9 @@ INCH: Final = 25.4
 #: What of the next program a stored work offset changes, for messages.
 OFFSET: Final = "the work offset of"
 
+#: Modes without whose words a program goes elsewhere when the one before it has left them otherwise.
+_NEEDED: Final = frozenset({"plane", "distances", "feed", "compensation", "length", "centres"})
+
 
 class CoordinateControl(RowRecorder):
     """Knows the coordinate systems in force, and keeps the maps of the rows up to date.
@@ -53,6 +56,9 @@ class CoordinateControl(RowRecorder):
 
     #: What decides whether the latter do, for messages.
     reset_by = ""
+
+    #: Work offsets have zeros of their own: those without one are not known.
+    knows_zeros = False
 
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(machine, note)
@@ -183,6 +189,7 @@ class CoordinateControl(RowRecorder):
         plane    from the plane to the work offset, None for no tilted plane
         program  the programmable frame from now on, none by default
         """
+        self.say_mode("tilted plane")
         with self.frame_change():
             self._plane = plane or AffineMap()
             self._program = program or AffineMap()
@@ -261,6 +268,8 @@ class CoordinateControl(RowRecorder):
 
     def set_mode(self, name: str, word: str, before: Hashable, after: Hashable) -> None:
         """Remember a word that sets a mode, for ``report_trailing_modes``; ``name`` is that of the mode."""
+        if name in _NEEDED:
+            self.say_mode(name)
         self._trailing.set(name, word, WordPlace(self.row, self.line, self.modal.file.current), before, after)
 
     def usual(self, name: str) -> Hashable:
@@ -290,6 +299,10 @@ class CoordinateControl(RowRecorder):
             )
             self._note_left(wording, stays=stays)
         self.line = here
+
+    def sets_behind_use(self, name: str) -> bool:
+        """Whether the program sets a mode behind the last motion with a use for it, as is reported then."""
+        return any(mode.name == name for mode in self._trailing.changed())
 
     def report_left(self, left: Wording, *, may_begin: bool = False) -> None:
         """Report a plane, a rotation or a shift that the program leaves on: the next one begins with it, or may."""
@@ -322,6 +335,7 @@ class CoordinateControl(RowRecorder):
 
     def set_tcp(self, on: bool) -> None:
         """Switch tool centre point control."""
+        self.say_mode("TCP")
         if on != self.tcp:
             with self.frame_change():
                 self.tcp = on
@@ -334,7 +348,7 @@ class CoordinateControl(RowRecorder):
             return
         if code != self.no_offset:
             self._offsets.add(code)
-            if len(self._offsets) > 1:
+            if len(self._offsets) > 1 and not self.knows_zeros:
                 self.note(Wording("NC331", "work_offsets_not_known_here", name=name), Severity.WARNING)
         if self.no_offset in (code, offset.current):
             with self.frame_change():

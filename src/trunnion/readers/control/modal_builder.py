@@ -24,6 +24,8 @@ class ModalBuilder:
         self.compensation = StepColumnBuilder(0)
         self.radius = StepColumnBuilder(-1)
         self.compensation_plane = StepColumnBuilder(-1)
+        self.compensation_style = StepColumnBuilder(0)
+        self.stated_radius = StepColumnBuilder(math.nan)
         self.work_offset = StepColumnBuilder(0)
         self.tcp = StepColumnBuilder(False)
         self.machine_frame = StepColumnBuilder(False)
@@ -48,6 +50,8 @@ class ModalBuilder:
             compensation=self.compensation.steps(n, np.int8),
             radius=self.radius.steps(n, np.int32),
             compensation_plane=self.compensation_plane.steps(n, np.int32),
+            compensation_style=self.compensation_style.steps(n, np.uint8),
+            stated_radius=self.stated_radius.steps(n, np.float64),
             work_offset=self.work_offset.steps(n, np.uint16),
             tcp=self.tcp.steps(n, np.bool_),
             machine_frame=self.machine_frame.steps(n, np.bool_),

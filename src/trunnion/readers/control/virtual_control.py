@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.compensation.styles import UNKNOWN_STYLE
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.messages import Wording
@@ -51,12 +52,16 @@ class VirtualControl(ContourControl, ABC):
     preconditions  what the program must say before the tool moves at the part
     motion         the motion in force: ``RAPID``, ``LINEAR`` or one of the circles of the family
     shortest       how endless rotary axes reach plain words: True by the shorter way, False not so, None as the control
+    compensation_style    how it compensates in a plane, a key of ``compensation.styles.STYLES``; 0: not known
     compensates_in_space  radius compensation is across the tool, by a word for it (G41.2, CUT3DC)
     rotary_names   letters of the rotary axes
     """
 
+    compensation_style = UNKNOWN_STYLE
+
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note)
+        self.modal.compensation_style.set(0, self.compensation_style)
         self.preconditions = Preconditions(self._fault_at)
         self.motion = LINEAR
         self.shortest = shortest

@@ -19,10 +19,11 @@ _NUMBERED = re.compile(r"N([0-9]{1,15})(?:\.[0-9]*)?")
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """The value of a word; ``whole`` if it is written without a point."""
+    """The value of a word; ``whole`` if it is a number without a point, ``point`` if one with a point."""
 
     value: float
     whole: bool = False
+    point: bool = False
 
 
 @dataclass(slots=True)
@@ -132,6 +133,7 @@ def read_block(
             letter += reader.letter()
         elif not "A" <= letter <= "Z":
             raise BlockError(Wording("NC210", "not_a_word", found=repr(letter)))
+        begin = reader.at
         value, whole = reader.signed_value()
         if value is None:
             # A word whose value is an unset parameter counts as not written.
@@ -143,7 +145,8 @@ def read_block(
         else:
             if letter in block.words:
                 on_repeated_word(letter)
-            block.words[letter] = Number(value, whole)
+            written = reader.text[begin : reader.at]
+            block.words[letter] = Number(value, whole, "." in written and not {"#", "["} & set(written))
     return block
 
 

@@ -5,7 +5,9 @@ from typing import Final
 from trunnion.readers.rs274.word_table import Effect, When, Word
 
 #: What the message says of radius compensation.
-COMPENSATION: Final = "radius compensation is not simulated: the path is that of the tool centre as programmed"
+COMPENSATION: Final = (
+    "radius compensation: the path is read as programmed, and the tool centre goes beside it by what the register holds"
+)
 
 ISO_WORDS: Final = (
     Word("G0 G1 G2 G3", "rapid, line, circles", act="motion", group="motion"),

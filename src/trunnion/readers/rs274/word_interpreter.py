@@ -1,5 +1,6 @@
 """The part of interpreters that executes blocks by the table of a control's words."""
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Final, TypeVar
@@ -143,6 +144,10 @@ class WordInterpreter(Rs274Interpreter[A]):
             self._note(Wording(word.problem or code, "not_simulated", word=word.text, does=word.does), severity)
         elif word.effect is Effect.UNKNOWN:
             self._execute_unknown(word)
+        if word.mode:
+            letters = [letter for letter in word.letters if letter in block.words and not word.group]
+            said = " ".join((word.text, *(f"{letter}{block.words[letter].value:g}" for letter in letters)))
+            self.control.say_mode(word.mode, "" if word.shows else said)
         if word.act:
             self._acts[word.act](word, block)
 
@@ -210,6 +215,8 @@ class WordInterpreter(Rs274Interpreter[A]):
         control.set_mode("compensation", word.text, side.current, word.sets)
         side.set(control.row, word.sets)
         control.compensates_in_space = False
+        stated = block.words["D"].value if word.text in ("G41.1", "G42.1") and "D" in block.words else math.nan
+        control.modal.stated_radius.set(control.row, 0.5 * stated * control.length_unit)
         if word.text in ("G41", "G42"):
             self._begin_compensation(block)
 

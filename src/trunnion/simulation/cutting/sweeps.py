@@ -97,12 +97,8 @@ def row_sweeps(run: Run, first: int, end: int, sizes: SweepSizes) -> RowSweeps:
     """Divide consecutive rows that have one tool."""
     count = end - first
     joints = np.vstack((run.start[None] if first == 0 else run.joints[first - 1 : first], run.joints[first:end]))
-    tip = np.vstack(
-        (forward(run.machine, run.start[None])[0] if first == 0 else run.tip[first - 1 : first], run.tip[first:end])
-    )
-    axis = np.vstack(
-        (forward(run.machine, run.start[None])[1] if first == 0 else run.axis[first - 1 : first], run.axis[first:end])
-    )
+    before = run.positions(np.array([first - 1]))
+    tip, axis = np.vstack((before.tip, run.tip[first:end])), np.vstack((before.axis, run.axis[first:end]))
     pieces = _pieces(run, first, joints, tip, axis, sizes)
     samples = subdivide(run, pieces, slice(first, end))
     last = np.cumsum(pieces) - 1
@@ -131,7 +127,7 @@ def _pieces(run: Run, first: int, joints: Floats, tip: Floats, axis: Floats, siz
     pieces = np.maximum(pieces, np.ceil(np.sqrt(0.25 * angle * length / sizes.tolerance)))
     curved = ~tcp & (kind != Kind.ARC) & (angle > 1e-12)
     if curved.any():
-        between = forward(run.machine, 0.5 * (joints[:-1] + joints[1:])[curved])[0]
+        between = forward(run.machine_at(first), 0.5 * (joints[:-1] + joints[1:])[curved])[0]
         bulge = np.linalg.norm(between - 0.5 * (tip[:-1] + tip[1:])[curved], axis=1)
         # Half of the way of a half turn and more says nothing: the angle has divided it already.
         pieces[curved] = np.maximum(pieces[curved], np.ceil(np.sqrt(bulge / sizes.tolerance)))

@@ -1,18 +1,34 @@
 """Cutter radius compensation of a program against CUTCOM in the CL files."""
 
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.compensation.offsets import Fault
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.model.run import Run
+from trunnion.verification.checks.driven_path import DrivenPath, driven_path
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.states import compensation_states
 from trunnion.verification.results import Check, Place
 
 _TITLE: Final = "radius compensation as the CL file says"
+
+#: An offset or a distance that is smaller is none, mm.
+_SAME: Final = 1e-3
+
+#: What the control makes of a path on which the tool does not fit.
+_FAULTS: Final = {
+    Fault.TIGHT: "the tool does not fit: the control stops with an alarm, or cuts into the part",
+    Fault.ON_CIRCLE: "radius compensation begins or ends on a circle: the control stops with an alarm",
+    Fault.SHORT_ENTRY: "the line on which compensation begins is no longer than the radius: the control stops",
+    Fault.NO_CONTOUR: "radius compensation begins and ends with no motion between: where the tool goes is not known",
+}
 _SIDES: Final = {1: "left of the path", -1: "right of the path", 0: "off"}
 
 
@@ -44,8 +60,51 @@ def check_compensation(context: ComparedContext) -> Check:
     still_on = home[side.at(home) != 0]
     if len(still_on):
         places.append(context.place(int(still_on[0]), 0.0, "moves home with radius compensation on"))
-    good = ", ".join(_SIDES[value] for value in sorted(asked))
-    return check_from_places("compensation", _TITLE, sorted(places, key=lambda p: p.nc_line), good or "off")
+    driven = driven_path(context)
+    places += _alarms(context, driven)
+    if not places:
+        places += _beside(context, driven)
+    good = ", ".join(_SIDES[value] for value in sorted(asked)) or "off"
+    if not (missing := driven.missing(context)):
+        good = f"{good}; the tool centre goes where the CL file has it"
+    check = check_from_places("compensation", _TITLE, sorted(places, key=lambda p: p.nc_line), good)
+    return replace(check, missing=missing)
+
+
+def _alarms(context: ComparedContext, driven: DrivenPath) -> Iterator[Place]:
+    """Yield where the control stops with an alarm, or cuts into what it should leave."""
+    for row, fault in driven.centre.faults:
+        if fault in _FAULTS:
+            yield context.place(row, 0.0, _FAULTS[fault])
+
+
+def _beside(context: ComparedContext, driven: DrivenPath) -> Iterator[Place]:
+    """Yield the first motion of each stretch whose tool centre goes elsewhere than the CL file has it.
+
+    What the settings let the program add to the radius (DR) is meant to be there.
+    """
+    centre, matching = driven.centre, context.matching
+    meant = {0.0}
+    if context.settings.register_holds is RegisterValue.DIFFERENCE:
+        meant |= {value for word in ("DR", "TOFFR") for value in context.settings.tool_deltas.get(word, ())}
+    for stretch, offset in driven.offsets:
+        if offset is None or min(abs(offset - each) for each in meant) <= _SAME:
+            continue
+        pairs = matching.nc.count_before(stretch.first), matching.nc.count_before(stretch.end)
+        for nc, cl in matching.pair_chunks(*pairs):
+            tip = centre.run.positions(centre.row_of[nc]).tip
+            off = np.linalg.norm(tip - context.expected.tip(cl), axis=1)
+            far = np.flatnonzero(off > _SAME)
+            if len(far):
+                worst = int(off.argmax())
+                text = (
+                    f"the control compensates by {offset:.3f} mm, and the points of the CL file are those of the tool's"
+                    f" centre: it goes up to {off[worst]:.3f} mm beside them; the register must hold the difference"
+                    " (radius_register=difference)"
+                )
+                row = int(nc[far[0]])
+                yield context.place_with_cl(row, float(off[worst]), text, int(cl[far[0]]))
+                break
 
 
 def _takes_other_radius(run: Run, register: int, nc: Ints) -> Flags:

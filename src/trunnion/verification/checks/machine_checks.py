@@ -11,6 +11,7 @@ from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.machine_travel import positions_beyond_travel, unknown_steps
+from trunnion.verification.kinematics.values_in_force import values_in_force
 from trunnion.verification.kinematics.worst_rows import WorstRows
 from trunnion.verification.results import Check, Coverage
 from trunnion.wording import counted
@@ -100,6 +101,8 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
             continue
         value, limit, row = (low, axis.low, rows[0]) if below < above else (high, axis.high, rows[1])
         tool = "" if is_placed else " with a tool 0 mm long"
+        if is_placed:
+            tool += values_in_force(context.run, k, row)
         if machine.depends_on_length(k) and added[row]:
             tool += f", {'' if is_placed else 'and '}the tool {added[row]:+g} mm by the program"
         unit, within = "deg" if axis.is_rotary else "mm", _within(context, motion, k, (0,) if below < above else (1,))

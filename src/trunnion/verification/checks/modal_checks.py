@@ -17,6 +17,7 @@ from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
+from trunnion.verification.spindle_words import TURNING, both_senses, started_behind_cuts
 
 _FAULTS: Final = {
     "no feed": "moves at feed, but no feed is programmed",
@@ -49,6 +50,7 @@ def check_modal_state(context: Context) -> Check:
         last = max(context.last_line, run.lines[-1] if len(run) else 1)
         places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))
     places += _changed_while_turning(context)
+    places += _odd_spindle_words(context)
     places.sort(key=lambda place: place.nc_line)
     # With a CL file, the check "spindle" has the spindle.
     at_cuts = "feed" if isinstance(context, ComparedContext) else "feed and spindle"
@@ -77,9 +79,17 @@ def _changed_while_turning(context: Context) -> Iterator[Place]:
     turning = False
     for event in events:
         if event.kind == "spindle":
-            turning = event.value in ("clockwise", "counter-clockwise")
+            turning = event.value in TURNING
         elif event.kind == "tool_change" and turning and 0 < event.before_row <= len(context.run):
             yield context.place_of_event(event, 0.0, "changes the tool while the spindle turns")
+
+
+def _odd_spindle_words(context: Context) -> Iterator[Place]:
+    """Yield blocks with both senses of the spindle, and the start of a spindle that nothing needs and nothing stops."""
+    for before, event in both_senses(context.run):
+        yield context.place_of_event(event, 0.0, f"turns the spindle {before.value} and {event.value} in one block")
+    if (start := started_behind_cuts(context.run)) is not None:
+        yield context.place_of_event(start, 0.0, "starts the spindle behind the last cut, and nothing stops it")
 
 
 def _without_feed_or_spindle(context: Context) -> list[Place]:

@@ -43,7 +43,8 @@ def passage_rows(context: ComparedContext) -> set[int]:
         first, down = int(unbroken[0]), int(unbroken[-1]) + 1
         way = _Way(context, first, down)
         if len(unbroken) == 1 and _comes_from_home(run, first):
-            if way.comes_down_from(context.highest_point(way.axis)):
+            wanted = context.settings.in_turn and run.state.tcp[first]  # a plane has first legs of its own
+            if wanted and way.comes_down_from(context.highest_point(way.axis)):
                 found.add(first)
         elif context.settings.clearance is None or not _begins_operation(context, down):
             continue

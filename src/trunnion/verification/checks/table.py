@@ -96,7 +96,7 @@ class CheckEntry:
     def checks(self, seen: Measured, unmeasured: Iterable[MarkedValue]) -> Iterator[Check]:
         """Make the check, as far as what it needs is there; ``unmeasured`` values matter to the program."""
         if isinstance(seen, self.needs):
-            missing = missing_of(self.bases, seen.context.run.machine)
+            missing = missing_of(self.bases, seen.context.run)
             values = [value for value in unmeasured if kind_of(value) in self.kinds]
             for check in self.run(seen):
                 answer = replace(check, missing=(*missing, *check.missing))

@@ -7,8 +7,10 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.compensation.stretches import ADDED_RADII, RegisterValue
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
+from trunnion.model.tool_additions import REPLACED
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.spindle_and_tool import names_tool
@@ -81,8 +83,11 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
         if event.kind != "delta" or not isinstance(event.value, tuple):
             continue
         name, value = str(event.value[0]), float(event.value[1] or 0.0)
+        if name in ADDED_RADII and context.settings.register_holds is RegisterValue.RADIUS:
+            continue  # the check of compensation judges what comes of it
         if value and not any(abs(value - wanted) <= _DELTA for wanted in context.settings.tool_deltas.get(name, ())):
-            text = f"{name} adds {value:g} mm to the tool, which nothing asks for"
+            does = "puts {:g} mm in the place of the tool's length" if name in REPLACED else "adds {:g} mm to the tool"
+            text = f"{name} {does.format(value)}, which nothing asks for"
             yield context.place_of_event(event, value, text)
 
 

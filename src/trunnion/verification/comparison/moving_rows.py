@@ -29,7 +29,7 @@ class MovingRows:
         self.coolant = _coolant_numbers(run, coolants)
         numbers = [tools.setdefault(_tool_name(name), len(tools)) for name in run.tools]
         self.tool = np.array(numbers, np.int64)[run.tool]
-        self.start_tip, self.start_axis = (column[0] for column in forward(run.machine, run.start[None]))
+        self.start_tip, self.start_axis = (column[0] for column in forward(run.machine_at(0), run.start[None]))
         moving = self._moving(rows)
         self._machine_positions = MachinePositions.of(run) if with_machine_frame else None
         if self._machine_positions is not None:

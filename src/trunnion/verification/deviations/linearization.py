@@ -87,7 +87,6 @@ class LinearizationErrors:
     ) -> None:
         self._run = run
         self._tip_uncertainty = 2.0 * math.sqrt(3.0) * limits.tip_tolerance
-        self._chain = kinematic_chain(run.machine)
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._expected = expected
         self._matching = matching
@@ -114,8 +113,9 @@ class LinearizationErrors:
             return
         tips, axes = self._path_ends(first, rows, positions)
         off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
+        chain = kinematic_chain(self._run.machine_at(first))
         _linearization_errors(
-            self._chain, positions.joints, positions.tip, positions.axis, rows, tips, axes, kind[rows] == Kind.RAPID,
+            chain, positions.joints, positions.tip, positions.axis, rows, tips, axes, kind[rows] == Kind.RAPID,
             tcp, self._tip_uncertainty, off_tip, off_axis,
         )  # fmt: skip
         self.tip.add(first, off_tip)

@@ -71,7 +71,7 @@ class ArcSpeeds:
         for some, measure in ((np.flatnonzero(~turns), _standing), (np.flatnonzero(turns), _turning)):
             for k in range(0, len(some), _AT_A_TIME):
                 which = some[k : k + _AT_A_TIME]
-                measured = measure(run.machine, paths.select(which), begin[which], way[which])
+                measured = measure(run.machine_at(first), paths.select(which), begin[which], way[which])
                 columns = found.begin, found.end, found.most, found.acceleration
                 for column, values in zip(columns, measured, strict=True):
                     column[which] = values

@@ -97,8 +97,7 @@ class AxisMotionAnalyzer:
             speed_seen=SeenRows(),
             change_seen=SeenRows(),
         )
-        motion = self._motion
-        self._line_search = LineSearch(run.machine, motion.extremes, motion.extreme_rows, motion.within_lines)
+        self._line_searches: dict[int, LineSearch] = {}
         self._is_placed = all(run.machine.is_placed(column) for column in run.machine.linear)
         self._counts_before = self._moved_at_feed = False
 
@@ -147,7 +146,7 @@ class AxisMotionAnalyzer:
         motion.axis_deviation.add(first, deviation)
         if not tcp.all():
             free = np.flatnonzero(self._turns(positions) & ~tcp & (kind == Kind.LINEAR))
-            motion.tip_deviation.add(first, _tip_deviations(run.machine, positions, free, count))
+            motion.tip_deviation.add(first, _tip_deviations(run.machine_at(first), positions, free, count))
 
     def _count_seen(self, first: int, kind: Codes, feeds: Floats) -> None:
         """Count the motions whose speeds are known, and those of which it is known how speeds change."""
@@ -200,13 +199,23 @@ class AxisMotionAnalyzer:
         end = first + len(tcp)
         counts &= known & (self._run.kind[first:end] != Kind.ARC)
         by_vector = self._run.orientation_between(first, end) == Orientation.GREAT_CIRCLE
-        at = self._line_search.likely(positions.tip, positions.joints, counts, by_vector)
+        search = self._line_search(first)
+        at = search.likely(positions.tip, positions.joints, counts, by_vector)
         if not len(at):
             return
         tip, axis, joints = (
             np.stack((each[at], each[at + 1]), axis=1) for each in (positions.tip, positions.axis, positions.joints)
         )
-        self._line_search.add(TurningLines(first + at, tip, axis, joints, by_vector[at]))
+        search.add(TurningLines(first + at, tip, axis, joints, by_vector[at]))
+
+    def _line_search(self, row: int) -> LineSearch:
+        """Return the search on the machine as it is set up in a row."""
+        machine, motion = self._run.machine_at(row), self._motion
+        if id(machine) not in self._line_searches:
+            self._line_searches[id(machine)] = LineSearch(
+                machine, motion.extremes, motion.extreme_rows, motion.within_lines
+            )
+        return self._line_searches[id(machine)]
 
     def _turns(self, positions: PositionChunk) -> Flags:
         """Which rows turn a rotary axis, (k,) bool."""

@@ -16,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Ints
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, ROTARY_WORDS, names_no_axis
+from trunnion.verification.kinematics.unknown_setups import rows_without_values
 
 #: Rows that are searched at first for the next motion in workpiece coordinates; later ever more.
 _FEW = 64
@@ -33,6 +34,7 @@ class MachinePositions:
         machine = run.machine
         self._width = len(machine.axes)
         self.known = machine.workpiece_zero is not None and machine.tool_length is not None
+        self.known &= next(rows_without_values(run), None) is None
         self._spans: dict[int, tuple[Ints, Ints]] = {}
         if self.known:
             return

@@ -17,6 +17,7 @@ from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import approach_rows
+from trunnion.verification.kinematics.unknown_setups import rows_without_values
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,8 +29,8 @@ class UnknownApproaches:
 
 
 def unknown_approaches(run: Run) -> UnknownApproaches:
-    """Return the first legs of which it is not known where the linear axes are."""
-    found = list(_unknown(run))
+    """Return the rows of which it is not known where the linear axes are."""
+    found = sorted((dict(_unknown(run)) | dict(rows_without_values(run))).items())
     return UnknownApproaches(np.array([row for row, _ in found], np.int64), tuple(why for _, why in found))
 
 

@@ -133,11 +133,12 @@ def _holds_tip(run: Run, first: int, end: int, positions: PositionChunk) -> bool
         return False
     if tcp.all():
         return True
-    if run.machine.workpiece_zero is None:  # where the tip is, is not known
+    machine = run.machine_at(first)
+    if machine.workpiece_zero is None:  # where the tip is, is not known
         return False
     turning = np.flatnonzero(_rotary_steps(run, positions) > _STILL)
     begin, step = positions.joints[turning], positions.joints[turning + 1] - positions.joints[turning]
-    off = [forward(run.machine, begin + fraction * step)[0] - positions.tip[turning] for fraction in _FRACTIONS]
+    off = [forward(machine, begin + fraction * step)[0] - positions.tip[turning] for fraction in _FRACTIONS]
     return bool(np.linalg.norm(off, axis=2).max(initial=0.0) <= _MAX_STRAY)
 
 

@@ -164,7 +164,8 @@ def test_a_sheet_tells_of_compensation_pitches_angles_and_stops(tmp_path: Path) 
     stop = "OPSTOP\n" + holes
     cl.write_text(HEAD + FOOT + drill + stop + FOOT, encoding="utf-8")
     sheet = tmp_path / "a.json"
-    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=sheet)
+    settings = {"drills_sideways": "allowed"}
+    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=sheet, settings=settings)
     data = json.loads(sheet.read_text(encoding="utf-8"))
     first, second = data["operations"]
     assert first["notes"] == []
@@ -183,14 +184,14 @@ def test_a_sheet_tells_of_blocks_to_skip_left_hands_and_where_axes_stand(tmp_pat
     )
     holes = "RAPID\nGOTO/60.0,0.0,0.0,1.0,0.0,0.0\nCYCLE/TAP,RAPTO,3,FEDTO,-10,RTRCTO,20,MMPR,1.25\n"
     cl.write_text(HEAD + "OPSKIP/ON\nGOTO/20,0,5\nOPSKIP/OFF\n" + FOOT + tap + holes + around + "CYCLE/OFF\n" + FOOT)
-    paper = tmp_path / "a.html"
-    result = trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=sheet)
+    paper, settings = tmp_path / "a.html", {"drills_sideways": "allowed"}
+    result = trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=sheet, settings=settings)
     assert result.passed
     first, second = json.loads(sheet.read_text(encoding="utf-8"))["operations"]
     assert first["notes"] == ["blocks that the operator may skip (/)"]
     assert second["notes"] == ["pitch 1.25 mm, left hand"]
     assert second["rotary"]["C"] != [0.0, 360.0]
-    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "b.nc", sheet=paper)
+    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "b.nc", sheet=paper, settings=settings)
     text = " ".join(_Tags(paper.read_text(encoding="utf-8")).text.split())
     assert re.search(r"C \d+\.000°, \d+\.000°, \d+\.000°", text)
 
@@ -464,7 +465,7 @@ def test_the_sheet_has_title_library_coolant_and_what_compensation_means(tmp_pat
     coolants = [each["coolant"] for each in data["operations"]]
     assert coolants[0].startswith("through the tool (THRU, M26)")
     (note,) = [note for each in data["operations"] for note in each["notes"] if "radius compensation" in note]
-    assert note.startswith("radius compensation with the radius of the tool: the path is that of the tool's centre")
+    assert note.startswith("radius compensation: the path is that of the tool's centre, so enter the radius minus 5 mm")
     assert "Our &lt;hub&gt;" in page.read_text("utf-8")
 
 

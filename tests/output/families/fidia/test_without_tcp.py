@@ -12,7 +12,7 @@ from tests.support.matrix.pairs import FEW, Pair, check_proven, check_refused, p
 from tests.support.matrix.paths import CYCLES, off_the_pole, operation, reachable, square, words
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
-from trunnion.jobs.inputs.settings import apply_setup
+from trunnion.jobs.inputs.stated_setup import apply_setup
 from trunnion.machines import Machine, load_machine
 from trunnion.model.feed_path import FeedPath
 from trunnion.readers import run_program

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Severity
+from trunnion.jobs.post.operation_setups import setup_notices
 from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
@@ -20,7 +20,6 @@ from trunnion.model.run import NO_OFFSET, Run
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
-    CutterComp,
     CycleOn,
     Insert,
     Kind,
@@ -30,6 +29,7 @@ from trunnion.model.toolpath import (
     Stop,
     Tool,
 )
+from trunnion.output.compensation_entries import entries_of
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
@@ -128,7 +128,6 @@ def _operations(
     starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
     groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
     rows = zip(groups, verification.operations, usages, calls, strict=True)
-    names_radius = RADIUS_NUMBER_WORD in program.control.family.WORDS
     for number, (motions, own, usage, call) in enumerate(rows, 1):
         yield SheetOperation(
             number=number,
@@ -141,33 +140,28 @@ def _operations(
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),
             cuts=_with_asked_coolant(cut_ranges(verification.run, own), motions, program.control.coolant),
-            notes=tuple(
-                dict.fromkeys(_notes(motions, _own_register(program, motions, call), names_radius=names_radius))
-            ),
+            notes=tuple(dict.fromkeys((*_entries(program, motions, call), *_notes(motions)))),
         )
 
 
-def _own_register(program: Program, motions: Sequence[Motion], call: str) -> int:
-    """Return the register of the radius where CUTCOM names none, if it is not that of the tool's number; else 0."""
-    more = int(program.effective_setting("radius_offset", motions[0].operation) or 0)
-    return int(call) + more if more and call.isdigit() else 0
+def _entries(program: Program, motions: Sequence[Motion], call: str) -> Iterator[str]:
+    """Yield what the operator enters for radius compensation."""
+    for each in entries_of(program, motions, call):
+        larger = (
+            "" if each.holds == "radius" else ", by which the tool is larger than its size here (smaller: negative)"
+        )
+        yield (
+            f"radius compensation: the path is that of the tool's centre, so enter {each.value} {each.where}{larger}"
+        )
 
 
-def _notes(motions: Sequence[Motion], own_register: int, *, names_radius: bool) -> Iterator[str]:
-    """Yield what a setter must know of an operation: compensation with its register, pitches, and where it stops."""
+def _notes(motions: Sequence[Motion]) -> Iterator[str]:
+    """Yield what a setter must know of an operation: pitches, and where it stops."""
     rpm, sense = 0.0, Sense.CLW
     for event in (event for motion in motions for event in motion.operation.events):
         match event:
             case SpindleOn():
                 rpm, sense = event.rpm, event.sense
-            case CutterComp() if event.side != "OFF":
-                number = (event.register or own_register) if names_radius else 0
-                # Points of a CL file are those of the tool's centre; contours are refused.
-                yield (
-                    f"radius compensation with {f'D{number}' if number else 'the radius of the tool'}: the path is that"
-                    " of the tool's centre, so enter by how much the tool is larger than its size here (smaller:"
-                    " negative), and not its radius"
-                )
             case BlockSkip() if event.on:
                 yield "blocks that the operator may skip (/)"
             case Stop():
@@ -299,7 +293,6 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
 
 def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> Iterator[str]:
     """Yield what the proof cannot see."""
-    machine = program.machine
     offsets = ", ".join(_offsets(run)) or "the machine's zero"
     is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
     turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
@@ -307,7 +300,10 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     for notice in job.notices:
         if notice.startswith(PLACED_NOTICES):
             yield f"{notice}."
-    if machine.workpiece_zero is None:
+    single = list(setup_notices(job, result.toolpaths)) if job.setups or job.settings.get("delta_length") else []
+    for notice in dict.fromkeys(single):
+        yield f"Check that this is so: {notice}."
+    if run.machine.workpiece_zero is None:
         yield "Check the travel: nobody said where the workpiece zero is, and it is only proven to fit somewhere."
     else:
         yield "Check that the workpiece zero is where the sheet says: the limits of the linear axes were proven for it."

@@ -135,6 +135,8 @@ class CycleInterpreter(OffsetInterpreter):
         in_doubt = settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value
         if in_doubt and not words.takes_number(block):
             raise BlockError(Wording("NC217", "p_cycle_without_point_no"))
+        if not words.takes_number(block):
+            settings.check_dwell(block)
 
     def _hole(self) -> cycles.Hole:
         control, given = self.control, self._modal_words

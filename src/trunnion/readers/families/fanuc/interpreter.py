@@ -308,6 +308,10 @@ class FanucInterpreter(CycleInterpreter):
     def _may_be_left_on(self) -> list[str]:
         left = super()._may_be_left_on()
         left += ["G23"] if self._limits_off and self.control.cuts_behind(self._limits_set_at) else []
+        control = self.control
+        has_length = control.length_active and not control.tcp and control.cuts_behind(0)
+        left += ["G43"] if has_length and not control.sets_behind_use("length") else []
+        left += ["G68.2"] if control.tilted and not control.plane_of_pose else []
         left += ["G16"] if self._polar.on else []
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
         return left

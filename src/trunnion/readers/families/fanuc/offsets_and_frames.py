@@ -49,6 +49,7 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError(Wording("NC210", "time_dwell_p_control"))
         for letter in "XU":
             block.take(letter)
+        self.control.settings.check_dwell(block)
         milliseconds = block.take("P")
         if (milliseconds or 0.0) < 0.0 or (number is not None and number.value < 0.0):
             raise BlockError(Wording("NC215", "negative_dwell"))

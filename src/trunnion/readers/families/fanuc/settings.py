@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number, g_code_text
+from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
 
 #: Letters whose whole numbers count in least increments: lengths, and angles.
@@ -122,6 +124,12 @@ class Settings:
             else:
                 continue
             block.words[letter] = Number(number.value * factor)
+
+    def check_dwell(self, block: Block) -> None:
+        """Refuse P of a dwell with a point, where P counts milliseconds and takes none: the control stops there."""
+        dwell = block.words.get("P")
+        if not self.point_is_seconds and dwell is not None and dwell.point:
+            raise BlockError(Wording("NC215", "p_of_dwell_with_point"))
 
     def scale_dwell(self, block: Block) -> None:
         """Turn seconds of a dwell into milliseconds, where a point means seconds."""

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from trunnion.arrays import Codes, Floats
+from trunnion.compensation.styles import CIRCLES
 from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, Mount
 from trunnion.messages import Wording
@@ -28,6 +29,7 @@ class HeidenhainControl(LeadControl):
     pole                   pole of circles and polar coordinates, programmed position, (3,) mm
     """
 
+    compensation_style = CIRCLES
     doubtful_modes = frozenset({"M89", "M116", "M118", "M120", "feed"})
     reset_by = "whether the end of a program cancels it depends on the software of the control"
 

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.compensation.styles import OWN_ENTRY
 from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, forward
 from trunnion.messages import Wording, phrase
@@ -29,6 +30,9 @@ ORDER: Final = "XYZABC"
 _FINE: Final = 0.005
 _RATIO: Final = 0.001
 _COARSE: Final = 0.5
+
+#: Lengths that differ by no more than this are the same, mm.
+_SAME_LENGTH: Final = 1e-6
 
 #: Axes within this of zero, degrees, carry no length sideways; directions within this are parallel.
 _STILL: Final = 1e-9
@@ -71,6 +75,7 @@ class LinuxcncControl(Rs274Control):
     """
 
     # M2 and M30 set all others back: G54, G17, G90, G94, G40, G80 (docs/reader-linuxcnc.md).
+    compensation_style = OWN_ENTRY
     kept_modes = frozenset({"units", "centres", "length"})
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
@@ -81,6 +86,7 @@ class LinuxcncControl(Rs274Control):
         self.axis_offset = np.zeros(6)
         self.axis_offset_active = False
         self.axis_offset_known = False
+        self._replaced = ""
         unit, self.own_words, self.declared = settings_of(machine)
         self.count_in(unit)
 
@@ -139,6 +145,31 @@ class LinuxcncControl(Rs274Control):
         offset = self.offset_of(self.system).values
         total = offset + self.axis_offset if self.axis_offset_active else offset
         return {name: float(total[ORDER.index(name)]) for name in self.rotary_names if name in ORDER}
+
+    def replace_length(self, word: str, length: float) -> None:
+        """Take a length of the program in place of that of the tool, mm."""
+        stated, tool = self.stated_length(), self.tool_in_spindle
+        if stated is not None and abs(stated - length) > _SAME_LENGTH:
+            wording = Wording(
+                "NC361", "length_of_other_tool", word=word, counted=length, tool=tool or "0", length=stated
+            )
+            self.note(wording, Severity.ERROR)
+        else:
+            self.note(Wording("NC360", "length_replaced", word=word, value=length), Severity.WARNING)
+        self.set_length(True)
+        self.take_length(length, word)
+        self.modal.edge.set(self.row, 0)
+        self._replaced = word
+        self.add_event("delta", (f"{word} Z", length))
+
+    def take_back_lengths(self) -> None:
+        """Take back what G43.1 and G43.2 say of the length: G43 and G49 replace it."""
+        self.take_length(None)
+        if self._replaced:
+            self.add_event("delta", (f"{self._replaced} Z", 0.0))
+            self._replaced = ""
+        for letter in "XYZ":
+            self.add_tool_delta(f"G43.2 {letter}", 0.0)
 
     def judge_new_length(self, word: str) -> None:
         """Note another tool length where the kinematics turn it: LinuxCNC moves the slides there at once, unplanned."""

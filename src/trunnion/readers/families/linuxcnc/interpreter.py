@@ -175,6 +175,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         if number != control.modal.edge.current:
             control.judge_new_length(word.text)
         control.set_mode("length", word.text, control.length_active, word.sets)
+        control.take_back_lengths()
         control.set_length(word.sets)
         control.modal.edge.set(control.row, number)
 
@@ -183,10 +184,16 @@ class LinuxcncInterpreter(CycleInterpreter):
         self.control.relative_centres = word.sets
 
     def _added_length(self, word: Word, block: Block) -> None:
-        """G43.1 and G43.2: what they add to the length of the tool, which the path does not show."""
+        """G43.1 puts its Z in the place of the tool's length; G43.2, and X and Y of both, are beside the path."""
+        control = self.control
+        if word.text == "G43.1" and (length := block.take("Z")) is not None:
+            control.judge_new_length(word.text)
+            control.replace_length(word.text, length * control.length_unit)
         for letter in "XYZ":
             if value := block.take(letter):
-                self.control.add_tool_delta(f"{word.text} {letter}", value * self.control.length_unit)
+                name = f"{word.text} {letter}"
+                before = control.tool_delta(name) if word.text == "G43.2" else 0.0
+                control.add_tool_delta(name, before + value * control.length_unit)
         if block.take("H"):
             self._note(Wording("NC220", "length_of_other_tool", word=word.text), Severity.ERROR)
 

@@ -56,11 +56,12 @@ TABLE: Final = WordTable(
     ),
     Word("G49", "tool length off", act="length", sets=False, group="length"),
     Word(
-        "G43.1", "adds to the tool length: event `delta`, and a warning", effect=_NONE, act="added_length",
-        group="length", letters="XYZABCUVW", moves=False,
+        "G43.1", "`Z` in the place of the tool length; an error where another is stated", effect=_NONE,
+        act="added_length", group="length", letters="XYZABCUVW", moves=False,
     ),
     Word(
-        "G43.2", "the same; `H`: an error", effect=_NONE, act="added_length", group="length", letters="H", moves=False,
+        "G43.2", "adds to the tool length: event `delta`; `H`: an error", effect=_NONE, act="added_length",
+        group="length", letters="H", moves=False,
     ),
     Word("G52", "shift of all work offsets", act="axis_offset", group="non-modal", when=_BEHIND, moves=False),
     Word("G53", "positions of the machine, with `G90` and `G0` or `G1`", group="non-modal"),

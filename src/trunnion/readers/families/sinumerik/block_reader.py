@@ -10,23 +10,18 @@ from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.sinumerik.block import Block, Call
 from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
 from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
+from trunnion.readers.families.sinumerik.value_words import as_number, keep_value
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     ACTIVE,
     CORNER_FEEDS,
     CORNERS,
     FEED_GROUP,
-    FEED_RADIUS,
     FLOW,
     FRAMES,
-    GREATEST,
     NOT_SIMULATED,
     ORIENTATION,
-    ORIENTATION_TOLERANCE,
-    OTHER_FEEDS,
     POSITION_MODES,
-    TOLERANCES,
-    TOOL_DELTAS,
     TOOL_FRAMES,
     TYPES,
     WAITS,
@@ -96,7 +91,7 @@ class BlockReader:
         name = letter + extension
         value, mode = self._value(reader)
         if name in self._axes:
-            self._axis(block, name, _number(value), mode)
+            self._axis(block, name, as_number(value), mode)
         elif isinstance(value, str) and name != "T":
             raise ExpressionError(Wording("NC210", "takes_number_not_text", name=name))
         else:
@@ -169,7 +164,7 @@ class BlockReader:
         if letter == "T" and master_spindle:
             block.tool = value if isinstance(value, str) else f"{value:.10g}"
             return
-        number = _number(value)
+        number = as_number(value)
         match address:
             case (("M" | "S"), _) if not master_spindle:
                 # M2=3 and S2=100 address spindle 2; only the master spindle is simulated.
@@ -230,22 +225,22 @@ class BlockReader:
         reader.at += 1
         if name in self._axes and follows == "=":
             value, mode = self._value(reader)
-            self._axis(block, name, _number(value), mode)
+            self._axis(block, name, as_number(value), mode)
         elif name in _PARAMS and follows == "=":
             value, mode = self._value(reader)
-            block.params[name] = _number(value), mode
+            block.params[name] = as_number(value), mode
         elif name in CORNERS | CORNER_FEEDS and follows == "=":
             self._once(name, name in block.corner)
-            block.corner[name] = _size(_number(self._value(reader)[0]), name)
+            block.corner[name] = _size(as_number(self._value(reader)[0]), name)
         elif name == "PO" and follows == "[":
             self._polynomial(reader, block)
         elif name == "PL" and follows == "=":
-            block.interval = _number(self._value(reader)[0])
+            block.interval = as_number(self._value(reader)[0])
         elif name in WITHOUT_PATH_EFFECT_VALUES and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")
             if reader.accept("="):
-                self._without_path_effect(block, name, self._value(reader)[0])
+                keep_value(block, name, self._value(reader)[0])
         elif name == "SPOS" and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")
@@ -303,23 +298,7 @@ class BlockReader:
         values = reader.arguments()
         if axis in block.polynomials or not values or any(value is None for value in values):
             raise ExpressionError(Wording("NC210", "po_takes_end_coefficients_once", axis=axis))
-        block.polynomials[axis] = [_number(value) for value in values if value is not None]
-
-    @staticmethod
-    def _without_path_effect(block: Block, name: str, value: Value) -> None:
-        """Keep values of words that leave the programmed path as it is, and still move the tool elsewhere."""
-        if name in TOOL_DELTAS:
-            block.deltas[name] = _number(value)
-        elif name in TOLERANCES:
-            block.tolerances.append(_number(value))
-        elif name == FEED_RADIUS:
-            block.feed_radius = _number(value)
-        elif name in OTHER_FEEDS and value != OTHER_FEEDS[name]:
-            raise ExpressionError(Wording("NC220", "changes_feed_not_simulated", name=name))
-        elif name in GREATEST and not 0.0 <= _number(value) <= GREATEST[name]:
-            raise ExpressionError(Wording("NC215", "tolerance_too_great", name=name, most=GREATEST[name]))
-        elif name == ORIENTATION_TOLERANCE:
-            block.orientation_tolerance = _number(value)
+        block.polynomials[axis] = [as_number(value) for value in values if value is not None]
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""
@@ -373,12 +352,6 @@ def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
             raise ExpressionError(Wording("NC210", "closing_missing", closing=closing))
         depth += {opening: 1, closing: -1}.get(reader.peek(), 0)
         reader.at += 1
-
-
-def _number(value: Value) -> float:
-    if isinstance(value, str):
-        raise ExpressionError(Wording("NC210", "text_for_number", value=value[:40]))
-    return value
 
 
 def _size(number: float, name: str) -> float:

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.compensation.styles import CIRCLES, MEETINGS, UNKNOWN_STYLE
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.messages import Wording
@@ -48,6 +49,7 @@ class SinumerikControl(VirtualControl):
                 control decide where X and Y point, and whether it is a frame of its own, which TRANS does not delete.
     """
 
+    compensation_style = CIRCLES
     no_offset = NO_OFFSET
     knows_units = True
 
@@ -117,8 +119,17 @@ class SinumerikControl(VirtualControl):
     def modify_compensation(self, word: str) -> None:
         """Execute a word that counts within radius compensation."""
         self._compensation_modes[WITHIN_COMPENSATION[word][0]] = word
+        if word in ("NORM", "KONT", "G450", "G451", "DISC"):
+            self._set_style()
         if self.modal.compensation.current:
             self._report_compensation_mode(word)
+
+    def _set_style(self) -> None:
+        """Note how corners are rounded; KONT, which may go round the first point, and DISC are not simulated."""
+        modes = self._compensation_modes
+        style = MEETINGS if modes.get("outer") == "G451" else CIRCLES
+        known = modes.get("approach") != "KONT" and modes.get("outer") != "DISC"
+        self.modal.compensation_style.set(self.row, style if known else UNKNOWN_STYLE)
 
     def _report_compensation_mode(self, word: str) -> None:
         if effect := WITHIN_COMPENSATION[word][1]:

@@ -1,0 +1,117 @@
+"""Where the part sits and how long the tools are, as settings and arguments state it.
+
+In:     the settings ``zero`` and ``tool_length``: one value for all, or one for each work offset and each tool.
+Out:    the machine as it is set up.
+"""
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Final, TypeAlias
+
+from trunnion import readers
+from trunnion.errors import InputError, setting_problem
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
+from trunnion.jobs.inputs.settings import as_argument, as_texts
+from trunnion.machines import Machine
+from trunnion.machines.machine import Vector, tool_key
+from trunnion.messages import Wording
+
+#: A workpiece zero: for all work offsets, or by their names.
+ZeroLike: TypeAlias = str | Iterable[float] | Mapping[str, Iterable[float]]
+
+#: A length: of all tools, or by their numbers or names.
+LengthLike: TypeAlias = str | float | Mapping[str, float]
+
+#: The farthest that the workpiece zero may be from the origin of the machine, mm.
+_FARTHEST_ZERO: Final = 1e5
+
+#: Where a value begins that has a name: ``G54=``, ``G54.1 P2=``, ``3=``.
+_NAMED: Final = re.compile(r"(?:^|,)([^=,]+)=")
+
+
+def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
+    """Return the machine with the workpiece zeros and the tool lengths of the settings."""
+    if "zero" in settings:
+        every, single = _divided(settings["zero"])
+        zeros = {_work_offset(name, machine, settings["zero"]): _point(text, settings) for name, text in single}
+        machine = replace(machine, zeros=zeros, workpiece_zero=_point(every, settings) if every else None)
+    if "tool_length" in settings:
+        every, single = _divided(settings["tool_length"])
+        lengths = {tool_key(name): _length(text, settings) for name, text in single}
+        machine = replace(machine, tool_lengths=lengths, tool_length=_length(every, settings) if every else None)
+    return machine
+
+
+def set_up_machine(machine: Machine, zero: ZeroLike | None, tool_length: LengthLike | None) -> Machine:
+    """Return the machine with its workpiece zeros and its tool lengths, mm, where they are given.
+
+    Raises
+    ------
+    InputError
+        Of the argument, if it cannot be.
+    """
+    for name, value in (("zero", zero), ("tool_length", tool_length)):
+        try:
+            machine = apply_setup(machine, as_texts({name: value}))
+        except InputError as error:
+            raise InputError([as_argument(problem, name) for problem in error.problems]) from None
+    return machine
+
+
+def set_up_for_all(machine: Machine, zero: ZeroLike | None, tool_length: LengthLike | None) -> Machine:
+    """Return the machine with one zero and one length, for work in which no tool and no work offset is called.
+
+    Raises ``InputError`` of the argument if it has several, or cannot be.
+    """
+    found = set_up_machine(machine, zero, tool_length)
+    for name, single in (("zero", found.zeros), ("tool_length", found.tool_lengths)):
+        if single:
+            raise InputError(as_argument(setting_problem(name, Wording("ARG220", "one_value_for_all")), name))
+    return found
+
+
+def _divided(text: str) -> tuple[str, list[tuple[str, str]]]:
+    """Return the value for all, empty if there is none, and the values that have a name."""
+    parts = _NAMED.split(text)
+    return parts[0].strip(), [
+        (name.strip(), value.strip()) for name, value in zip(parts[1::2], parts[2::2], strict=True)
+    ]
+
+
+def _work_offset(name: str, machine: Machine, text: str) -> int:
+    """Return the value in ``Run.work_offset`` of a work offset as programs for the machine write it."""
+    offsets = readers.reader_of(machine).work_offsets if readers.can_read(machine) else None
+    value = None if offsets is None else offsets.value_of(" ".join(name.upper().split()))
+    if value is None:
+        wording = Wording(
+            "ARG220", "no_work_offset", value=repr(name), form="a zero for all" if offsets is None else offsets.form
+        )
+        raise InputError(setting_problem("zero", wording))
+    return value
+
+
+def _length(text: str, settings: Mapping[str, str]) -> float:
+    """Return a length in mm."""
+    setting = RUN_SETTINGS["tool_length"]
+    assert setting.bounds is not None
+    low, high = setting.bounds
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high:
+        raise InputError(setting_problem("tool_length", setting.fault("tool_length", settings["tool_length"])))
+    return value
+
+
+def _point(text: str, settings: Mapping[str, str]) -> Vector:
+    """Return X, Y and Z in mm."""
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = z = math.nan
+    if not max(abs(x), abs(y), abs(z)) <= _FARTHEST_ZERO or math.isnan(x + y + z):
+        raise InputError(setting_problem("zero", RUN_SETTINGS["zero"].fault("zero", settings["zero"])))
+    return x, y, z

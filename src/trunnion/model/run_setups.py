@@ -1,0 +1,58 @@
+"""Which tool length and which workpiece zero are in force in the rows of a run.
+
+Only where tools have lengths, or work offsets have zeros, of their own: most runs have one machine throughout.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from trunnion.arrays import Ints
+from trunnion.machines import Machine
+from trunnion.model.columns import StepColumn
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Setup:
+    """A machine with the length of one tool and the zero of one work offset, as they are in force in some rows.
+
+    tool           in the spindle, as the program calls it; empty: none has been called
+    work_offset    as in ``Run.work_offset``
+    length_source  a word of the program, a library or a CL file that gives the length; empty: it is stated
+    """
+
+    machine: Machine
+    tool: str
+    work_offset: int
+    length_source: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RunSetups:
+    """The set-ups of n rows; ``number`` (n,) has the set-up of each."""
+
+    each: tuple[Setup, ...]
+    number: StepColumn
+
+    def at(self, row: int) -> Setup:
+        """Return that of a row; -1: that of the first."""
+        return self.each[int(self.number[max(row, 0)])] if len(self.number) else self.each[0]
+
+    def by_machine(self, rows: Ints) -> Iterator[tuple[Machine, Ints]]:
+        """Yield the machines of rows, in any order, each with the indices of its rows."""
+        numbers = self.number.at(np.maximum(rows, 0))
+        for number in np.unique(numbers).tolist():
+            yield self.each[number].machine, np.flatnonzero(numbers == number)
+
+    def divided(self, first: int, end: int) -> list[tuple[int, int]]:
+        """Return the bounds of consecutive rows, divided where another machine comes into force."""
+        changes = [row for row in self.number.rows.tolist() if first < row < end]
+        changes = [row for row in changes if self.at(row - 1).machine is not self.at(row).machine]
+        return list(pairwise([first, *changes, end]))
+
+
+def known_values(setup: Setup) -> int:
+    """How many of its values are stated."""
+    return (setup.machine.workpiece_zero is not None) + (setup.machine.tool_length is not None)

@@ -1,0 +1,97 @@
+"""What the operator enters for radius compensation: said in the head of the program, on the setup sheet and in the log.
+
+Points of CL files are those of the tool's centre; contours are refused.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, RADIUS_REGISTER_SETTING
+from trunnion.model.motion import Motion
+from trunnion.model.toolpath import CutterComp
+from trunnion.output.program import Program
+
+#: The setting for what a tool call adds to the radius, on controls that have a word for it.
+_ADDED: str = "delta_radius"
+
+
+@dataclass(frozen=True, slots=True)
+class CompensationEntry:
+    """What an operation compensates by.
+
+    call      the tool as the program calls it
+    register  D; 0: the radius in the tool table
+    radius    of the tool in the CL file, mm; 0: not known
+    holds     what the register holds: ``difference``, ``radius`` or ``unknown``
+    """
+
+    call: str
+    register: int
+    radius: float
+    holds: str
+
+    @property
+    def where(self) -> str:
+        """Where it is entered."""
+        return f"in D{self.register}" if self.register else "in the tool table"
+
+    @property
+    def value(self) -> str:
+        """What is entered."""
+        if self.holds == "radius":
+            return "the radius"
+        return f"the radius minus {self.radius:.10g} mm" if self.radius else "the radius minus that of the CL file"
+
+
+def compensation_entries(program: Program, calls: Sequence[str]) -> Iterator[CompensationEntry]:
+    """Yield what each operation with CUTCOM compensates by; ``calls`` are the tools of all operations."""
+    starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
+    groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
+    for motions, call in zip(groups, calls, strict=True):
+        yield from entries_of(program, motions, call)
+
+
+def entries_of(program: Program, motions: Sequence[Motion], call: str) -> Iterator[CompensationEntry]:
+    """Yield what an operation compensates by, each entry once."""
+    operation = motions[0].operation
+    names_register = RADIUS_NUMBER_WORD in program.control.family.WORDS
+    more = int(program.effective_setting("radius_offset", operation) or 0)
+    own = int(call) + more if call.isdigit() else 0
+    holds = program.effective_setting(RADIUS_REGISTER_SETTING, operation) or "unknown"
+    registers = dict.fromkeys(
+        (event.register or own) if names_register else 0
+        for motion in motions
+        for event in motion.operation.events
+        if isinstance(event, CutterComp) and event.side != "OFF"
+    )
+    for register in registers:
+        yield CompensationEntry(call, register, 0.5 * operation.tool.diameter, holds)
+
+
+def head_texts(entries: Iterator[CompensationEntry]) -> list[str]:
+    """Return what the head of a program says."""
+    texts = [f"radius compensation of tool {each.call}: enter {each.value} {each.where}" for each in entries]
+    return list(dict.fromkeys(texts))
+
+
+def with_radius_taken_off(program: Program) -> Program:
+    """Return a program whose tool calls take the radius off the one in the tool table, where that is what it holds.
+
+    That is so on controls with a word for it (DR), for the tools of operations with CUTCOM.
+    """
+    if _ADDED not in program.control.settings:
+        return program
+    operations = [motion.operation for motion in program.motions]
+    compensated = {
+        each.tool.name
+        for each in operations
+        if any(isinstance(event, CutterComp) and event.side != "OFF" for event in each.events)
+    }
+    own: dict[str, Mapping[str, str]] = {**program.own_settings}
+    for each in operations:
+        holds = program.effective_setting(RADIUS_REGISTER_SETTING, each)
+        if each.tool.name in compensated and each.tool.diameter and holds == "radius":
+            given = program.effective_setting(_ADDED, each)
+            own[each.name] = {_ADDED: given or f"{-0.5 * each.tool.diameter:.4f}", **own.get(each.name, {})}
+    return replace(program, own_settings=own)

@@ -1,0 +1,68 @@
+"""Rows at the workpiece of which the zero of the work offset, or the length of the tool, is not stated.
+
+In:     a run whose work offsets have zeros, or whose tools have lengths, of their own.
+Out:    its rows without one, and which they are without. No other offset's or tool's value stands in for it.
+"""
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Ints
+from trunnion.messages import Wording, phrase
+from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run_setups import Setup, known_values
+from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, names_no_axis
+
+_SLIDE_WORDS: Final = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
+
+
+def offsets_without_zero(run: Run) -> tuple[str, ...]:
+    """Return the work offsets without a zero in which the program moves slides, if others have one."""
+    used = [setup for setup, _ in _used(run)]
+    if run.setups is None or all(setup.machine.workpiece_zero is None for setup in used):
+        return ()
+    without = [setup.work_offset for setup in used if setup.machine.workpiece_zero is None]
+    return tuple(dict.fromkeys(_offset_name(run, offset) for offset in without))
+
+
+def tools_without_length(run: Run) -> tuple[str, ...]:
+    """Return the tools without a length with which the program moves slides at the workpiece, if others have one."""
+    used = [setup for setup, _ in _used(run)]
+    if run.setups is None or all(setup.machine.tool_length is None for setup in used):
+        return ()
+    return tuple(dict.fromkeys(_tool_name(setup.tool) for setup in used if setup.machine.tool_length is None))
+
+
+def rows_without_values(run: Run) -> Iterator[tuple[int, Wording]]:
+    """Yield the rows of which less is stated than of others, each with what is missing."""
+    used = list(_used(run))
+    most = max((known_values(setup) for setup, _ in used), default=0)
+    for setup, rows in used:
+        if known_values(setup) < most:
+            if setup.machine.workpiece_zero is None:
+                why = phrase("no_zero_of", names=(_offset_name(run, setup.work_offset),))
+            else:
+                why = phrase("no_length_of", names=(_tool_name(setup.tool),))
+            yield from ((row, why) for row in rows.tolist())
+
+
+def _used(run: Run) -> Iterator[tuple[Setup, Ints]]:
+    """Yield the set-ups in which slides move at the workpiece, with their rows."""
+    if run.setups is None:
+        return
+    named = (run.programmed & _SLIDE_WORDS) != 0
+    moves = named | names_no_axis(run.programmed) | (run.tcp & ((run.programmed & int(ROTARY_WORDS)) != 0))
+    rows = np.flatnonzero(moves & ~run.machine_frame)
+    numbers = run.setups.number.at(rows)
+    for number in np.unique(numbers).tolist():
+        yield run.setups.each[number], rows[numbers == number]
+
+
+def _offset_name(run: Run, offset: int) -> str:
+    return run.work_offset_name(offset) if offset else "no work offset"
+
+
+def _tool_name(tool: str) -> str:
+    return f"tool {tool}" if tool else "no tool"
