@@ -294,3 +294,11 @@ def test_the_earlier_name_of_the_dialect_is_understood_with_a_warning(tmp_path: 
     assert main([*words, str(tmp_path / "b.ncl"), "--to-dialect", "ncl", "--dialect", "clsf", "--units", "mm"]) == 0
     assert "ARG190" not in capfd.readouterr().err
     assert (tmp_path / "a.ncl").read_bytes() == (tmp_path / "b.ncl").read_bytes()
+
+
+def test_a_tolerance_that_follows_from_the_operation_outlives_a_default_of_the_other_machine(tmp_path: Path) -> None:
+    first, second = tmp_path / "first.mpf", tmp_path / "second.mpf"
+    trunnion.post(YL569 / "1_contour_rough.cls", machine="generic_head_head_ca", output=first)
+    trunnion.convert(first, machine="generic_head_head_ca", to_machine="yl569", output=second)
+    called = [re.findall(r"CYCLE832\(([.\d]+),", file.read_text(encoding="utf-8")) for file in (first, second)]
+    assert called == [["0.06"], ["0.06"]], "the definition of the yl569 has 0.01"
