@@ -78,15 +78,19 @@ def is_of_compensation(wording: Wording) -> bool:
     return wording.variant in _FINDINGS and wording.parameter("word") in _WORDS
 
 
-def offset_of(run: Run, stretch: Stretch, holds: RegisterValue, radius_of: RadiusOf) -> float | None:
-    """Return how far the control goes beside the programmed path, mm; None where nobody knows it."""
-    row = stretch.first
-    added = {
-        sum(each.value for each in tool_additions(run) if each.name in ADDED_RADII and each.first <= at < each.end)
-        for at in (row, stretch.end - 1)
-    }
-    base = _base(run, row, holds, radius_of)
-    return None if base is None or len(added) > 1 else base + added.pop()
+def offsets_of(run: Run, holds: RegisterValue, radius_of: RadiusOf) -> tuple[tuple[Stretch, float | None], ...]:
+    """Return how far the control goes beside the programmed path of each stretch, mm; None where nobody knows it."""
+    stretches = list(compensated_stretches(run))
+    additions = [each for each in tool_additions(run) if each.name in ADDED_RADII] if stretches else []
+    found = list[tuple[Stretch, float | None]]()
+    for stretch in stretches:
+        added = {
+            sum(each.value for each in additions if each.first <= row < each.end)
+            for row in (stretch.first, stretch.end - 1)
+        }
+        base = _base(run, stretch.first, holds, radius_of)
+        found.append((stretch, None if base is None or len(added) > 1 else base + added.pop()))
+    return tuple(found)
 
 
 def _base(run: Run, row: int, holds: RegisterValue, radius_of: RadiusOf) -> float | None:

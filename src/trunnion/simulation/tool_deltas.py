@@ -18,9 +18,8 @@ from trunnion.compensation.offsets import Fault
 from trunnion.compensation.stretches import (
     RegisterValue,
     Stretch,
-    compensated_stretches,
     is_of_compensation,
-    offset_of,
+    offsets_of,
 )
 from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
@@ -47,9 +46,7 @@ def as_the_tool_goes(run: Run, shapes: Mapping[str, ToolShape], holds: RegisterV
 
     holds  what the registers of the radius hold
     """
-    found = list[tuple[Stretch, float | None]]()
-    for stretch in compensated_stretches(run):
-        found.append((stretch, offset_of(run, stretch, holds, lambda row: _radius(run, shapes, row))))
+    found = offsets_of(run, holds, lambda row: _radius(run, shapes, row))
     known = [(stretch, offset) for stretch, offset in found if offset is not None]
     centre = run_of_centre(run, known)
     problems = list(_compensation_problems(run, found, centre.faults))

@@ -99,7 +99,8 @@ def _beside(context: ComparedContext, driven: DrivenPath) -> Iterator[Place]:
                 worst = int(off.argmax())
                 text = (
                     f"the control compensates by {offset:.3f} mm, and the points of the CL file are those of the tool's"
-                    f" centre: it goes up to {off[worst]:.3f} mm beside them"
+                    f" centre: it goes up to {off[worst]:.3f} mm beside them; the register must hold the difference"
+                    " (radius_register=difference)"
                 )
                 row = int(nc[far[0]])
                 yield context.place_with_cl(row, float(off[worst]), text, int(cl[far[0]]))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from trunnion.compensation.centre_runs import CentreRun, run_of_centre
 from trunnion.compensation.offsets import Fault
-from trunnion.compensation.stretches import RegisterValue, Stretch, compensated_stretches, offset_of
+from trunnion.compensation.stretches import RegisterValue, Stretch, offsets_of
 from trunnion.messages import Wording, phrase
 from trunnion.verification.context import ComparedContext, Context
 
@@ -34,10 +34,7 @@ class DrivenPath:
 def driven_path(context: Context) -> DrivenPath:
     """Return what the control drives; the radius of a tool is that of its CL file."""
     run, holds = context.run, context.settings.register_holds
-    found = tuple(
-        (stretch, offset_of(run, stretch, holds, lambda row: _cl_radius(context, row)))
-        for stretch in compensated_stretches(run)
-    )
+    found = offsets_of(run, holds, lambda row: _cl_radius(context, row))
     return DrivenPath(found, run_of_centre(run, [(stretch, offset) for stretch, offset in found if offset is not None]))
 
 
