@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.locations import HEADS, YL569
 from tests.support.program_text import motion_part
 from tests.support.proof import unproven
-import trunnion
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.controls import load_control
