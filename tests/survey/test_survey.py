@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Self
@@ -13,13 +14,14 @@ from tests.support.locations import TESTS, YL569
 from trunnion.batch.worker_task import Outcome, Status
 from trunnion.batch.workers import timed_out
 from trunnion.cli import main
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES
 from trunnion.jobs.inputs.reading import as_machine
+from trunnion.messages import foreign
 from trunnion.readers.program.settings import family_of
 from trunnion.survey import taking
-from trunnion.survey.found_files import FileKind, found_files
-from trunnion.survey.result import Became, Survey
+from trunnion.survey.found_files import FileKind, FoundFile, found_files
+from trunnion.survey.result import Became, Survey, SurveyedMachine, surveyed, trying
 from trunnion.survey.taking import MACHINES, take_survey
 from trunnion.survey.trying import Step, Trial, try_steps
 
@@ -169,6 +171,12 @@ def test_later_steps_are_of_the_program_that_was_posted(pile: Path) -> None:
     assert (outcome.status, outcome.figures["step"], outcome.files) == (Status.PASSED, "convert", {})
 
 
+def test_the_program_that_was_posted_is_named_by_its_cl_file(tmp_path: Path) -> None:
+    shutil.copy(TESTS / "golden" / "hs664rt" / "radial_holes.cls", tmp_path / "a.cls")
+    outcome = try_steps(Trial("a.cls", tmp_path / "a.cls", "hs664rt", (Step.POST, Step.CONVERT)))
+    assert (outcome.figures["step"], outcome.problems[0].file) == ("convert", "a.cls (its program)")
+
+
 def test_a_program_of_no_certain_control_counts_where_it_reads_best(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -177,6 +185,23 @@ def test_a_program_of_no_certain_control_counts_where_it_reads_best(
     (file,) = take_survey(tmp_path, machine=["dmu65", "matsuura_mx330"]).files
     assert (file.looks, [each.machine for each in file.tries]) == ("", ["matsuura_mx330"])
     assert file.became in (Became.READ, Became.READ_WARNED)
+
+
+def test_programs_are_read_for_all_shipped_machines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    (tmp_path / "turned.h").write_bytes(KLARTEXT.replace(b"Z+50", b"Z+50 B+0"))
+    found = take_survey(tmp_path)
+    assert {each.machine for each in found.machines if each.posts} == set(MACHINES)
+    assert [each.machine for each in found.files[0].tries] == ["mikron_600u"]  # which has a B, unlike dmu65
+
+
+def test_what_only_follows_from_other_errors_blocks_nothing() -> None:
+    problems = [Problem("a.cls", line, foreign("x", "y", code)) for line, code in ((3, "PLN120"), (4, "PLN160"))]
+    outcome = Outcome(Status.FAILED, (*problems, Problem("a.cls", 0, foreign("z", "", "CTL940"))))
+    tried = trying(SurveyedMachine("m", "c"), FileKind.CL, outcome)
+    file = surveyed(FoundFile("a.cls", Path("a.cls"), FileKind.CL, "NX CLSF"), [tried])
+    (blocker,) = Survey("f", (), 1.0, {}, (file,)).blockers
+    assert (blocker.code, blocker.opens, blocker.first.line) == ("PLN120", 1, 3)
 
 
 def test_what_no_reader_understands_is_not_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,10 +218,30 @@ def test_what_cannot_be_opened_is_not_tried(tmp_path: Path) -> None:
     (tmp_path / "bomb.zip").write_bytes(b"PK\x03\x04" + b"x" * 100)
     found = {each.name: (each.kind, each.looks, each.is_tried) for each in found_files(tmp_path)}
     assert found == {
-        "bomb.zip": (FileKind.OTHER, "an archive of others", True),
+        "bomb.zip": (FileKind.OTHER, "an archive: cannot be unpacked: File is not a zip file", True),
         "huge.cls": (FileKind.OTHER, "larger than 200 MB", False),
         "pipe.nc": (FileKind.OTHER, "a device or a pipe", False),
     }
+
+
+def test_a_folder_that_cannot_be_read_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "locked").mkdir()
+    scandir = os.scandir
+
+    def refuse(path: str) -> Any:
+        if str(path).endswith("locked"):
+            raise PermissionError(13, "Permission denied", str(path))
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    (found,) = found_files(tmp_path)
+    assert (found.name, found.looks, found.is_tried) == ("locked", "cannot be read: Permission denied", False)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names are texts there")
+def test_a_name_that_is_no_text_has_question_marks(tmp_path: Path) -> None:
+    Path(os.fsdecode(os.fsencode(tmp_path) + b"/bad\xff.nc")).write_bytes(b"")
+    assert [each.name for each in found_files(tmp_path)] == ["bad?.nc"]
 
 
 def test_there_is_a_machine_for_each_reader() -> None:
