@@ -164,11 +164,13 @@ class CutterComp(Event):
     side      LEFT, RIGHT, ON or OFF
     plane     XYPLAN, ZXPLAN, YZPLAN or empty
     register  0 if none is given
+    contour   the points behind it are those of the contour, and the control adds the radius; else of the tool's centre
     """
 
     side: str
     plane: str = ""
     register: int = 0
+    contour: bool = False
 
 
 @dataclass(frozen=True, slots=True)
