@@ -81,7 +81,7 @@ def edits_of(base: Base, arguments: argparse.Namespace) -> Iterator[tuple[bool, 
     is_cut = arguments.judge == "simulate"
     harms = removal_edits(base) if is_cut else harmful(base.text, base.family)
     # The proof refuses points that nothing asks for.
-    left_out = {"a line in two"} if arguments.judge == "proof" else set()
+    left_out = {"a line in two"} if arguments.judge in ("proof", "convert") else set()
     yield from ((True, edit) for edit in chosen(harms, arguments.each, seed))
     sounds = (edit for edit in sound(base.text, base.family) if edit.kind not in left_out)
     yield from ((False, edit) for edit in chosen(sounds, arguments.each, seed))

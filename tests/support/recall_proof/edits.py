@@ -211,7 +211,7 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 "a rotation in the cut": bool({"X", "Y"} & values.keys()),
                 "another feed in the cut": not re.search(r"\bF\d", block.code),
                 "compensation in the cut": not is_arc and not compensated,
-                "an offset over another": abs(block.before.get("X", 9e9)) > 0.01,
+                "an offset over another": "X" in values and abs(block.before.get("X", 9e9)) > 0.01,
                 "a shift in the cut": "X" in values,
                 "the spindle stops in the cut": block.spindle,
                 "the spindle turns back in the cut": block.spindle,

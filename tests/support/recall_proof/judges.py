@@ -1,7 +1,7 @@
 """What Trunnion says of an edited program: by its proof, by a comparison with the sound one, by a conversion."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 import trunnion
 from tests.support.recall_proof.bases import Base
 from trunnion.errors import Problem
+from trunnion.jobs.observer import Observer
 
 
 @dataclass(frozen=True)
@@ -19,17 +20,15 @@ class Told:
     by: str
 
 
-@dataclass
-class _Warnings:
+class _Warnings(Observer):
     """What a conversion warns of."""
 
-    codes: list[str] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.codes: list[str] = []
 
-    def problems(self, problems: Any) -> None:
-        self.codes += [str(problem.code) for problem in problems if isinstance(problem, Problem)]
-
-    def __getattr__(self, _name: str) -> Callable[..., None]:
-        return lambda *_given, **_named: None
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """Keep the codes of problems."""
+        self.codes += [str(problem.code) for problem in problems]
 
 
 def proof(base: Base, program: Path) -> Told:
@@ -82,7 +81,7 @@ def _converted(base: Base, program: Path) -> tuple[str, list[str], dict[str, Any
     warned = _Warnings()
     stated = {key: value for key, value in base.stated.items() if key in ("zero", "tool_length")}
     try:
-        found = trunnion.convert(program, machine=base.machine, to_cl=True, observer=warned, **stated)  # type: ignore[arg-type]
+        found = trunnion.convert(program, machine=base.machine, to_cl=True, observer=warned, **stated)
     except trunnion.TrunnionError as refused:
         return type(refused).__name__
     return found.text or "", sorted(warned.codes), dict(found.settings)
