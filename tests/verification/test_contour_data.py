@@ -62,9 +62,7 @@ def test_the_register_must_hold_the_radius(machine: str, programs: dict[tuple[st
 
 
 @pytest.mark.parametrize("machine", [machine for machine in MACHINES if machine != UNKNOWN])
-def test_another_side_and_a_lost_end_fail(
-    machine: str, programs: dict[tuple[str, Path], Path], tmp_path: Path
-) -> None:
+def test_another_side_and_a_lost_end_fail(machine: str, programs: dict[tuple[str, Path], Path], tmp_path: Path) -> None:
     text = programs[machine, BOSS].read_text()
     on, other, off = (" RL", " RR", " R0") if machine == "dmu65" else ("G41", "G42", "G40")
     head, begin, rest = text.partition(on)
@@ -76,7 +74,7 @@ def test_another_side_and_a_lost_end_fail(
 
 
 def test_the_centre_goes_along_the_centre_line(programs: dict[tuple[str, Path], Path]) -> None:
-    """The contour is 92 by 60 mm, its centre line 80 by 48 mm; travel follows it whatever is stated but a difference."""
+    """The contour is 92 by 60 mm, its centre line 80 by 48 mm; travel follows it but where a difference is stated."""
     program = programs["yl569", POCKET]
     for holds, x, y in (("radius", 80, 48), ("unknown", 80, 48), ("difference", 92, 60)):
         found = trunnion.verify(program, machine="yl569", cl=POCKET, radius_register=holds)  # type: ignore[arg-type]
@@ -87,8 +85,8 @@ def test_the_centre_goes_along_the_centre_line(programs: dict[tuple[str, Path], 
 
 def test_a_simulation_cuts_the_contour(programs: dict[tuple[str, Path], Path]) -> None:
     found = trunnion.simulate(
-        programs["yl569", POCKET], machine="yl569", stock="box:120,80,10,-60,-40,-9", radius_register="radius", cell=2.0,
-        tools=["1=flat:12,length=75,flutes=30"],
+        programs["yl569", POCKET], machine="yl569", stock="box:120,80,10,-60,-40,-9", radius_register="radius",
+        cell=2.0, tools=["1=flat:12,length=75,flutes=30"],
     )  # fmt: skip
     walls = [end for tile in found.simulation.stock.tiles if tile.bundle == 0 for end in tile.ends.ravel().tolist()]
     assert max(end for end in walls if end < 55.0) == pytest.approx(46.0, abs=0.2)
