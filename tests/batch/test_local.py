@@ -97,7 +97,7 @@ def test_workers_that_cannot_work_end_the_batch() -> None:
     task = Task("", Action.POST, {}, "files/a.cls", {"files/a.cls": b""}, {}, "a.mpf", "")
     record = Record("a.mpf", "a.cls", "", "post", "", Status.BROKEN)
     with (
-        LocalWorkers(1, _cannot_work) as workers,  # type: ignore[arg-type]
+        LocalWorkers[Assignment, Task](1, _cannot_work) as workers,  # type: ignore[arg-type]
         pytest.raises(InputError, match=r"another version.*BAT210"),
     ):
         list(workers.run([(Assignment(0, record), task)]))

@@ -19,7 +19,7 @@ from trunnion.batch.stores import FolderStore
 from trunnion.batch.summary import write_summary
 from trunnion.batch.worker_task import Outcome, Status, Task
 from trunnion.batch.workers import Assignment
-from trunnion.cli.batch import result_lines
+from trunnion.cli.many_files.batch import result_lines
 
 HUB = YL569 / "2_hub_rough.cls"
 

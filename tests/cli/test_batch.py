@@ -15,7 +15,7 @@ from tests.support.locations import ROOT, YL569
 from trunnion.batch.stores import FolderStore
 from trunnion.batch.worker_task import Outcome, Task
 from trunnion.cli import main
-from trunnion.cli.batch import result_lines
+from trunnion.cli.many_files.batch import result_lines
 from trunnion.cli.progress import progress_lines
 
 CL = (YL569 / "2_hub_rough.cls").read_bytes()

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.locations import HEADS, YL569
 from tests.support.program_text import motion_part
 from tests.support.proof import unproven
@@ -86,6 +87,9 @@ def test_on_another_machine_the_tool_does_the_same(name: str, key: str, tmp_path
     machines = ["--machine", "yl569", "--to-machine", key]
     assert main(["convert", str(program), *machines, "--output", str(target)]) == 0
     said = unproven(capfd.readouterr().err)
+    if name not in HEADS:  # its typed foot leaves the coolant to M30, and the new program has M9
+        program = tmp_path / "with_coolant_off.mpf"
+        program.write_bytes((YL569 / f"{name}.expected.mpf").read_bytes().replace(b"N1290 M5", b"N1290 M5 M9"))
     assert main(["diff", str(program), str(target), *machines, "--tolerance", "0.00002"]) == 0
     assert capfd.readouterr().out.startswith("same: ")
     text = target.read_text(encoding="utf-8")
@@ -294,3 +298,11 @@ def test_the_earlier_name_of_the_dialect_is_understood_with_a_warning(tmp_path: 
     assert main([*words, str(tmp_path / "b.ncl"), "--to-dialect", "ncl", "--dialect", "clsf", "--units", "mm"]) == 0
     assert "ARG190" not in capfd.readouterr().err
     assert (tmp_path / "a.ncl").read_bytes() == (tmp_path / "b.ncl").read_bytes()
+
+
+def test_a_tolerance_that_follows_from_the_operation_outlives_a_default_of_the_other_machine(tmp_path: Path) -> None:
+    first, second = tmp_path / "first.mpf", tmp_path / "second.mpf"
+    trunnion.post(YL569 / "1_contour_rough.cls", machine="generic_head_head_ca", output=first)
+    trunnion.convert(first, machine="generic_head_head_ca", to_machine="yl569", output=second)
+    called = [re.findall(r"CYCLE832\(([.\d]+),", file.read_text(encoding="utf-8")) for file in (first, second)]
+    assert called == [["0.06"], ["0.06"]], "the definition of the yl569 has 0.01"

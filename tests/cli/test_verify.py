@@ -237,7 +237,7 @@ def test_a_program_that_lacks_a_block_is_refused_with_its_place(
     )
     assert post(CL, "--machine", "yl569", "--output", "-") == 1
     assert capfd.readouterr().out == ""
-    assert post(CL, "--machine", "yl569", "--output", target, "--force") == 1
+    assert post(CL, "--machine", "yl569", "--output", target, "--force", "--edited", "replace") == 1
     assert "order" not in target.read_text(encoding="utf-8")
     assert target.read_text(encoding="utf-8").startswith(
         "N10 ;MUST NOT RUN AS IT IS, written by --force: every CL point has its block, every block its point: N610"

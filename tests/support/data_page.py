@@ -20,6 +20,7 @@ from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.placing.placement import Placement
 from trunnion.reporting.setup_sheet import SetupSheet
 from trunnion.results import KeyFigure, figures_of
+from trunnion.survey.result import Survey
 from trunnion.verification.comparison.result import Comparison
 
 PAGE: Final = DOCS / "data.md"
@@ -38,6 +39,7 @@ DOCUMENTS: Final = (
     ("trunnion convert --json", "", ConvertResult),
     ("trunnion diff --json", "", Comparison),
     ("trunnion verify MANIFEST --json", "", ManifestCheck),
+    ("trunnion survey --json", "", Survey),
     ("--sheet FILE.json", "", SetupSheet),
 )
 

@@ -77,7 +77,7 @@ CONDITIONS = [
     (YL569 / "1_contour_rough.cls", "yl569", "N310 M6", "N305 M3 S500\nN310 M6", "tool change while the spindle"),
     (YL569 / "3_blade_finish.cls", "yl569", "D1 M3\n", "D1 M4 M3\n", "one block turns the spindle"),
     (CASES / "contour.cls", "matsuura_mx330", "N280 M3\nN290 M8\n", "N280 M3\n", "coolant flood after a stop"),
-    (CASES / "tilted.cls", "generic_head_table_bc", "N640 CYCLE800()\n", "", "while a tilted plane is on"),
+    (CASES / "tilted.cls", "generic_head_table_bc", "N620 CYCLE800()\n", "", "while a tilted plane is on"),
 ]  # fmt: skip
 
 

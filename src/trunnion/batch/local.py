@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from tempfile import TemporaryDirectory
-from typing import Any, Final
+from typing import Any, Final, Generic, Protocol, Self, TypeVar
 
-from trunnion.batch.worker_task import Costs, Outcome, Status, Task
-from trunnion.batch.workers import Assignment, died, timed_out
+from trunnion.batch.worker_task import Costs, Outcome, Status
+from trunnion.batch.workers import died, timed_out
 from trunnion.errors import InputError, Problem
 from trunnion.files.interrupts import children_without_interrupts
 from trunnion.messages import Wording
@@ -31,6 +31,18 @@ START: Final = 120.0
 
 #: Workers that end before they can begin, one after another: then none will.
 _MOST_STILLBORN: Final = 3
+
+
+class FileTask(Protocol):
+    """A task: work on a file, which messages name."""
+
+    @property
+    def file(self) -> str:
+        """Its name."""
+
+
+_Place = TypeVar("_Place")
+_Task = TypeVar("_Task", bound=FileTask)
 
 
 @dataclass(slots=True, eq=False)
@@ -51,13 +63,13 @@ class _Worker:
 
 @dataclass(slots=True)
 class _Given:
-    assignment: Assignment
-    task: Task
+    assignment: Any
+    task: FileTask
     tries: int = field(default=0)
 
 
-class LocalWorkers:
-    """Processes that work on tasks. Use it as a context manager: they end with it.
+class LocalWorkers(Generic[_Place, _Task]):
+    """Processes that work on tasks, each of which belongs somewhere. Use it as a context manager: they end with it.
 
     count     how many
     function  what they do; it must be importable
@@ -67,14 +79,14 @@ class LocalWorkers:
     """
 
     def __init__(
-        self, count: int, function: Callable[[Task], Outcome], timeout: float | None = None, start: float = START
+        self, count: int, function: Callable[[_Task], Outcome], timeout: float | None = None, start: float = START
     ) -> None:
         self._count, self._function, self._timeout, self._start_time = count, function, timeout, start
         self._context = multiprocessing.get_context("spawn")
         self._workers: list[_Worker] = []
         self._stillborn = 0
 
-    def __enter__(self) -> "LocalWorkers":
+    def __enter__(self) -> Self:
         try:
             self._folder = TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
         except OSError as error:
@@ -89,7 +101,7 @@ class LocalWorkers:
         self._workers.clear()
         self._folder.cleanup()
 
-    def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome]]:
+    def run(self, tasks: Iterable[tuple[_Place, _Task] | None]) -> Iterator[tuple[_Place, Outcome]]:
         """Outcomes as they come, each with its assignment; no more tasks are taken than workers are free.
 
         Raises ``InputError`` if no worker can be started.
@@ -136,7 +148,7 @@ class LocalWorkers:
         by_pipe = {worker.pipe: worker for worker in self._workers}
         return [by_pipe[pipe] for pipe in wait(list(by_pipe), seconds)]  # type: ignore[index]
 
-    def _hear(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Assignment, Outcome]]:
+    def _hear(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Any, Outcome]]:
         try:
             told = worker.pipe.recv()
         except (EOFError, OSError):
@@ -159,7 +171,7 @@ class LocalWorkers:
         assert self._timeout is not None
         return worker.since + self._timeout + (0.0 if worker.is_warm else self._start_time)
 
-    def _bury(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Assignment, Outcome]]:
+    def _bury(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Any, Outcome]]:
         """Take leave of a worker that has died, and try its task again, or tell that it cannot be done."""
         self._workers.remove(worker)
         _end(worker)
@@ -190,7 +202,7 @@ class LocalWorkers:
             ),
         )
 
-    def _late(self) -> Iterator[tuple[Assignment, Outcome]]:
+    def _late(self) -> Iterator[tuple[Any, Outcome]]:
         """End the workers whose time is over."""
         if self._timeout is None:
             return
@@ -206,7 +218,7 @@ class LocalWorkers:
                 )
 
 
-def _next(coming: Iterator[tuple[Assignment, Task] | None]) -> "deque[_Given]":
+def _next(coming: Iterator[tuple[Any, FileTask] | None]) -> "deque[_Given]":
     """Return the next task, if there is one now."""
     each = next(coming, None)
     return deque() if each is None else deque([_Given(*each)])
@@ -218,7 +230,7 @@ def _end(worker: _Worker) -> None:
     worker.pipe.close()
 
 
-def _serve(pipe: "Connection[Any, Any]", function: Callable[[Task], Outcome], folder: str) -> None:
+def _serve(pipe: "Connection[Any, Any]", function: Callable[[Any], Outcome], folder: str) -> None:
     """Work on tasks until nobody gives any more, with temporary files in a folder that outlives the process."""
     tempfile.tempdir = folder
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # for a process that was not started so

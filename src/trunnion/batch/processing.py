@@ -5,6 +5,7 @@ cache. It raises nothing that has to do with the file.
 """
 
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -52,6 +53,9 @@ _NAMING: Final = frozenset(
     option.name for action in Action for option in JOBS[action].flags if isinstance(option.kind, FileIn)
 )
 
+
+#: The check that fails where something is not understood.
+_WORDS: Final = "words"
 
 #: The folder of what comes of a task, within its own.
 _RESULT: Final = "result"
@@ -124,8 +128,18 @@ def _work_in(folder: Path, task: Task) -> Outcome:
     warnings = [problem for problem in problems if problem.severity is not Severity.ERROR]
     if codes := [code for code in dict.fromkeys(problem.code for problem in warnings) if code]:
         figures["warning_codes"] = codes
-    told = tuple(_without_folder(problem, folder) for problem in [*errors, *warnings][:MOST_PROBLEMS])
+    if errors:
+        figures["error_codes"] = dict(Counter(problem.code for problem in errors))
+    told = tuple(_without_folder(problem, folder) for problem in _some([*errors, *warnings]))
     return Outcome(status, told, len(warnings), files, figures)
+
+
+def _some(problems: Sequence[Problem]) -> list[Problem]:
+    """Return so many problems as are kept, with the first of each code."""
+    firsts = {problem.code: problem for problem in reversed(problems)}
+    others = [problem for problem in problems if firsts[problem.code] is not problem]
+    kept = {*map(id, [*firsts.values(), *others][:MOST_PROBLEMS])}
+    return [problem for problem in problems if id(problem) in kept]
 
 
 def _broken(file: str, error: Exception) -> Problem:
@@ -227,8 +241,13 @@ def _verify(
 
 
 def _failures(file: str, found: Verification) -> list[Problem]:
-    """Return a problem of each check that failed, at its worst place."""
-    return [_failure(file, check) for check in found.checks if not check.passed]
+    """Return what is not understood, and a problem of each other check that failed, at its worst place."""
+    errors = list[Problem]()
+    failed = {check.key: check for check in found.checks if not check.passed}
+    if _WORDS in failed and found.run.errors:
+        del failed[_WORDS]
+        errors = [Problem(each.file or shown(file), each.line, each.wording) for each in found.run.errors]
+    return [*errors, *(_failure(file, check) for check in failed.values())]
 
 
 def _failure(file: str, check: Check) -> Problem:

@@ -17,23 +17,29 @@ _COMMON_SETTINGS = frozenset(
 #: Settings whose defaults a program states, so that those of another machine must not take their place.
 _DEFAULTS_OF_PROGRAMS = ("work_offset", "fallback_tolerance")
 
+#: Tolerances that follow from INTOL and OUTTOL of an operation, where the definition sets none.
+_TOLERANCES = ("tolerance", "three_axis_tolerance")
+
 #: With another operation's value of these a part is scrap.
-_MUST_NOT_BE_LOST = frozenset({"work_offset", "tolerance"})
+_MUST_NOT_BE_LOST = frozenset({"work_offset", *_TOLERANCES})
 
 #: Tolerances are printed with five decimals.
 _SAME_TOLERANCE = 5e-6
 
 
 def settings_from_headers(
-    control: Control, headers: Iterable[tuple[int, str, Mapping[str, str]]], warn: Warnings
+    control: Control, headers: Iterable[tuple[int, str, Mapping[str, str]]], warn: Warnings, target: Control
 ) -> dict[str, str]:
     """Return the settings that give the same headers again, without defaults.
 
     control  the control of the program
     headers  line, name of the operation, and values of each header
     warn     takes settings that differ between operations: a program has one value of each
+    target   the control of the new program: a tolerance is left out only where it prints the same one without it
     """
-    every = [_Header(line, operation, *_header_settings(control, values)) for line, operation, values in headers]
+    every = [
+        _Header(line, operation, *_header_settings(control, values, target)) for line, operation, values in headers
+    ]
     names = [header.operation for header in every]
     found: dict[str, str] = {}
     for name in dict.fromkeys(name for header in every for name in header.stated):
@@ -51,7 +57,8 @@ def settings_from_headers(
                 text = f"{text},{header.operation}:{value}"
             else:
                 _warn_of_one_value(warn, header.line, f"{name} is {value!r} here and {first!r} before", name)
-        if text and not _equal_values(text, control.settings[name]):
+        usual = target if name in _TOLERANCES and name in target.settings else control
+        if text and not _equal_values(text, usual.settings[name]):
             found[name] = text
     return found
 
@@ -122,10 +129,10 @@ class _Header(NamedTuple):
     def says_what_follows(self, name: str) -> bool:
         """Whether a setting is what it would be if it were not set."""
         stated, following = self.stated[name], self.following.get(name)
-        if name != "tolerance" or following is None:
+        if name not in _TOLERANCES or following is None:
             return stated == following
-        tolerance = parse_number(stated)
-        return tolerance is None or abs(tolerance - float(following)) < _SAME_TOLERANCE
+        tolerance, other = parse_number(stated), parse_number(following)
+        return tolerance is None or (other is not None and abs(tolerance - other) < _SAME_TOLERANCE)
 
 
 def _warn_of_one_value(warn: Warnings, line: int, what: str, name: str) -> None:
@@ -136,8 +143,10 @@ def _warn_of_one_value(warn: Warnings, line: int, what: str, name: str) -> None:
         warn(line, Wording("CNV142", "one_program", subject=what, name=name))
 
 
-def _header_settings(control: Control, values: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the settings in a header, and what follows from others."""
+def _header_settings(
+    control: Control, values: Mapping[str, str], target: Control
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the settings in a header, and what follows from others on the target."""
     given = {name: value for name, value in values.items() if name in control.settings}
     intol, outtol = parse_number(values.get("intol")), parse_number(values.get("outtol"))
     default = control.settings.get("method", "")
@@ -147,8 +156,8 @@ def _header_settings(control: Control, values: Mapping[str, str]) -> tuple[dict[
     fallback = parse_number(control.settings.get("fallback_tolerance")) or 0.0
     expected = intol + outtol if intol is not None and outtol is not None else fallback
     following = {name: control.default_for_method(name, method) or "" for name in control.method_defaults}
-    if "tolerance" in control.settings:
-        following["tolerance"] = str(expected)
+    tolerances = {"tolerance": str(expected), "three_axis_tolerance": given.get("tolerance") or str(expected)}
+    following |= {name: value for name, value in tolerances.items() if not target.settings.get(name)}
     return given, following
 
 

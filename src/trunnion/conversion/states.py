@@ -118,7 +118,10 @@ STATES: Final = (
     State("subprogram in a file of its own", "M98, CALL PGM", _REPORTED, lacks=("CL",), lacking=_PATH),
     State("block skip", "/", _CARRIED, kinds=("block_skip",)),
     State("block skip in a program with jumps", "/", _REFUSED),
-    State("radius compensation", "G41, G42, RL, RR", _CARRIED, columns=("compensation", "compensation_plane")),
+    State(
+        "radius compensation", "G41, G42, RL, RR", _CARRIED,
+        columns=("compensation", "compensation_plane", "compensation_style", "stated_radius"),
+    ),
     State(
         "register of the radius that is not the tool's", "D13", _CARRIED, lacks=_others("Fanuc", "Haas"),
         columns=("radius",),

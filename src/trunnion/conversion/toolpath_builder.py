@@ -58,28 +58,29 @@ class Conversion:
     errors: tuple[Problem, ...] = ()
 
 
-def convert(run: Run, control: Control) -> Conversion:
+def convert(run: Run, control: Control, target: Control | None = None) -> Conversion:
     """Convert a program that was read without errors into a toolpath.
 
     run      the result of ``trunnion.readers.run_program``. Its files are read once more for what the columns do not
              hold
     control  the control of the machine that the program was written for. If it makes rapids lines at a feed
              (``rapid_feed``), lines at that feed are rapids
+    target   the control that the settings are for; None: the same
     """
     default = control.settings.get("rapid_feed", "")
-    conversion = _ToolpathBuilder(restore_rapids(run, parse_number(default)), control).build()
+    conversion = _ToolpathBuilder(restore_rapids(run, parse_number(default)), control, target or control).build()
     rapid_feed = conversion.settings.get("rapid_feed", default)
     if rapid_feed == default:
         return conversion
-    return _ToolpathBuilder(restore_rapids(run, parse_number(rapid_feed)), control).build()
+    return _ToolpathBuilder(restore_rapids(run, parse_number(rapid_feed)), control, target or control).build()
 
 
 class _ToolpathBuilder:
     """Converts one program."""
 
-    def __init__(self, run: Run, control: Control) -> None:
+    def __init__(self, run: Run, control: Control, target: Control) -> None:
         self._run = run
-        self._control = control
+        self._control, self._target = control, target
         self._reader = reader_of(run.machine)
         letter, comments = control.block_numbers.letter, self._reader.comments
         self._texts = [ProgramText(file, letter, comments, run.encoding) for file in run.files]
@@ -101,7 +102,7 @@ class _ToolpathBuilder:
             (section.line, operation.name, section.values)
             for section, operation in zip(sections, operations, strict=True)
         ]
-        settings = settings_from_headers(self._control, headers, self._warn)
+        settings = settings_from_headers(self._control, headers, self._warn, self._target)
         self._warn_of_losses(sections, operations, settings.get("orientation") == "vector")
         toolpath = Toolpath(self._run.files[0], operations, settings.get("part", ""))
         problems = self._warn.problems

@@ -30,6 +30,7 @@ WITHOUT_HOOKS: Final[Mapping[str, str]] = MappingProxyType(
         "convert": "what it writes does what the program does, and nothing else",
         "impeller": "it makes its toolpaths itself",
         "batch": "a file of jobs may come from anyone, and runs nothing",
+        "survey": "a folder may hold files of anyone, and runs nothing",
     }
 )
 

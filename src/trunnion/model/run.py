@@ -25,6 +25,7 @@ from trunnion.machines import Machine, forward, kinematic_parameters, tool_axes
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.diagnostics import Diagnostic as Diagnostic
+from trunnion.model.mode_words import ModeWord
 from trunnion.model.run_columns import ModalState, SurfaceNormals
 from trunnion.model.run_positions import PositionChunk as PositionChunk
 from trunnion.model.run_positions import RowPositions as RowPositions
@@ -199,6 +200,7 @@ class Run:
     spindle_holes: tuple[SpindleHole, ...] = ()
     compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     planes: Floats = field(default_factory=lambda: np.zeros((0, 3, 4)))
+    mode_words: tuple[ModeWord, ...] = ()
     setups: RunSetups | None = None
     skipped: tuple[SkippedRun, ...] = ()
 

@@ -211,3 +211,17 @@ def test_a_project_states_them_in_tables(two_tools: Path, tmp_path: Path) -> Non
     )
     with pytest.raises(trunnion.RefusedError, match="with tool 2 of 85 mm and the zero of G55"):
         trunnion.post_project(project)
+
+
+def test_without_tcp_a_head_needs_a_length_for_each_tool(tmp_path: Path) -> None:
+    cl = tmp_path / "leaning.cls"
+    cl.write_text(TWO_TOOLS.replace("GOTO/10.0,0.0,5.0\n", "GOTO/10.0,0.0,5.0,0.0,0.5,0.8660254\n"))
+    given = {"zero": "0,0,0", "tcp": "off", "limit_margin": "0.5"}
+    for length, told in (("110", "PLN530"), ("110,3=85", "PLN530"), ("1=110,2=110", "")):
+        try:
+            trunnion.post(cl, machine="generic_head_head_ca", output=tmp_path / "a.mpf",
+                          settings={**given, "tool_length": length}, force=True)  # fmt: skip
+            codes = []
+        except trunnion.InputError as error:
+            codes = [problem.code for problem in error.problems]
+        assert (told in codes) if told else not codes, (length, codes)

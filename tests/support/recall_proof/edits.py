@@ -1,11 +1,11 @@
-"""Edits that harm a program, one at a time, and edits that change nothing; each by a rule that reads the text alone.
+"""Edits that harm a program, one at a time, each by a rule that reads the text alone.
 
 The rules know what a program says before the place of the edit: coordinates, feed, spindle and coolant that are in
 force. They leave out an edit that would change nothing there, such as the other sign of 0, and never ask a reader.
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from tests.support.recall_proof.languages import LANGUAGES, Language
@@ -35,8 +35,11 @@ class Edit:
 class Block:
     """A line, its code, and what is in force before it.
 
-    cuts     it moves at feed
-    rapids   it moves at rapid
+    cuts           it moves at feed
+    rapids         it moves at rapid
+    way            sense of the arcs in force in it: 1 counter-clockwise, -1 clockwise, 0 none
+    line_in_force  G1 was said before it, and nothing else since; ``arc_in_force`` G2 or G3
+    compensated    the radius of the tool is, before it
     """
 
     line: str
@@ -50,6 +53,10 @@ class Block:
     cycle: bool = False
     tcp: bool = False
     plane: bool = False
+    way: int = 0
+    line_in_force: bool = False
+    arc_in_force: bool = False
+    compensated: bool = False
 
     @property
     def words(self) -> list[re.Match[str]]:
@@ -60,10 +67,16 @@ class Block:
 def blocks_of(text: str, language: Language) -> list[Block]:
     """The lines of a program with what is in force before each of them."""
     found, at, moving, feed, spindle, coolant = list[Block](), dict[str, float](), "", "", False, False
-    tcp = plane = cycle = False
+    tcp = plane = cycle = compensated = False
+    verb = ""
     for line in text.splitlines():
         code = re.sub(language.comment, lambda match: " " * len(match[0]), line)
         block = Block(line, code, dict(at), spindle=spindle, coolant=coolant, feed=feed, tcp=tcp, plane=plane)
+        block.line_in_force, block.arc_in_force, block.compensated = verb == "1", verb in ("2", "3"), compensated
+        verb = (re.findall(r"\bG0?([0123])(?![\d.])", code) or [verb])[-1]
+        block.way = {"2": -1, "3": 1}.get(verb, 0)
+        for side in re.findall(r"\bG4([012])\b|\bR([0LR])\b", code):
+            compensated = "".join(side) != "0"
         if re.search(r"\bG8[1-9]\b|\bG73\b|\bG74\b", code):
             cycle = True
         elif re.search(r"\bG80\b", code):
@@ -71,7 +84,7 @@ def blocks_of(text: str, language: Language) -> list[Block]:
         block.cycle = cycle
         tcp = (tcp or bool(re.search(language.tcp, code))) and not re.search(language.no_tcp, code)
         plane = (plane or bool(re.search(language.plane, code))) and not re.search(language.no_plane, code)
-        away = re.search(language.away, code) is not None
+        away = re.search(language.away, code) is not None or re.search(language.pole, code) is not None
         if re.search(language.feed, code):
             moving = "feed"
         if re.search(language.rapid, code):
@@ -79,7 +92,7 @@ def blocks_of(text: str, language: Language) -> list[Block]:
         linear = [word for word in block.words if word[1] in "XYZ"]
         if linear and not away:
             block.cuts, block.rapids = moving == "feed", moving == "rapid"
-        for word in block.words:
+        for word in block.words if not re.search(language.pole, code) else ():
             if away:
                 at.pop(word[1], None)
             else:
@@ -101,7 +114,7 @@ def harmful(text: str, family: str) -> Iterator[Edit]:
         yield from maker(blocks, language)
 
 
-def _with(blocks: list[Block], at: int, *lines: str) -> str:
+def with_lines(blocks: list[Block], at: int, *lines: str) -> str:
     """The text with other lines in place of one."""
     return "\n".join([*(b.line for b in blocks[:at]), *lines, *(b.line for b in blocks[at + 1 :])]) + "\n"
 
@@ -131,41 +144,43 @@ def _numbers(blocks: list[Block], language: Language) -> Iterator[Edit]:
                     and not (letter == "C" and abs(float(new) - value) % 360 == 0)
                 ):
                     sign = "+" if number[0] in "+-" and new[0] not in "+-" else ""
-                    yield Edit(f"{letter}: {what}", k + 1, _with(blocks, k, _changed(block, word, letter + sign + new)))
+                    yield Edit(
+                        f"{letter}: {what}", k + 1, with_lines(blocks, k, _changed(block, word, letter + sign + new))
+                    )
             known = block.before.get(letter)
             if known is not None and abs(known - value) > 0.01 and not re.search(language.arc, block.code):
-                yield Edit(f"{letter}: left out", k + 1, _with(blocks, k, _changed(block, word, "")))
+                yield Edit(f"{letter}: left out", k + 1, with_lines(blocks, k, _changed(block, word, "")))
         x, y = (next((w for w in block.words if w[1] == letter), None) for letter in "XY")
         if x and y and abs(float(x[2]) - float(y[2])) > 0.01 and x.end() < y.start():
             line = block.line[: x.start()] + "X" + y[2] + block.line[x.end() : y.start()] + "Y" + x[2]
-            yield Edit("X and Y exchanged", k + 1, _with(blocks, k, line + block.line[y.end() :]))
+            yield Edit("X and Y exchanged", k + 1, with_lines(blocks, k, line + block.line[y.end() :]))
         for word in re.finditer(r"\b([IJ])([-+]?\d+\.?\d*)", block.code):
             if block.cuts and re.search(language.arc, block.code):
                 new = f"{word[1]}{float(word[2]) + 1.0:.3f}"
-                yield Edit("the centre of an arc", k + 1, _with(blocks, k, _changed(block, word, new)))
+                yield Edit("the centre of an arc", k + 1, with_lines(blocks, k, _changed(block, word, new)))
 
 
 def _orders(blocks: list[Block], language: Language) -> Iterator[Edit]:
     for k, block in enumerate(blocks):
         moves = any(abs(float(w[2]) - block.before.get(w[1], 9e9)) > 0.01 for w in block.words)
         if block.cuts and moves:
-            yield Edit("a cut left out", k + 1, _with(blocks, k))
+            yield Edit("a cut left out", k + 1, with_lines(blocks, k))
             following = blocks[k + 1] if k + 1 < len(blocks) else None
             centre = " CC " in block.code or (following is not None and " CC " in following.code)
             if following and following.cuts and not centre and _code(following) != _code(block):
-                text = _with(blocks, k, following.line)
+                text = with_lines(blocks, k, following.line)
                 lines = text.splitlines()
                 lines[k + 1] = block.line
                 yield Edit("two cuts exchanged", k + 1, "\n".join(lines) + "\n")
         elif block.rapids and moves:
-            yield Edit("a rapid left out", k + 1, _with(blocks, k))
+            yield Edit("a rapid left out", k + 1, with_lines(blocks, k))
 
 
 def _code(block: Block) -> str:
     return _NUMBER.sub("", block.code).strip()
 
 
-def _numbered(block: Block, text: str) -> list[str]:
+def numbered(block: Block, text: str) -> list[str]:
     """Lines with block numbers as the language wants them: those of the next block, which nobody jumps to."""
     number = _NUMBER.match(block.line)
     if number is None:
@@ -192,9 +207,11 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 "coolant off in the cut": block.coolant,
                 "a lift in the cut": "Z" not in values,
                 "home in the cut": "Z" not in values and not block.cycle,
+                "a jump home in the cut": "Z" not in values and not block.cycle,
+                "a rotation in the cut": bool({"X", "Y"} & values.keys()),
                 "another feed in the cut": not re.search(r"\bF\d", block.code),
                 "compensation in the cut": not is_arc and not compensated,
-                "an offset over another": abs(block.before.get("X", 9e9)) > 0.01,
+                "an offset over another": "X" in values and abs(block.before.get("X", 9e9)) > 0.01,
                 "a shift in the cut": "X" in values,
                 "the spindle stops in the cut": block.spindle,
                 "the spindle turns back in the cut": block.spindle,
@@ -202,7 +219,7 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 "the plane off in the cut": block.plane,
             }.get(kind, True)
             if shows:
-                yield Edit(kind, k + 1, _with(blocks, k, *_numbered(block, text), block.line))
+                yield Edit(kind, k + 1, with_lines(blocks, k, *numbered(block, text), block.line))
 
 
 def _scaled(operation: str, number: str) -> str:
@@ -239,7 +256,7 @@ def _replaced(blocks: list[Block], language: Language) -> Iterator[Edit]:
             if kind in ("a tenth of the feed", "ten times the feed") and _is_before_own_feed(blocks, k):
                 continue
             for line in _substituted(block, pattern, new):
-                yield Edit(kind, k + 1, _with(blocks, k, line))
+                yield Edit(kind, k + 1, with_lines(blocks, k, line))
 
 
 def _is_before_own_feed(blocks: list[Block], k: int) -> bool:
@@ -257,7 +274,7 @@ def _cut_words(blocks: list[Block], language: Language) -> Iterator[Edit]:
             ):
                 continue
             for line in list(_substituted(block, pattern, new))[:1]:
-                yield Edit(kind, k + 1, _with(blocks, k, line))
+                yield Edit(kind, k + 1, with_lines(blocks, k, line))
 
 
 def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
@@ -268,6 +285,7 @@ def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
             if without != text:
                 yield Edit(kind, 1, without)
             continue
+        pole = ""
         for k, block in enumerate(blocks):
             match = re.search(pattern, block.code, re.MULTILINE)
             if match is None or (kind == "no start of the spindle" and block.spindle):
@@ -275,10 +293,16 @@ def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
             if kind == "no coolant" and block.coolant:
                 continue
             following = next((b.code for b in blocks[k + 1 :] if b.words), "")
-            if kind == "no end of the cycle" and re.search(r"\bG0?[01]\b|\bG[78]\d\b", following):
+            next_line = blocks[k + 1].code if k + 1 < len(blocks) else ""
+            if kind == "no end of the cycle" and re.search(
+                r"\bG0?[01]\b|\bG[78]\d\b|\bMCALL\b", f"{following} {next_line}"
+            ):
                 continue
+            if kind == "no centre" and match[0].split(" ", 1)[1] == pole:
+                continue
+            pole = match[0].split(" ", 1)[1] if kind == "no centre" else pole
             line = block.line[: match.start()] + block.line[match.end() :]
-            yield Edit(kind, k + 1, _with(blocks, k, line) if line.strip() else _with(blocks, k))
+            yield Edit(kind, k + 1, with_lines(blocks, k, line) if line.strip() else with_lines(blocks, k))
 
 
 def _skipped(blocks: list[Block], language: Language) -> Iterator[Edit]:
@@ -294,66 +318,4 @@ def _skipped(blocks: list[Block], language: Language) -> Iterator[Edit]:
         }
         for kind, is_so in kinds.items():
             if is_so:
-                yield Edit(kind, k + 1, _with(blocks, k, language.skip + block.line))
-
-
-# What changes nothing
-
-
-def sound(text: str, family: str) -> Iterator[Edit]:
-    """Yield every edit that changes nothing, of the whole program at once."""
-    language = LANGUAGES[family]
-    blocks = blocks_of(text, language)
-    makers: dict[str, Callable[[Block], str]] = {
-        "zeros behind": lambda b: _each_word(b, lambda n: n + "0" if "." in n else n),
-        "zeros in front": lambda b: _each_word(b, lambda n: re.sub(r"(?<![\d.])(?=\d)", "0", n, count=1)),
-        "plus signs": lambda b: _each_word(b, lambda n: n if n[0] in "+-" else "+" + n),
-        "spaces": lambda b: re.sub(r"(?<=\d) (?=[XYZABCFSMIJ])", "   ", b.line) if b.cuts or b.rapids else b.line,
-        "coordinates again": lambda b: _coordinates_again(b, language),
-        "feeds again": lambda b: _feed_again(b, family),
-    }
-    for kind, change in makers.items():
-        lines = [change(block) for block in blocks]
-        if lines != [block.line for block in blocks]:
-            yield Edit(kind, 1, "\n".join(lines) + "\n")
-            halves = [line if k % 2 else block.line for k, (line, block) in enumerate(zip(lines, blocks, strict=True))]
-            yield Edit(kind, 1, "\n".join(halves) + "\n")
-            for k, line in enumerate(lines):
-                if line != blocks[k].line:
-                    yield Edit(kind, k + 1, _with(blocks, k, line))
-    if family != "Heidenhain":
-        yield Edit("other numbers", 1, "\n".join(re.sub(r"^N(\d+)", r"N7\1", b.line) for b in blocks) + "\n")
-        yield Edit("no numbers", 1, "\n".join(re.sub(r"^N\d+ ", "", b.line) for b in blocks) + "\n")
-    note = {"Sinumerik": "; NOTE", "Heidenhain": "1 ; NOTE"}.get(family, "(NOTE)")
-    for k, block in enumerate(blocks[:-1]):
-        if block.cuts:
-            yield Edit("a comment", k + 1, _with(blocks, k, note, block.line))
-    yield Edit("other line ends", 1, "\r\n".join(block.line for block in blocks) + "\r\n")
-
-
-def _each_word(block: Block, change: Callable[[str], str]) -> str:
-    if not (block.cuts or block.rapids):
-        return block.line
-    line = block.line
-    for word in reversed(block.words):
-        line = line[: word.start()] + word[1] + change(word[2]) + line[word.end() :]
-    return line
-
-
-def _coordinates_again(block: Block, language: Language) -> str:
-    """A block with Z again, which is where it is; not for arcs, whose ends say more."""
-    words = {word[1] for word in block.words}
-    if not block.cuts or re.search(language.arc, block.code) or "Z" in words or "Z" not in block.before:
-        return block.line
-    last = block.words[-1]
-    sign = "+" if re.search(r"X\+|Y\+", block.line) else ""
-    value = block.before["Z"]
-    return f"{block.line[: last.end()]} Z{sign if value >= 0 else ''}{value:.5f}{block.line[last.end() :]}"
-
-
-def _feed_again(block: Block, family: str) -> str:
-    if family in ("Heidenhain", "Fidia") or not block.cuts or not block.feed or re.search(r"\bF", block.code):
-        return block.line
-    last = block.words[-1]
-    point = "" if "." in block.feed else "."
-    return f"{block.line[: last.end()]} F{block.feed}{point}{block.line[last.end() :]}"
+                yield Edit(kind, k + 1, with_lines(blocks, k, language.skip + block.line))

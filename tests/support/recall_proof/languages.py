@@ -18,6 +18,7 @@ class Language:
     replaced    kind -> (what is found, what takes its place), in code of any line that has it
     dropped     kind -> what a line holds that is left out whole, or the word that is
     cut_word    kind -> (what is found, what takes its place), in blocks that cut
+    pole        a block that states the centre of circles for those behind it
     tcp, plane  what begins TCP and a tilted plane; ``no_tcp`` and ``no_plane`` what ends them
     """
 
@@ -35,6 +36,7 @@ class Language:
     plane: str = "(?!)"
     no_plane: str = "(?!)"
     skip: str = "/"
+    pole: str = "(?!)"
 
 
 _ISO_RAPID, _ISO_FEED, _ISO_ARC = r"\bG0?0\b", r"\bG0?[123]\b", r"\bG0?[23]\b"
@@ -85,8 +87,8 @@ _FANUC_INSERTED = _ISO_INSERTED | {
     "a mirror in the cut": "G51.1 X0.",
     "a scale in the cut": "G51 X0. Y0. Z0. P2000",
     "a rotation in the cut": "G68 X0. Y0. R5.",
-    "an offset is written": "G10 L2 P1 X0. Y0. Z0.",
-    "an offset is shifted": "G10 L20 P1 X1.",
+    "an offset is written": "G10 L2 P1 X7. Y0. Z0.",
+    "an offset is shifted": "G91 G10 L2 P1 X7.\n{n} G90",
     "an offset is written by its variable": "#5221=0.",
     "a jump that hangs on an unset variable": "IF [#577 EQ 0] GOTO 9999",
     "the length off in the cut": "G49",
@@ -144,7 +146,7 @@ LINUXCNC = Language(
     | {
         "inches in the cut": "G20",
         "a dwell in the cut": "G4 P9",
-        "an offset is written": "G10 L2 P1 X0 Y0 Z0",
+        "an offset is written": "G10 L2 P1 X7 Y0 Z0",
         "an offset is shifted": "G10 L20 P1 X1",
         "an offset is written by its variable": "#5221=0",
         "a rotation in the cut": "G10 L2 P1 R5",
@@ -358,7 +360,7 @@ HEIDENHAIN = Language(
     cut_word={
         "a cut at rapid": (r"\bF\d+\.?\d*", "FMAX"),
         "an arc the other way": (r"\bDR([-+])", "DR~"),
-        "compensation in the cut": (r"(?<= )(?=F\d)", "RL "),
+        "compensation in the cut": (r"(?<!R[LR])(?<= )(?=F\d)(?<!R[LR] )", "RL "),
         "a coordinate counts from here": (r"(?<=L )(?=[XYZ])", "I"),
         "an unset variable": (r"(?<=[XYZ])[-+]\d+\.?\d*", "+Q77"),
     },
@@ -366,6 +368,7 @@ HEIDENHAIN = Language(
     no_tcp=r"\bM129\b",
     plane=r"\bPLANE SPATIAL\b",
     no_plane=r"\bPLANE RESET\b",
+    pole=r"^\d+ CC\b",
 )
 
 LANGUAGES = {

@@ -156,7 +156,7 @@ def _converted_program(
         converter = ProgramConverter(str(program), observer, given["force"])
         converter.report(damaged_notices(program, place))
         run = read_program(program, machine=source, subprograms=others)
-        converted = converter.read(run, control, None if to_cl else job.machine)
+        converted = converter.read(run, control, None if to_cl else job)
         if others and not (divided or to_cl):
             converter.warn_of_one_program(1 + len(others))
         carried = converter.carry(converted.settings, control, job, source)

@@ -37,7 +37,7 @@ class ProgramConverter:
         self.problems += problems
         self._observer.problems(problems)
 
-    def read(self, run: Run, control: Control, target: Machine | None) -> Conversion:
+    def read(self, run: Run, control: Control, job: PostJob | None) -> Conversion:
         """Return the toolpath of a run for another machine, None for a CL file; one that was not understood is
         refused.
         """
@@ -48,7 +48,8 @@ class ProgramConverter:
                 (*errors[:_MOST_NAMED], Problem(self._file, 0, Wording("CNV120", "not_understood", count=len(errors))))
             )
         self.report([each for each in found if not _is_carried_over(each)])
-        converted = conversion.convert(run, control)
+        converted = conversion.convert(run, control, job.control if job else None)
+        target = job.machine if job else None
         toolpath, of_builder = conversion.carry_machine_words(converted.toolpath, run.machine, target)
         converted = replace(converted, toolpath=toolpath)
         lost = [*converted.errors, *(problem for problem in of_builder if problem.severity is Severity.ERROR)]

@@ -11,6 +11,12 @@ from trunnion.options.words import ACTIONS, MOST_TILES, SCHEMAS, SHELLS
 
 _FOLDER: Final = "for a folder"
 
+_WORKERS: Final = Option(
+    "workers", "--workers",
+    whole(phrase("kind_number_of_workers"), phrase("one_from_to", least=1, most=1024), "N", 1, 1024),
+    "processes; by default as many as there are processors",
+)  # fmt: skip
+
 _BATCH: Final = job(
     "batch", "post, convert, verify or simulate many files, here or on a cluster",
     Option(
@@ -26,11 +32,7 @@ _BATCH: Final = job(
         FileOut("FILE", (".sqlite", ".parquet"), phrase("summary_is_table")),
         "a table of all files with their figures: .sqlite or .parquet",
     ),
-    Option(
-        "workers", "--workers",
-        whole(phrase("kind_number_of_workers"), phrase("one_from_to", least=1, most=1024), "N", 1, 1024),
-        "processes; by default as many as there are processors",
-    ),
+    _WORKERS,
     Option("timeout", "--timeout", seconds(1e6), "how long a file may take; by default any time"),
     Option(
         "scheduler", "--scheduler", Text("ADDRESS"),
@@ -62,10 +64,31 @@ _BATCH: Final = job(
         "simulate: tasks among which each simulation is divided; by default one", heading=_FOLDER,
     ),
     Option("report", "--report", Choice(("html", "json")), "a report of each file", heading=_FOLDER),
-    run="batch:run",
+    run="many_files.batch:run",
     examples=[
         ("trunnion batch jobs.toml", "what the file states, and only what is not done yet"),
         ("trunnion batch cl --action post --machine yl569 --results nc", "every CL file of a folder"),
+    ],
+)  # fmt: skip
+
+_SURVEY: Final = job(
+    "survey", "try every CL file and program of a folder, and say what stands in the way",
+    Option("folder", "", Text("FOLDER"), "folder whose files are tried, and those below; nothing is written there"),
+    MACHINE.but(
+        help="shipped machine, or a TOML file; may be repeated; by default one for each control", many=Many.REPEAT,
+        key="",
+    ),
+    Option("timeout", "--timeout", seconds(1e6), "how long a file may take on each machine; by default 60 s"),
+    _WORKERS,
+    Option(
+        "report", "--report", FileOut("FILE", (".html",), phrase("report_is_page")), "all of it as a page: .html",
+        own=True,
+    ),
+    JSON,
+    run="many_files.survey:run",
+    examples=[
+        ("trunnion survey cl_files", "what becomes of the files of a folder, on a machine of each control"),
+        ("trunnion survey server --machine our_mill.toml --report survey.html", "on your machine, as a page"),
     ],
 )  # fmt: skip
 
@@ -118,4 +141,4 @@ _COMPLETION: Final = job(
     ],
 )  # fmt: skip
 
-JOBS: Final[tuple[Job, ...]] = (_BATCH, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION)
+JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION)

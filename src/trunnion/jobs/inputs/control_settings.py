@@ -22,6 +22,12 @@ def default_settings(control: Control | None) -> Mapping[str, str]:
     return control.settings if control else {"edge": "1"}
 
 
+def blocks_in_compensation(machine: Machine) -> int:
+    """Return how many blocks without motion a control reads across within radius compensation; unknown ones read 1."""
+    control = written_control(machine)
+    return control.blocks_in_compensation if control else 1
+
+
 def rapid_feed_of(machine: Machine) -> float | None:
     """Return the feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
     feed = default_settings(written_control(machine)).get("rapid_feed")

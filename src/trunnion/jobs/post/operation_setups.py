@@ -5,7 +5,7 @@ Out:    the job with the lengths of CL files and tool libraries where nobody sta
         operation.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -17,7 +17,7 @@ from trunnion.machines.machine import tool_key
 from trunnion.model.clamping import number
 from trunnion.model.clamping_notices import zero_notices
 from trunnion.model.toolpath import Operation, Toolpath
-from trunnion.output.program import operation_key
+from trunnion.output.program import OperationKey, operation_key
 
 #: The setting that tool calls add to the length.
 _DELTA: Final = "delta_length"
@@ -34,7 +34,7 @@ def with_operation_setups(toolpaths: Sequence[Toolpath], job: PostJob) -> PostJo
     machine = with_lengths_of_tools(job.machine, toolpaths, tools)
     if not machine.has_single_values:
         return replace(job, machine=machine)
-    setups = {}
+    setups, shared = dict[OperationKey, Machine](), dict[tuple[str, int], Machine]()
     for operation, names in called_tools(toolpaths):
         own = _settings(job, operation)
         offsets = readers.reader_of(machine).work_offsets if readers.can_read(machine) else None
@@ -45,7 +45,10 @@ def with_operation_setups(toolpaths: Sequence[Toolpath], job: PostJob) -> PostJo
         said = _in_force(found, name, machine.length_sources.get(tool_key(name), ""))
         if machine.zeros and own.get("work_offset"):
             said = [*said, f"the zero of {own['work_offset']}"]
-        setups[operation_key(operation)] = replace(found, in_force=" and ".join(said))
+        # Tools that share the length of all others share the machine: without TCP that is one tool too many.
+        of_tool = tool_key(name) if tool_key(name) in machine.tool_lengths else ""
+        own_machine = shared.setdefault((of_tool, offset), replace(found, in_force=" and ".join(said)))
+        setups[operation_key(operation)] = own_machine
     return replace(job, machine=machine, setups=setups)
 
 
@@ -56,16 +59,28 @@ def _in_force(machine: Machine, name: str, source: str) -> list[str]:
     return [f"tool {name} of {machine.tool_length:g} mm{f' ({source})' if source else ''}"]
 
 
-def planned_machine(job: PostJob, operation: Operation, *, with_delta: bool) -> Machine:
+def planned_machines(job: PostJob, *, with_delta: bool) -> Callable[[Operation], Machine]:
     """Return the machine that an operation is planned for: with the margin to limits, and the tool as long as its call
-    makes it.
+    makes it. Operations that share a machine share that, too.
     """
-    machine = job.with_margin(job.setups.get(operation_key(operation), job.machine))
-    delta = _delta(job, operation)
-    if not (with_delta and delta) or machine.tool_length is None:
-        return machine
-    said = machine.in_force or f"a tool of {machine.tool_length:g} mm"
-    return replace(machine, tool_length=machine.tool_length + delta, in_force=f"{said}, {delta:+g} mm by its call")
+    known: dict[tuple[int, float], Machine] = {}
+
+    def planned(operation: Operation) -> Machine:
+        machine = job.setups.get(operation_key(operation), job.machine)
+        delta = _delta(job, operation) if with_delta and machine.tool_length is not None else 0.0
+        key = id(machine), delta
+        if key not in known:
+            known[key] = _longer(job.with_margin(machine), delta) if delta else job.with_margin(machine)
+        return known[key]
+
+    return planned
+
+
+def _longer(machine: Machine, delta: float) -> Machine:
+    """Return a machine whose tool is longer by what its call adds, mm."""
+    length = machine.tool_length or 0.0
+    said = machine.in_force or f"a tool of {length:g} mm"
+    return replace(machine, tool_length=length + delta, in_force=f"{said}, {delta:+g} mm by its call")
 
 
 def setup_notices(job: PostJob, toolpaths: Sequence[Toolpath]) -> Iterator[str]:

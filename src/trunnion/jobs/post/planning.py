@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -19,7 +18,7 @@ from trunnion.jobs.inputs.settings import Settings, check_operation_names, numbe
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
-from trunnion.jobs.post.operation_setups import planned_machine, with_operation_setups
+from trunnion.jobs.post.operation_setups import planned_machines, with_operation_setups
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
@@ -170,7 +169,7 @@ def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
     """Return the plan, with the margin to limits and the retracts that the job asks for."""
     machine, chord_tolerance = job.planned_machine, job.control.arcs.chord_tolerance
     # Without TCP the positions of slides are those of the tool itself: the control adds the rest.
-    machine_of = partial(planned_machine, job, with_delta=job.options.tcp or not machine.has_rotary_head)
+    machine_of = planned_machines(job, with_delta=job.options.tcp or not machine.has_rotary_head)
     found = planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities, machine_of)
     distance = number_setting(job.settings, "tool_retract")
     if not distance:

@@ -1,12 +1,13 @@
 """Comparison of two NC programs by what they make the tool do."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Final, Unpack
 
 from trunnion import readers
 from trunnion.jit import compile_ahead
 from trunnion.jobs.arguments import DiffArguments, taken
-from trunnion.jobs.inputs.control_settings import rapid_feed_of
+from trunnion.jobs.inputs.control_settings import blocks_in_compensation, rapid_feed_of
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.machines import Machine
@@ -72,10 +73,12 @@ def diff(
     )
     coarse = tolerance == _DEFAULT_TOLERANCE and any(run.state.inches.values.any() for run in runs)
     limits = _INCH_TOLERANCE if coarse else tolerance
-    result = compare(*runs, limits, axis_tolerance=tolerance, path=found["path"])
+    blocks = blocks_in_compensation(one), blocks_in_compensation(two)
+    compared = partial(compare, tolerance=limits, axis_tolerance=tolerance, path=found["path"], blocks=blocks)
+    result = compared(*runs)
     for levels in other_meanings(*runs) if result.same else ():
         others = (_skipping(runs[0], levels), _skipping(runs[1], levels))
-        other = compare(*others, limits, axis_tolerance=tolerance, path=found["path"])
+        other = compared(*others)
         if not other.same:
             return other.with_words(f"; {words_of(levels, *runs)}")
     return result

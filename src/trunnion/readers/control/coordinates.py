@@ -32,6 +32,9 @@ INCH: Final = 25.4
 #: What of the next program a stored work offset changes, for messages.
 OFFSET: Final = "the work offset of"
 
+#: Modes without whose words a program goes elsewhere when the one before it has left them otherwise.
+_NEEDED: Final = frozenset({"plane", "distances", "feed", "compensation", "length", "centres"})
+
 
 class CoordinateControl(RowRecorder):
     """Knows the coordinate systems in force, and keeps the maps of the rows up to date.
@@ -186,6 +189,7 @@ class CoordinateControl(RowRecorder):
         plane    from the plane to the work offset, None for no tilted plane
         program  the programmable frame from now on, none by default
         """
+        self.say_mode("tilted plane")
         with self.frame_change():
             self._plane = plane or AffineMap()
             self._program = program or AffineMap()
@@ -264,6 +268,8 @@ class CoordinateControl(RowRecorder):
 
     def set_mode(self, name: str, word: str, before: Hashable, after: Hashable) -> None:
         """Remember a word that sets a mode, for ``report_trailing_modes``; ``name`` is that of the mode."""
+        if name in _NEEDED:
+            self.say_mode(name)
         self._trailing.set(name, word, WordPlace(self.row, self.line, self.modal.file.current), before, after)
 
     def usual(self, name: str) -> Hashable:
@@ -329,6 +335,7 @@ class CoordinateControl(RowRecorder):
 
     def set_tcp(self, on: bool) -> None:
         """Switch tool centre point control."""
+        self.say_mode("TCP")
         if on != self.tcp:
             with self.frame_change():
                 self.tcp = on

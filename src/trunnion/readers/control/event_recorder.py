@@ -6,6 +6,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
+from trunnion.model.mode_words import ModeWord
 from trunnion.model.run import EventValue, RunEvent
 from trunnion.readers.control.modal_builder import ModalBuilder
 from trunnion.readers.control.row_buffer import RowBuffer
@@ -31,6 +32,8 @@ class EventRecorder:
         self.columns = RowBuffer()
         self.modal = ModalBuilder()
         self.events: list[RunEvent] = []
+        self.mode_words: list[ModeWord] = []
+        self._modes_said: dict[str, str] = {}
         self._told_words: set[str] = set()
         self._told_waits: set[tuple[int, int]] = set()
         self.tools: dict[str, int] = {"": 0}
@@ -66,6 +69,12 @@ class EventRecorder:
         if place not in self._told_waits:
             self._told_waits.add(place)
             self.note(wait, Severity.WARNING)
+
+    def say_mode(self, mode: str, word: str = "") -> None:
+        """Record that the program says a mode, which another may have left otherwise: as in ``ModeWord``."""
+        if self._modes_said.get(mode) != word:
+            self._modes_said[mode] = word
+            self.mode_words.append(ModeWord(self.row, mode, word))
 
     def add_builders_word(self, letter: str, value: float) -> None:
         """Record an M or H word of the machine's builder, and note the first of each: nobody has said what it does."""

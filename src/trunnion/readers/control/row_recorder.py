@@ -340,6 +340,7 @@ class RowRecorder(EventRecorder):
             spindle_holes=tuple(self._spindle_holes),
             compensation_planes=np.array(self._compensation_planes).reshape(-1, 3),
             planes=np.array(self._planes).reshape(-1, 3, 4),
+            mode_words=tuple(self.mode_words),
         )
 
     def _normal_columns(self) -> SurfaceNormals:

@@ -144,6 +144,10 @@ class WordInterpreter(Rs274Interpreter[A]):
             self._note(Wording(word.problem or code, "not_simulated", word=word.text, does=word.does), severity)
         elif word.effect is Effect.UNKNOWN:
             self._execute_unknown(word)
+        if word.mode:
+            letters = [letter for letter in word.letters if letter in block.words and not word.group]
+            said = " ".join((word.text, *(f"{letter}{block.words[letter].value:g}" for letter in letters)))
+            self.control.say_mode(word.mode, "" if word.shows else said)
         if word.act:
             self._acts[word.act](word, block)
 

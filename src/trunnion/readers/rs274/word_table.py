@@ -17,6 +17,17 @@ _RANGE: Final = re.compile(r"M([0-9]+)\.\.M([0-9]+)")
 _ADDRESS: Final = re.compile(r"[A-Z][-+.0-9]*")
 
 
+#: Modes by the group of their words, where what the word does shows in the path.
+_SHOWN: Final = {
+    "rotation": "tilted plane",
+    "plane of the tool": "tilted plane",
+    "plane of the rotary position": "plane of the rotary position",
+}
+
+#: Groups whose words are no modes for themselves, or say theirs where they act.
+_NO_MODES: Final = frozenset({"compensation", "length", "centres", "limits", "motion", "non-modal"})
+
+
 class Effect(Enum):
     """What a word does to the path."""
 
@@ -83,6 +94,18 @@ class Word:
     def is_motion(self) -> bool:
         """Whether it selects a motion or a cycle."""
         return self.act in ("motion", "line", "cycle")
+
+    @property
+    def mode(self) -> str:
+        """The mode that it says, beside those that its method does; empty: none."""
+        if self.text[0] != "G" or self.group in _NO_MODES or self.sets == "block":
+            return ""
+        return _SHOWN.get(self.group, (self.group or self.text) if self.effect is Effect.NONE else "")
+
+    @property
+    def shows(self) -> bool:
+        """Whether the path shows what it does."""
+        return self.effect is not Effect.NONE or self.group in _SHOWN
 
 
 class WordTable:

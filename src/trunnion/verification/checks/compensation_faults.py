@@ -40,6 +40,18 @@ def compensated_blind(context: Context) -> Iterator[Place]:
         for event in stops:
             yield context.place_of_event(event, 0.0, f"stops within radius compensation: {cure}")
             break
+    row, found = next(blind_corners(run, settings.blocks_in_compensation), (-1, 0))
+    if row >= 0:
+        text = f"{found} blocks without motion in the plane of radius compensation before this, and the control reads"
+        text = f"{text} {settings.blocks_in_compensation}: {cure}"
+        yield context.place(row, float(found), text)
+
+
+def blind_corners(run: Run, most: int) -> Iterator[tuple[int, int]]:
+    """Yield rows within radius compensation before which more than ``most`` blocks do not move, and how many."""
+    on = np.flatnonzero(run.compensation != 0)
+    if not len(on):
+        return
     moving = _moves_in_plane(run, on)
     # Blocks without motion up to each row, from the first row with compensation on.
     blocks = np.cumsum(_blocks_before(run, on) + ~moving)
@@ -47,12 +59,8 @@ def compensated_blind(context: Context) -> Iterator[Place]:
     at = np.flatnonzero(moving)
     count = np.diff(blocks[at])
     count[np.diff(spell[at]) != 0] = 0
-    too_many = np.flatnonzero(count > settings.blocks_in_compensation)
-    if len(too_many):
-        found = int(count[too_many[0]])
-        text = f"{found} blocks without motion in the plane of radius compensation before this, and the control reads"
-        text = f"{text} {settings.blocks_in_compensation}: {cure}"
-        yield context.place(int(on[at[too_many[0] + 1]]), float(found), text)
+    for k in np.flatnonzero(count > most).tolist():
+        yield int(on[at[k + 1]]), int(count[k])
 
 
 def _moves_in_plane(run: Run, rows: Ints) -> Flags:

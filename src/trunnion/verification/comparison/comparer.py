@@ -39,9 +39,14 @@ _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
 
 
 class Comparer:
-    """Follows both programs together; ``i`` and ``j`` count their motions."""
+    """Follows both programs together; ``i`` and ``j`` count their motions.
 
-    def __init__(self, one: Run, two: Run, tolerance: float, axis_tolerance: float, path: bool) -> None:
+    blocks  across how many blocks without motion either control finds the next corner within radius compensation
+    """
+
+    def __init__(
+        self, one: Run, two: Run, tolerances: PointTolerances, *, path: bool = False, blocks: tuple[int, int]
+    ) -> None:
         coolants: dict[str, int] = {}
         tools: dict[str, int] = {}
         same_machine = one.machine is two.machine or one.machine.key == two.machine.key
@@ -49,9 +54,12 @@ class Comparer:
         self._two = MovingRows(two, same_machine, coolants, tools)
         self._states = StateComparison(compared_states(self._one, self._two, path=path))
         programs = () if path else (self._one, self._two)
-        self._events = [PathEvents(each.run, each.rows, same_machine=same_machine) for each in programs]
+        self._events = [
+            PathEvents(each.run, each.rows, most, same_machine=same_machine)
+            for each, most in zip(programs, blocks, strict=False)
+        ]
         self._ways = RotaryWays(one, two) if same_machine and not path else None
-        self._tolerances = PointTolerances(tolerance, float(np.radians(axis_tolerance)))
+        self._tolerances = tolerances
         self._largest_tip = self._largest_axis = 0.0
         self._points = 0
         self._count = self._path_count = 0

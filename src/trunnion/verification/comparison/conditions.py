@@ -50,18 +50,21 @@ def _after_stops(run: Run) -> Iterator[tuple[int, str]]:
 
 
 def _turns_in_planes(run: Run) -> Iterator[tuple[int, str]]:
-    """Yield rows in machine coordinates that turn a rotary axis while a tilted plane is on."""
+    """Yield rows that turn a rotary axis while a tilted plane is on: one that has been used, or machine coordinates."""
     begins, on = [0], [False]
     for event in run.events:
         if event.kind in _PLANES:
             value = str(event.value or "")
             begins.append(event.before_row)
             on.append(bool(value) and not value.startswith("RESET"))
-    rows = run.state.machine_frame.rows_with(True)
-    if not any(on) or not len(rows):
+    if not any(on):
         return
-    turned = np.diff(np.concatenate((run.start[None, list(run.machine.rotary)], run.rotary)), axis=0)
-    rows = rows[np.abs(turned[rows]).max(axis=1) > 0.0]
+    angles = np.concatenate((run.start[None, list(run.machine.rotary)], run.rotary))
+    turns = np.abs(np.diff(angles, axis=0)).max(axis=1, initial=0.0) > 0.0
+    in_machine = run.state.machine_frame.column()
+    # How many motions in the workpiece there are up to each row that turn nothing.
+    used = np.concatenate(([0], np.cumsum(~turns & ~in_machine)))
+    rows = np.flatnonzero(turns)
     for row, k in zip(rows.tolist(), np.searchsorted(begins, rows, side="right").tolist(), strict=True):
-        if on[k - 1]:
+        if on[k - 1] and (in_machine[row] or used[row] > used[begins[k - 1]]):
             yield row, "rotary axes turn while a tilted plane is on"

@@ -15,6 +15,11 @@ class PointTolerances:
     tip: float
     axis: float
 
+    @staticmethod
+    def of(tip: float, degrees: float) -> "PointTolerances":
+        """Return tolerances of which that of tool axes is stated in degrees."""
+        return PointTolerances(tip, float(np.radians(degrees)))
+
 
 def ends_on_path(more: MovingRows, i: int, less: MovingRows, j: int, tolerances: PointTolerances) -> bool:
     """Whether motion ``i`` ends on the path of the other program's motion ``j``, after its own start."""

@@ -14,6 +14,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.spindle_work import SpindleHole, SpindleTask
+from trunnion.verification.checks.compensation_faults import blind_corners
 from trunnion.verification.comparison.conditions import conditions
 
 #: What every control has, and messages call it.
@@ -41,15 +42,21 @@ class PathEvents:
     """The events of one program by the motion before which they come; that after the last one is ``len(rows)``.
 
     rows          (n,) the rows in which the tool moves
+    most          blocks without motion across which the control finds the next corner within radius compensation
     same_machine  the other program is for the same machine
     """
 
-    def __init__(self, run: Run, rows: Ints, *, same_machine: bool) -> None:
+    def __init__(self, run: Run, rows: Ints, most: int, *, same_machine: bool) -> None:
         names = {**_OF_ALL, **(_OF_MACHINE if same_machine else {})}
         found = [(event.before_row, text) for event, text in _texts(run, names)]
         found += list(conditions(run)) if same_machine else []
+        found += [
+            (row, f"{blocks} blocks without motion within radius compensation, where the control reads {most}")
+            for row, blocks in blind_corners(run, most)
+        ]
         found += [(hole.first, _spindle_words(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
         found += [(len(run), f"left to the next program: {text}") for text in _left_on(run)] if same_machine else []
+        found += [(len(run), text) for text in _switched_behind(run)]
         at = np.searchsorted(rows, [row for row, _ in found])
         self._events: dict[int, list[str]] = {}
         for motion, (_, text) in zip(at.tolist(), found, strict=True):
@@ -81,9 +88,17 @@ def _texts(run: Run, names: Mapping[str, str]) -> Iterator[tuple[RunEvent, str]]
             yield event, f"{text} while the spindle turns {turns}" if turns and event.kind == "stop" else text
 
 
+def _switched_behind(run: Run) -> list[str]:
+    """Return what becomes of spindle and coolant behind the last motion: no row shows it."""
+    found = {event.kind: event.value for event in run.events if event.before_row == len(run)}
+    return [f"{kind} {found[kind]} behind the last motion" for kind in ("spindle", "coolant") if kind in found]
+
+
 def _left_on(run: Run) -> list[str]:
     """Return what the program leaves on at its end, or sets behind its last motion, each once."""
     found = [each.wording.what for each in run.diagnostics if each.code == _LEFT_ON]
+    modes = {each.mode: each.word for each in run.mode_words if each.before_row == len(run)}
+    found += [f"{mode} {word}" for mode, word in modes.items() if word]
     frames = [event.value for event in run.events if event.kind == "frame"]
     found += [f"a frame, by {frames[-1]}"] if frames and frames[-1] else []
     found += ["TCP on" for event in run.events if event.kind == "end" and event.tcp]

@@ -25,6 +25,9 @@ from trunnion.verification.comparison.states import ComparedState, Values
 _LAST_DIGIT: Final = 1e-4
 _LAST_DIGIT_OF_INCHES: Final = 2.6e-3
 
+#: Number of a work offset that TRAORI has cleared.
+_LOST: Final = -1
+
 _SIDES: Final = {1: "left", -1: "right", 0: "off"}
 
 #: Words that add to the length and to the radius of a tool, by what they do.
@@ -81,9 +84,9 @@ def _state(one: Run, two: Run, register: Register) -> ComparedState:
 def _registers(one: Run, two: Run, same_words: bool) -> Iterator[Register]:
     """Yield the registers of two runs; ``same_words``: their programs are of one language."""
     runs = one, two
-    offsets = [run.state.work_offset for run in runs]
+    offsets = [_offset_column(run) for run in runs]
     if not same_words:
-        offsets = [_in_order(column) for column in offsets]
+        offsets = [_in_order(run.state.work_offset) for run in runs]
     yield replace(_register("work offset", runs, offsets, _offset_words, _in_workpiece), of_path=True)
     sides = [run.state.compensation for run in runs]
     yield replace(_register("radius compensation", runs, sides, _side_words, _everywhere), of_path=True)
@@ -113,6 +116,20 @@ def _register(
     one, two = runs
     first, second = columns
     return Register(name, (first, second), (partial(words, one), partial(words, two)), counts)
+
+
+def _offset_column(run: Run) -> StepColumn:
+    """Return the work offsets, ``_LOST`` from where TRAORI clears one to where it is selected again."""
+    column = run.state.work_offset
+    events = [event for event in run.events if event.kind == "offset"]
+    if not events:
+        return column
+    lost = _column(
+        run, [0, *(each.before_row for each in events)], [False, *(each.value == "TRAORI" for each in events)]
+    )
+    rows = np.unique(np.concatenate((column.rows, lost.rows)))
+    rows = rows[rows < len(run)]
+    return StepColumn(len(run), rows, np.where(lost.at(rows), _LOST, column.at(rows).astype(np.int64)))
 
 
 def _in_order(column: StepColumn) -> StepColumn:
@@ -189,8 +206,8 @@ def _column(run: Run, rows: list[int], values: list[Any]) -> StepColumn:
 
 
 def _offset_words(run: Run, row: int) -> str:
-    code = int(run.state.work_offset[row])
-    return run.work_offset_name(code) if code else "none"
+    code = int(_offset_column(run)[row])
+    return "none since TRAORI" if code == _LOST else run.work_offset_name(code) if code else "none"
 
 
 def _side_words(run: Run, row: int) -> str:

@@ -233,6 +233,8 @@ class Definitions:
             if word.name == "TA" and value > GREATEST_TURN:
                 raise KlartextError(orientation_fault(f"CYCL DEF 32.{line} TA", value))
             values[word.name] = value
+        if line == 1 or "HSC-MODE" in values:
+            self._control.say_mode("HSC-MODE", f"{values['HSC-MODE']:g}" if "HSC-MODE" in values else "not given")
         if line == 1:
             self._control.add_tolerance(values.get("T", 0.0) * self._control.length_unit)
         self._control.add_orientation_tolerance(values.get("TA", 0.0))

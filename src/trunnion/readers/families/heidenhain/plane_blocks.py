@@ -29,6 +29,7 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
     """Execute a PLANE block; ``block_words`` without PLANE."""
     if not block_words or block_words[0].operand is not None:
         raise KlartextError(Wording("NC210", "plane_needs_kind"))
+    control.say_mode("tilted plane")
     kind = block_words[0].name
     positioning, values = _positioning(control, block_words[1:], parameters, note)
     if kind == "RESET":

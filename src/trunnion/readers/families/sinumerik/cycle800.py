@@ -41,6 +41,7 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     numbers += [0.0] * (16 - len(numbers))
     retract, _, style, mode = numbers[:4]
     before, angles, after, direction = numbers[4:7], numbers[7:10], numbers[10:13], numbers[13]
+    control.say_mode("swivel data", f"{texts[1] or 'none'}, _FR {retract:g}")
     if any(abs(value) > MAX_ARGUMENT for value in numbers):
         note(Wording("NC215", "cycle800_numbers_no_machine_not"), Severity.ERROR)
         return

@@ -38,6 +38,7 @@ def smooth(control: SinumerikControl, call: Call) -> None:
     given = tolerance if isinstance(tolerance, float) else 0.0
     if given < 0.0 or (given == 0.0 and isinstance(mode, float) and int(mode) % 10):
         control.note(Wording("NC215", "cycle832_smooths_within_give_first", given=given), Severity.ERROR)
+    control.say_mode("CYCLE832", f"mode {mode:g}" if isinstance(mode, float) and mode else "off")
     control.add_tolerance(given * control.length_unit)
     is_on = isinstance(mode, float) and _is_mode(mode) and int(mode) % 10 > 0
     control.add_orientation_tolerance(turn if is_on else 0.0)

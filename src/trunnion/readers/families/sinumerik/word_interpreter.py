@@ -20,15 +20,18 @@ from trunnion.readers.families.sinumerik.control import (
 from trunnion.readers.families.sinumerik.expressions import Value
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement, state_of_frame
 from trunnion.readers.families.sinumerik.words import (
+    DRIVING_MODES,
     EXACT_STOPS,
     FRAMES,
     G_FEEDS,
     G_MACHINE,
+    G_MODES,
     G_NOT_SIMULATED,
     G_OFFSETS,
     G_PLANES,
     G_RADIUS_COMPENSATION,
     G_RESERVED,
+    G_SHOWN_MODES,
     G_SURFACE,
     G_UNITS,
     G_WITHOUT_PATH_EFFECT,
@@ -54,6 +57,10 @@ class WordInterpreter(CallInterpreter):
 
     def _g_code(self, code: int) -> None:
         control = self.control
+        if code in G_SHOWN_MODES:
+            control.say_mode(G_SHOWN_MODES[code])
+        elif code in G_MODES:
+            control.say_mode(G_MODES[code], f"G{code}")
         if code in G_RADIUS_COMPENSATION:
             control.compensate(G_RADIUS_COMPENSATION[code])
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER_CLOCKWISE):
@@ -91,6 +98,8 @@ class WordInterpreter(CallInterpreter):
 
     def _word(self, word: str, block: Block) -> None:
         control = self.control
+        if word in DRIVING_MODES:
+            control.say_mode(DRIVING_MODES[word], word)
         match word:
             case "TRAORI":
                 if fault := _fault_of_traori(block.traori):

@@ -1,8 +1,6 @@
 """``trunnion batch``: many files posted, converted, verified or simulated."""
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Final
@@ -12,10 +10,9 @@ from trunnion.batch.cluster import Tls
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
 from trunnion.batch.worker_task import Status
+from trunnion.cli.many_files.counting_terminal import CountingTerminal
 from trunnion.cli.printing import tell
-from trunnion.cli.progress import progress, progress_lines
 from trunnion.cli.results import show
-from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.job import Given
@@ -48,21 +45,13 @@ def run(given: Given) -> int:
             **given.arguments(),
             tls=Tls(*files) if any(tls) else None,
             written=[] if given.json in (None, "-") else [given.json],
-            observer=_Terminal(),
+            observer=CountingTerminal(),
         )
     except KeyboardInterrupt:
         tell("the batch goes on where it was stopped when it is run again")
         raise
     show(given, lambda: result, result_lines(result))
     return 0 if result.passed else 1
-
-
-class _Terminal(Terminal):
-    """Shows from the start how far a batch is."""
-
-    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
-        """Show a bar, or print a line now and then."""
-        return progress(stage, total, unit, delay=0) if sys.stderr.isatty() else progress_lines(stage, total, unit)
 
 
 def result_lines(result: BatchResult) -> Iterator[str]:

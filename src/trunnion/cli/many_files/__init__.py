@@ -1,0 +1,1 @@
+"""Commands for many files: what is shown while they go on, and what is printed of them."""

@@ -1,0 +1,16 @@
+"""Modes that a program says, which another may have left otherwise."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class ModeWord:
+    """A mode that holds from row ``before_row`` on because the program says so.
+
+    mode  what it is of, such as ``plane``
+    word  the word that holds; empty where the path shows which one: then it matters only that there is one
+    """
+
+    before_row: int
+    mode: str
+    word: str = ""

@@ -1,0 +1,159 @@
+"""A survey of a folder as one HTML page that needs nothing else, and runs no script.
+
+In:     ``SurveyContent``.
+Out:    UTF-8. All text from outside is escaped.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+
+from trunnion.reporting.html_text import capitalised, escape, page_head, source_hash
+from trunnion.reporting.text import clean
+
+
+@dataclass(frozen=True, slots=True)
+class RateRow:
+    """How files of one dialect or likeness fare on one control."""
+
+    kind: str
+    looks: str
+    control: str
+    files: int
+    passed: int
+    became: str
+
+
+@dataclass(frozen=True, slots=True)
+class BlockerRow:
+    """A code that keeps files from going through: in how many, in how many alone, and the first of them."""
+
+    code: str
+    files: int
+    opens: int
+    place: str
+    what: str
+    cure: str
+
+
+@dataclass(frozen=True, slots=True)
+class FileRow:
+    """A file: what it is, what became of it, on how many machines it went through, and why not on the others."""
+
+    file: str
+    kind: str
+    looks: str
+    became: str
+    is_through: bool
+    is_in_part: bool
+    through: str
+    reasons: Sequence[str]
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyContent:
+    """What the page says.
+
+    facts     names and values at the head
+    machines  with their controls
+    others    machines on which programs were read as well
+    """
+
+    folder: str
+    facts: Sequence[tuple[str, str]]
+    machines: Sequence[tuple[str, str]]
+    others: Sequence[str]
+    rates: Sequence[RateRow]
+    blockers: Sequence[BlockerRow]
+    files: Sequence[FileRow]
+
+
+def render_survey_page(content: SurveyContent) -> bytes:
+    """Return the page."""
+    style = "\n" + files("trunnion.reporting").joinpath("page.css").read_text(encoding="utf-8")
+    policy = f"default-src 'none'; style-src {source_hash(style)}; base-uri 'none'; form-action 'none'"
+    facts = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in content.facts)
+    machines = ", ".join(f"<bdi>{_text(name)}</bdi> ({_text(control)})" for name, control in content.machines)
+    others = f"; programs were read for {', '.join(map(_text, content.others))} as well" if content.others else ""
+    parts = (_rates(content.rates), _blockers(content.blockers), _files(content.files))
+    body = f"""<body>
+<main>
+<header>
+<h1>Survey of <bdi>{_text(content.folder)}</bdi></h1>
+<dl>{facts}</dl>
+<p class="note">Each CL file was posted for each of these machines, and its program proven against it; each NC program
+was read and run by itself, without a CL file, for the machines of the control that it looks like, and the one that
+reads it best counts. A program that was read is not proven. Machines: {machines}{others}.</p>
+</header>
+{"".join(parts)}</main>
+</body>
+</html>
+"""
+    return (page_head(f"Survey of {clean(content.folder)}", style, policy) + body).encode()
+
+
+def _rates(rates: Sequence[RateRow]) -> str:
+    rows = (
+        (_cell(each.kind), _cell(each.looks or "of no certain control"), _cell(each.control),
+         _number(f"{each.passed} of {each.files}"), _cell(each.became))
+        for each in rates
+    )  # fmt: skip
+    return _section("By dialect and control", ("What", "Looks like", "Control", "#Went through", "Became"), rows)
+
+
+def _blockers(blockers: Sequence[BlockerRow]) -> str:
+    rows = (
+        (_cell(each.code), _number(each.files), _number(each.opens), _cell(each.place), _cell(each.what),
+         _cell(each.cure))
+        for each in blockers
+    )  # fmt: skip
+    heads = ("Code", "#Files", "#No other error", "First place", "What", "Cure")
+    note = "Files without another error may have further faults behind it."
+    return _section("Blocked by", heads, rows, note) if blockers else ""
+
+
+def _files(found: Sequence[FileRow]) -> str:
+    rows = "".join(
+        f'<tr class="{_colour(each)}"><th scope=row><bdi>{_text(each.file)}</bdi></th>{_cell(each.kind)}'
+        f"{_cell(each.looks)}<td><span class=tag>{_text(each.became)}</span></td>{_number(each.through)}"
+        f"<td>{'<br>'.join(map(_text, each.reasons))}</td></tr>\n"
+        for each in found
+    )
+    head = _head(("File", "What", "Looks like", "Became", "#Machines", "Why"))
+    table = f'<div class="wide"><table>\n{head}<tbody>\n{rows}</tbody>\n</table></div>'
+    return f"<section>\n<h2>Files</h2>\n{table}\n</section>\n"
+
+
+def _colour(each: FileRow) -> str:
+    """Return the class of a row: through, in part, not; one that was not tried has none."""
+    if not each.through:
+        return ""
+    return "good" if each.is_through else "open" if each.is_in_part else "bad"
+
+
+def _section(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
+    lines = "".join(f"<tr>{''.join(cells)}</tr>\n" for cells in rows)
+    said = f'<p class="note">{escape(note)}</p>\n' if note else ""
+    return (
+        f'<section>\n<h2>{capitalised(title)}</h2>\n<div class="wide"><table>\n{_head(heads)}'
+        f"<tbody>\n{lines}</tbody>\n</table></div>\n{said}</section>\n"
+    )
+
+
+def _head(heads: Sequence[str]) -> str:
+    cells = "".join(
+        f"<th scope=col class=n>{each[1:]}</th>" if each[0] == "#" else f"<th scope=col>{each}</th>" for each in heads
+    )
+    return f"<thead><tr>{cells}</tr></thead>\n"
+
+
+def _cell(text: str) -> str:
+    return f"<td><bdi>{_text(text)}</bdi></td>"
+
+
+def _number(text: object) -> str:
+    return f"<td class=n>{escape(text)}</td>"
+
+
+def _text(text: str) -> str:
+    return escape(clean(text))

@@ -1,0 +1,298 @@
+"""What came of a survey, and its counts: rates by dialect and control, and the codes that block most files."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import Annotated, ClassVar, Final
+
+from trunnion.batch.worker_task import Outcome, Status
+from trunnion.errors import Problem, Severity
+from trunnion.results import Figure, OptionalText
+from trunnion.survey.found_files import FileKind, FoundFile
+from trunnion.survey.trying import STEP, Step
+
+
+class Became(StrEnum):
+    """What became of a file on a machine, the best first.
+
+    PROVEN        posted, and the program proven
+    PROVEN_WARNED  the same, with warnings
+    READ          a program: read and run, and no check of it alone fails
+    READ_WARNED   the same, with warnings
+    CHECK_FAILED  a program: read and run, and a check of it fails
+    PROOF_FAILED  posted, and the program does not do what the CL file says: it is not written
+    REFUSED       not understood, or it must not run
+    TIMED_OUT     it took longer than it may
+    NOT_TRIED     a link, too large, or the computer did not let it be read
+    BROKEN        an error of Trunnion
+    NOT_OURS      neither a CL file nor a program of a control that is read
+    """
+
+    PROVEN = "proven"
+    PROVEN_WARNED = "proven with warnings"
+    READ = "read"
+    READ_WARNED = "read with warnings"
+    CHECK_FAILED = "check failed"
+    PROOF_FAILED = "proof failed"
+    REFUSED = "refused"
+    TIMED_OUT = "timed out"
+    NOT_TRIED = "not tried"
+    BROKEN = "error of Trunnion"
+    NOT_OURS = "not ours"
+
+    @property
+    def passed(self) -> bool:
+        """Whether it went through."""
+        return self in _PASSED
+
+    @property
+    def is_blocked(self) -> bool:
+        """Whether codes say why it did not go through."""
+        return self in _BLOCKED
+
+
+_PASSED: Final = frozenset({Became.PROVEN, Became.PROVEN_WARNED, Became.READ, Became.READ_WARNED})
+_BLOCKED: Final = frozenset({Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN})
+
+#: The check that fails where something is not understood.
+_WORDS: Final = "words"
+
+#: Codes that only say what follows from the errors before them.
+_SEQUELS: Final = frozenset({"CNV130", "CTL940", "PLN160"})
+
+#: The code of a program of which more is not understood than understood.
+_OTHER_CONTROL: Final = "NC113"
+
+#: From the best to the worst.
+_ORDER: Final = {each: rank for rank, each in enumerate(Became)}
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyedMachine:
+    """A machine of the survey.
+
+    machine  name of its definition
+    control  name of its control
+    posts    whether CL files were posted for it; for others, programs were read
+    """
+
+    machine: str
+    control: str
+    posts: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Trying:
+    """What became of a file on one machine.
+
+    became    what became of it
+    step      the step that failed, or the last one; null where none was begun
+    codes     of all errors, each once; of a failed check its name
+    errors    the first one of each code
+    warnings  how many there are
+    count     how many errors there are
+    """
+
+    machine: str
+    control: str
+    became: Became
+    step: OptionalText
+    codes: tuple[str, ...]
+    errors: tuple[Problem, ...]
+    warnings: int
+    count: Annotated[int, Figure("error_count")]
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyedFile:
+    """A file of the folder.
+
+    file    its name from the folder on
+    kind    ``CL file``, ``program`` or ``other``
+    looks   dialect of a CL file; what another one looks like, or why it was not tried; null: it says too little
+    became  on the machine where the least became of it
+    tries   a CL file on each machine; a program on the machine that reads it best
+    """
+
+    file: str
+    kind: FileKind
+    looks: OptionalText
+    became: Became
+    tries: tuple[Trying, ...] = ()
+
+    @property
+    def passes(self) -> int:
+        """On how many machines it went through."""
+        return sum(each.became.passed for each in self.tries)
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """How files of one dialect or likeness fare on one control.
+
+    files   how many were tried
+    passed  how many went through
+    became  how many became what
+    """
+
+    kind: FileKind
+    looks: OptionalText
+    control: str
+    files: int
+    passed: int
+    became: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Blocker:
+    """A code that keeps files from going through.
+
+    files  how many files have it
+    opens  of these, files whose only errors have it; others may lie behind them
+    first  the first of them
+    """
+
+    code: str
+    files: int
+    opens: int
+    first: Problem
+
+    @property
+    def cure(self) -> str:
+        """How to correct the first one, or where that is said."""
+        return self.first.cure or f"trunnion explain {self.code} says more"
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What Trunnion makes of the files of a folder.
+
+    folder    as it was named
+    machines  on which it was tried
+    timeout   seconds that a file had on each machine
+    steps     what was tried of CL files and programs
+    files     in the order of their names
+    """
+
+    SCHEMA: ClassVar[int] = 1
+
+    folder: str
+    machines: tuple[SurveyedMachine, ...]
+    timeout: Annotated[float, Figure(unit="s")]
+    steps: Mapping[str, tuple[str, ...]]
+    files: tuple[SurveyedFile, ...]
+
+    @cached_property
+    def counts(self) -> dict[Became, int]:
+        """How many files became what, on the machine where the least became of each."""
+        return _counts(each.became for each in self.files)
+
+    @property
+    @Figure("counts", after="steps")
+    def _counts_by_name(self) -> dict[str, int]:
+        """How many files became what, on the machine where the least became of each."""
+        return {str(each): count for each, count in self.counts.items()}
+
+    @property
+    @Figure(after="counts")
+    def rates(self) -> tuple[Rate, ...]:
+        """How files fare, by dialect or likeness, and control."""
+        groups: dict[tuple[FileKind, str, str], list[Became]] = {}
+        for file in self.files:
+            for each in file.tries:
+                groups.setdefault((file.kind, file.looks, each.control), []).append(each.became)
+        return tuple(
+            Rate(*key, len(found), sum(each.passed for each in found), {str(k): n for k, n in _counts(found).items()})
+            for key, found in sorted(groups.items())
+        )
+
+    @property
+    @Figure(after="rates")
+    def blockers(self) -> tuple[Blocker, ...]:
+        """Codes that keep files from going through, those of most files first."""
+        firsts: dict[str, Problem] = {}
+        files, opens = Counter[str](), Counter[str]()
+        for file in self.files:
+            missed = [each for each in file.tries if not each.became.passed]
+            codes = {code for each in missed if each.became.is_blocked for code in each.codes}
+            files.update(codes)
+            if len(codes) == 1 and all(each.became.is_blocked for each in missed):
+                opens.update(codes)
+            for each in missed:
+                for problem in each.errors if each.became.is_blocked else ():
+                    firsts.setdefault(problem.code, problem)
+        known = {code: firsts[code] for code in files if code in firsts}
+        order = sorted(known, key=lambda code: (-files[code], -opens[code], code))
+        return tuple(Blocker(code, files[code], opens[code], known[code]) for code in order)
+
+
+def _counts(found: "Iterator[Became] | Sequence[Became]") -> dict[Became, int]:
+    counts = Counter(found)
+    return {each: counts[each] for each in Became if counts[each]}
+
+
+def count_errors(outcome: Outcome) -> int:
+    """How many errors there are."""
+    return sum((outcome.figures.get("error_codes") or {}).values())
+
+
+def trying(machine: SurveyedMachine, kind: FileKind, outcome: Outcome) -> Trying:
+    """Return what became of a file on a machine."""
+    errors = [each for each in outcome.problems if each.severity is Severity.ERROR]
+    became = _BECAME[outcome.status](kind, outcome)
+    codes = _codes(outcome, errors)
+    firsts = {each.code: each for each in reversed(errors)}
+    told = tuple(firsts[code] for code in codes if code in firsts)
+    step = str(outcome.figures.get(STEP, ""))
+    return Trying(machine.machine, machine.control, became, step, codes, told, outcome.warnings, count_errors(outcome))
+
+
+def _codes(outcome: Outcome, errors: Sequence[Problem]) -> tuple[str, ...]:
+    """Return the codes of all errors but sequels; checks that fail only where no other error is behind them."""
+    codes = outcome.figures.get("error_codes") or [each.code for each in errors]
+    failed = outcome.figures.get("failed_checks") or ()
+    return tuple(dict.fromkeys(code for code in codes if code not in {*failed, *_SEQUELS})) or tuple(failed)
+
+
+def _passed(kind: FileKind, outcome: Outcome) -> Became:
+    if kind is FileKind.CL:
+        return Became.PROVEN_WARNED if outcome.warnings else Became.PROVEN
+    return Became.READ_WARNED if outcome.warnings else Became.READ
+
+
+def _failed(kind: FileKind, outcome: Outcome) -> Became:
+    failed = outcome.figures.get("failed_checks") or ()
+    is_read = kind is FileKind.PROGRAM and outcome.figures.get(STEP) == Step.VERIFY
+    if not failed or (is_read and _WORDS in failed):
+        return Became.REFUSED
+    return Became.CHECK_FAILED if is_read else Became.PROOF_FAILED
+
+
+_BECAME: Final[Mapping[Status, Callable[[FileKind, Outcome], Became]]] = {
+    Status.PASSED: _passed,
+    Status.FAILED: _failed,
+    Status.UNUSABLE: lambda kind, outcome: Became.REFUSED,
+    Status.HINDERED: lambda kind, outcome: Became.NOT_TRIED,
+    Status.BROKEN: lambda kind, outcome: Became.BROKEN,
+    Status.DIED: lambda kind, outcome: Became.BROKEN,
+    Status.TIMED_OUT: lambda kind, outcome: Became.TIMED_OUT,
+}
+
+
+def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
+    """Return what became of a file: of a CL file each try counts, of a program the best."""
+    if not tries:
+        became = Became.NOT_OURS if file.is_tried else Became.NOT_TRIED
+        return SurveyedFile(file.name, file.kind, file.looks, became)
+    counted = tuple(tries) if file.kind is FileKind.CL else (min(tries, key=_worth),)
+    if not file.looks and _OTHER_CONTROL in counted[0].codes:
+        return SurveyedFile(file.name, FileKind.OTHER, "understood by no reader", Became.NOT_OURS)
+    return SurveyedFile(
+        file.name, file.kind, file.looks, max((t.became for t in counted), key=_ORDER.__getitem__), counted
+    )
+
+
+def _worth(each: Trying) -> tuple[int, int]:
+    return _ORDER[each.became], each.count

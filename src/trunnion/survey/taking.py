@@ -1,0 +1,166 @@
+"""The front door of surveys: what is asked for, and how it goes through the workers."""
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Final, TypedDict, Unpack
+
+from trunnion.batch.local import LocalWorkers
+from trunnion.controls import load_control
+from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.families import FAMILIES
+from trunnion.files import check_outputs
+from trunnion.jobs.arguments import taken
+from trunnion.jobs.inputs.arguments import check_observer, check_path
+from trunnion.jobs.inputs.reading import FilePath, as_machine
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.machines import Machine, shipped_machines
+from trunnion.messages import Wording
+from trunnion.readers.program.settings import family_of
+from trunnion.survey.found_files import FileKind, FoundFile, count_files, found_files
+from trunnion.survey.result import Survey, SurveyedMachine, Trying, surveyed, trying
+from trunnion.survey.trying import Step, Trial, try_in_worker
+
+#: One shipped machine for each control: CL files are posted for them. Programs are read for all that are shipped, as a
+#: program for A and C says nothing on a machine with B.
+MACHINES: Final = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt")
+
+#: Seconds that a file has on each machine.
+TIMEOUT: Final = 60.0
+
+#: What is tried of CL files and programs.
+STEPS: Final[Mapping[FileKind, tuple[Step, ...]]] = {
+    FileKind.CL: (Step.INFO, Step.POST),
+    FileKind.PROGRAM: (Step.VERIFY,),
+}
+
+
+class SurveyArguments(TypedDict, total=False):
+    """Arguments of ``take_survey``."""
+
+    machine: Sequence[FilePath]
+    timeout: float | None
+    workers: int | None
+    written: Sequence[FilePath] | None
+
+
+def take_survey(
+    folder: FilePath,
+    *,
+    steps: Mapping[FileKind, tuple[Step, ...]] = STEPS,
+    observer: Observer = SILENT,
+    **given: Unpack[SurveyArguments],
+) -> Survey:
+    """Try each CL file and program of a folder, and count what stands in the way.
+
+    Parameters
+    ----------
+    folder
+        Its files and those below; links are not followed, and nothing is written there.
+    steps
+        What is tried of CL files, and of programs.
+    observer
+        Receives the progress, in files.
+    machine
+        Names of shipped machines, or TOML files; by default one shipped machine for each control, and for programs all.
+    timeout
+        Seconds that a file has on each machine; by default 60.
+    workers
+        Processes; by default as many as there are processors.
+    written
+        Files that the caller writes afterwards: they must be none of the folder.
+
+    Raises
+    ------
+    InputError
+        When folder or machines cannot be used. A file that fails raises nothing.
+
+    Notes
+    -----
+    Processes of this computer import the script that calls this: it does so behind ``if __name__ == "__main__":``.
+    """
+    check_observer(observer)
+    found = taken(SurveyArguments, "survey", given)
+    machine, timeout, workers = found["machine"], found["timeout"], found["workers"]
+    root = check_path("folder", folder)
+    if not root.is_dir():
+        raise InputError(Problem(str(root), 0, Wording("FIL110", "no_such_folder")))
+    if timeout is not None and not timeout > 0.0:
+        raise InputError(argument_problem("timeout", Wording("ARG140", "no_timeout", timeout=timeout)))
+    if written := found["written"]:
+        check_outputs(written, (each.path for each in found_files(root)))
+    others = [] if machine else [name for name in shipped_machines() if name not in MACHINES]
+    asked = [_absolute(name) for name in machine or [*MACHINES, *others]]
+    seconds = TIMEOUT if timeout is None else timeout
+    team = _Team(tuple(zip(asked, map(as_machine, asked), strict=True)), len(others), steps)
+    count = max(1, workers or os.cpu_count() or 1)
+    with (
+        observer.progress("survey", count_files(root), "files") as advance,
+        LocalWorkers[tuple[int, int], Trial](count, try_in_worker, seconds) as processes,
+    ):
+        for (number, on), outcome in processes.run(team.trials(root, advance)):
+            team.keep(number, on, trying(team.machines[on], team.files[number].kind, outcome))
+            if len(team.tries[number]) == team.expected[number]:
+                advance(1)
+    files = tuple(surveyed(file, team.tried(number)) for number, file in enumerate(team.files))
+    said = {str(kind): tuple(map(str, some)) for kind, some in steps.items()}
+    return Survey(root.as_posix(), team.machines, seconds, said, files)
+
+
+def _absolute(name: FilePath) -> str:
+    text = os.fspath(name)
+    return str(Path(text).absolute()) if text.endswith(".toml") else text
+
+
+class _Team:
+    """The machines, the files as they are found, and what became of each on each machine."""
+
+    def __init__(
+        self, loaded: Sequence[tuple[str, Machine]], others: int, steps: Mapping[FileKind, tuple[Step, ...]]
+    ) -> None:
+        self._names, self._steps = [name for name, _ in loaded], steps
+        self._languages = [_language(machine) for _, machine in loaded]
+        self.machines = tuple(
+            SurveyedMachine(
+                Path(name).name if name.endswith(".toml") else name,
+                load_control(machine.control).name,
+                posts=number < len(loaded) - others,
+            )
+            for number, (name, machine) in enumerate(loaded)
+        )
+        self.files = list[FoundFile]()
+        self.tries = list[dict[int, Trying]]()
+        self.expected = list[int]()
+
+    def trials(self, root: Path, advance: Callable[[int], None]) -> Iterator[tuple[tuple[int, int], Trial]]:
+        """Yield what is to be tried, file by file."""
+        for number, file in enumerate(found_files(root)):
+            machines = list(self._machines_for(file))
+            self.files.append(file)
+            self.tries.append({})
+            self.expected.append(len(machines))
+            if not machines:
+                advance(1)
+            for on in machines:
+                yield (number, on), Trial(file.name, file.path, self._names[on], self._steps[file.kind])
+
+    def keep(self, number: int, on: int, found: Trying) -> None:
+        """Keep what became of a file on a machine."""
+        self.tries[number][on] = found
+
+    def tried(self, number: int) -> list[Trying]:
+        """Return what became of a file, in the order of the machines."""
+        return [each for _, each in sorted(self.tries[number].items())]
+
+    def _machines_for(self, file: FoundFile) -> Iterator[int]:
+        if file.kind is FileKind.OTHER:
+            return
+        for on, language in enumerate(self._languages):
+            is_cl, languages = file.kind is FileKind.CL, file.languages
+            if self.machines[on].posts if is_cl else languages is None or language in languages:
+                yield on
+
+
+def _language(machine: Machine) -> str:
+    """Return the folder of the reader of a machine's programs."""
+    return (FAMILIES[family_of(machine)].reader or ".none.").rsplit(".", 2)[-2]

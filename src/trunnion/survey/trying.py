@@ -1,0 +1,168 @@
+"""The work on one file for one machine: step after step up to the first that fails, all in memory and temporary files.
+
+Nothing is written beside the file, and nothing comes back but what is wrong.
+"""
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.batch.processing import work
+from trunnion.batch.result_keys import program_version
+from trunnion.batch.worker_task import FILES, Action, Outcome, Status, Task
+from trunnion.batch.workers import hindered, hindrance
+from trunnion.controls import load_control
+from trunnion.errors import Severity, TrunnionError
+from trunnion.jobs.describe.cl_files import describe_cl
+from trunnion.jobs.inputs.reading import as_machine
+from trunnion.survey.found_files import MOST_BYTES
+
+#: Memory that a worker may take, bytes; beyond it the file is given up, and not the computer.
+_MEMORY: Final = 4 << 30
+
+#: Name of what is posted or converted, within the folder of the work.
+_NAME: Final = "survey"
+
+#: Of an outcome: the step that it is of.
+STEP: Final = "step"
+
+
+class Step(StrEnum):
+    """What is tried."""
+
+    INFO = "info"
+    POST = "post"
+    VERIFY = "verify"
+    CONVERT = "convert"
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What is tried with a file.
+
+    file     its name from the folder on
+    machine  name of a shipped one, or an absolute path
+    steps    in their order; ``VERIFY`` and ``CONVERT`` of a CL file are of the program that was posted
+    """
+
+    file: str
+    path: Path
+    machine: str
+    steps: tuple[Step, ...]
+
+
+@dataclass(slots=True)
+class _Subject:
+    """What the steps work on: files by their logical names, the CL file, and the program with its subprograms."""
+
+    trial: Trial
+    files: dict[str, bytes]
+    cl: str = ""
+    program: str = ""
+    subprograms: tuple[str, ...] = ()
+
+
+def try_in_worker(trial: Trial) -> Outcome:
+    """Do the steps in a process whose memory is limited."""
+    _limit_memory()
+    return try_steps(trial)
+
+
+def try_steps(trial: Trial) -> Outcome:
+    """Do the steps; return what came of the last one that was begun, without its files."""
+    try:
+        with trial.path.open("rb") as stream:
+            content = stream.read(MOST_BYTES)
+    except OSError as error:
+        return Outcome(Status.HINDERED, (hindered(trial.file, error.strerror or str(error)),))
+    name = FILES + trial.file
+    subject = _Subject(trial, {name: content})
+    if Step.POST in trial.steps:
+        subject.cl = name
+    else:
+        subject.program = name
+    outcome, warnings = Outcome(Status.PASSED), 0
+    for step in trial.steps:
+        outcome = _DOING[step](subject)
+        warnings += outcome.warnings
+        outcome = replace(outcome, figures={**outcome.figures, STEP: str(step)})
+        if outcome.status is not Status.PASSED:
+            break
+    told = tuple(replace(each, file=_shown(each.file, trial)) for each in outcome.problems)
+    return replace(outcome, files={}, warnings=warnings, problems=told)
+
+
+def _shown(file: str, trial: Trial) -> str:
+    """Return a file as the survey names it: the program that was posted has no place of its own."""
+    return f"{trial.file} (its program)" if Path(file).stem == _NAME and file != trial.file else file
+
+
+@cache
+def _limit_memory() -> None:
+    """Limit the memory of this process, where the system can."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    _, most = resource.getrlimit(resource.RLIMIT_DATA)
+    least = _MEMORY if most == resource.RLIM_INFINITY else min(_MEMORY, most)
+    resource.setrlimit(resource.RLIMIT_DATA, (least, most))
+
+
+def _info(subject: _Subject) -> Outcome:
+    trial = subject.trial
+    try:
+        describe_cl(trial.path)
+    except TrunnionError as error:
+        if (why := hindrance(error)) is not None:
+            return Outcome(Status.HINDERED, (hindered(trial.file, why),))
+        errors = [each for each in error.problems if each.severity is Severity.ERROR]
+        told = tuple(replace(each, file=each.file.replace(str(trial.path), trial.file)) for each in errors)
+        return Outcome(Status.UNUSABLE, told, figures={"error_codes": dict(Counter(each.code for each in told))})
+    return Outcome(Status.PASSED)
+
+
+def _post(subject: _Subject) -> Outcome:
+    machine = subject.trial.machine
+    outcome = _worked(subject, Action.POST, subject.cl, {"machine": machine}, _NAME + _extension(machine))
+    programs = {FILES + name: data for name, data in outcome.files.items()}
+    if programs:
+        subject.files |= programs
+        subject.program = FILES + _NAME + _extension(machine)
+        subject.subprograms = tuple(name for name in programs if name != subject.program)
+    return outcome
+
+
+def _verify(subject: _Subject) -> Outcome:
+    arguments: dict[str, Any] = {"machine": subject.trial.machine, "subprograms": list(subject.subprograms)}
+    if subject.cl:
+        arguments["cl"] = [subject.cl]
+    return _worked(subject, Action.VERIFY, subject.program, arguments, "")
+
+
+def _convert(subject: _Subject) -> Outcome:
+    arguments = {"machine": subject.trial.machine, "to_cl": True, "subprograms": list(subject.subprograms)}
+    return _worked(subject, Action.CONVERT, subject.program, arguments, f"{_NAME}.cls")
+
+
+def _worked(subject: _Subject, action: Action, file: str, arguments: Mapping[str, Any], result: str) -> Outcome:
+    files = {name: subject.files[name] for name in (file, subject.cl, *subject.subprograms) if name}
+    return work(Task(program_version(), action, arguments, file, files, {}, result, ""))
+
+
+@cache
+def _extension(machine: str) -> str:
+    return load_control(as_machine(machine).control).extension
+
+
+_DOING: Final[Mapping[Step, Callable[[_Subject], Outcome]]] = {
+    Step.INFO: _info,
+    Step.POST: _post,
+    Step.VERIFY: _verify,
+    Step.CONVERT: _convert,
+}

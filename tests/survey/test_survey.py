@@ -1,0 +1,228 @@
+"""``trunnion survey``: what becomes of each file of a folder, and what stands in the way."""
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any, Self
+
+import pytest
+
+from tests.support.locations import TESTS, YL569
+from trunnion.batch.worker_task import Outcome, Status
+from trunnion.batch.workers import timed_out
+from trunnion.cli import main
+from trunnion.errors import InputError, Problem
+from trunnion.families import FAMILIES
+from trunnion.jobs.inputs.reading import as_machine
+from trunnion.messages import foreign
+from trunnion.readers.program.settings import family_of
+from trunnion.survey import taking
+from trunnion.survey.found_files import FileKind, FoundFile, found_files
+from trunnion.survey.result import Became, Survey, SurveyedMachine, surveyed, trying
+from trunnion.survey.taking import MACHINES, take_survey
+from trunnion.survey.trying import Step, Trial, try_steps
+
+KLARTEXT = b"""0 BEGIN PGM 1 MM
+1 TOOL CALL 1 Z S1000
+2 L X+0 Y+0 Z+50 R0 FMAX M3
+3 L Z+10 F100
+4 M30
+5 END PGM 1 MM
+"""
+
+
+class Here:
+    """Workers that are no processes."""
+
+    def __init__(self, count: int, function: Callable[[Trial], Outcome], timeout: float) -> None:
+        self._timeout = timeout
+
+    def __class_getitem__(cls, _: object) -> type[Self]:
+        return cls
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def run(self, tasks: Iterable[tuple[Any, Trial]]) -> Iterator[tuple[Any, Outcome]]:
+        """Do one after another; what is called slow takes too long."""
+        for place, trial in tasks:
+            if "slow" in trial.file:
+                yield place, Outcome(Status.TIMED_OUT, (timed_out(trial.file, self._timeout),))
+            else:
+                yield place, try_steps(trial)
+
+
+@pytest.fixture(scope="module")
+def pile(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of all kinds of files."""
+    folder = tmp_path_factory.mktemp("pile")
+    sound = (YL569 / "2_hub_rough.cls").read_bytes()
+    contents = {
+        "cl/sound.cls": sound,
+        "cl/broken.cls": sound.replace(b"GOTO/", b"GOTO/1,", 1),
+        "cl/slow.cls": sound,
+        "empty.nc": b"",
+        "klartext.h": KLARTEXT,
+        "picture.nc": b"G1 X\0\1\2\0",
+        "sinumerik.mpf": (YL569 / "2_hub_rough.expected.mpf").read_bytes(),
+        "<b>&.mpf": b"N1 TRAORI\nN2 CYCLE832(0.01)\nN3 G1 X10 F100\nN4 FOO(3\n",
+    }
+    for name, content in contents.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_bytes(content)
+    shutil.copy(TESTS / "data" / "kinds" / "lathe.nc", folder)
+    (folder / "link.cls").symlink_to(folder / "cl" / "sound.cls")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def found(pile: Path) -> Survey:
+    """What is found there on two machines."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(taking, "LocalWorkers", Here)
+        return take_survey(pile, machine=["yl569", "dmu65"], timeout=5)
+
+
+def test_each_file_becomes_what_it_is(found: Survey) -> None:
+    became = {each.file: (str(each.kind), each.looks, str(each.became), len(each.tries)) for each in found.files}
+    assert became == {
+        "<b>&.mpf": ("program", "a Sinumerik program", "refused", 1),
+        "empty.nc": ("other", "an empty file", "not ours", 0),
+        "klartext.h": ("program", "a Heidenhain Klartext program", "read", 1),
+        "lathe.nc": ("other", "a program for a lathe", "not ours", 0),
+        "link.cls": ("other", "a link", "not tried", 0),
+        "picture.nc": ("other", "a binary file", "not ours", 0),
+        "sinumerik.mpf": ("program", "a Sinumerik program", "read", 1),
+        "cl/broken.cls": ("CL file", "NX CLSF", "refused", 2),
+        "cl/slow.cls": ("CL file", "NX CLSF", "timed out", 2),
+        "cl/sound.cls": ("CL file", "NX CLSF", "proven", 2),
+    }
+
+
+def test_rates_are_by_dialect_and_control(found: Survey) -> None:
+    rates = {(str(each.kind), each.looks, each.control): (each.passed, each.files) for each in found.rates}
+    assert rates == {
+        ("CL file", "NX CLSF", "Heidenhain TNC 640"): (1, 3),
+        ("CL file", "NX CLSF", "Sinumerik 840D sl"): (1, 3),
+        ("program", "a Heidenhain Klartext program", "Heidenhain TNC 640"): (1, 1),
+        ("program", "a Sinumerik program", "Sinumerik 840D sl"): (1, 2),
+    }
+
+
+def test_codes_that_block_have_their_first_place_and_what_they_open(found: Survey) -> None:
+    blockers = {each.code: (each.files, each.opens, each.first.file, each.first.line) for each in found.blockers}
+    broken = next(each for each in found.files if each.file == "cl/broken.cls")
+    (code,) = broken.tries[0].codes
+    assert blockers[code] == (1, 1, "cl/broken.cls", 13)
+    assert blockers["NC210"] == (1, 1, "<b>&.mpf", 4)
+    assert found.blockers[0].first.cure
+
+
+def test_a_file_that_failed_tells_the_step(found: Survey) -> None:
+    steps = {each.file: {one.step for one in each.tries} for each in found.files if each.tries}
+    assert steps["cl/broken.cls"] == {"info"}
+    assert steps["cl/sound.cls"] == {"post"}
+    assert steps["sinumerik.mpf"] == {"verify"}
+
+
+def test_nothing_is_written_into_the_folder(pile: Path, found: Survey) -> None:
+    assert len([*found_files(pile)]) == len(found.files)
+
+
+def test_the_command_prints_and_writes_page_and_data(
+    pile: Path, found: Survey, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("trunnion.cli.many_files.survey.take_survey", lambda folder, **_: found)
+    data, page = tmp_path / "survey.json", tmp_path / "survey.html"
+    assert main(["survey", str(pile), "--json", str(data), "--report", str(page)]) == 0
+    out = capsys.readouterr().out
+    assert "cl/sound.cls                                        CL file, NX CLSF: proven on 2 of 2 machines" in out
+    assert "lathe.nc                                            a program for a lathe: not ours" in out
+    assert out.endswith("10 files: 1 proven, 2 read, 2 refused, 1 timed out, 1 not tried, 3 not ours\n")
+    written = json.loads(data.read_text("utf-8"))
+    assert written["schema"] == 1
+    assert written["counts"] == {str(became): count for became, count in found.counts.items()}
+    assert [each["file"] for each in written["files"]] == [each.file for each in found.files]
+    html = page.read_text("utf-8")
+    assert "&lt;b&gt;&amp;.mpf" in html
+    assert "<b>&.mpf" not in html
+    assert "<script" not in html
+
+
+def test_a_file_of_the_folder_is_not_written_over(pile: Path) -> None:
+    with pytest.raises(InputError, match=r"sinumerik\.mpf"):
+        take_survey(pile, written=[pile / "sinumerik.mpf"])
+
+
+def test_a_folder_that_is_not_there_is_an_error(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["survey", "nowhere"]) == 2
+    assert "there is no such folder" in capsys.readouterr().err
+
+
+def test_later_steps_are_of_the_program_that_was_posted(pile: Path) -> None:
+    steps = (Step.INFO, Step.POST, Step.VERIFY, Step.CONVERT)
+    outcome = try_steps(Trial("cl/sound.cls", pile / "cl/sound.cls", "yl569", steps))
+    assert (outcome.status, outcome.figures["step"], outcome.files) == (Status.PASSED, "convert", {})
+
+
+def test_the_program_that_was_posted_is_named_by_its_cl_file(tmp_path: Path) -> None:
+    shutil.copy(TESTS / "golden" / "hs664rt" / "radial_holes.cls", tmp_path / "a.cls")
+    outcome = try_steps(Trial("a.cls", tmp_path / "a.cls", "hs664rt", (Step.POST, Step.CONVERT)))
+    assert (outcome.figures["step"], outcome.problems[0].file) == ("convert", "a.cls (its program)")
+
+
+def test_a_program_of_no_certain_control_counts_where_it_reads_best(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    (tmp_path / "plain.nc").write_text("O1\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X0 Y0\nG43 H1 Z50\nG1 Z1 F100\nM30\n")
+    (file,) = take_survey(tmp_path, machine=["dmu65", "matsuura_mx330"]).files
+    assert (file.looks, [each.machine for each in file.tries]) == ("", ["matsuura_mx330"])
+    assert file.became in (Became.READ, Became.READ_WARNED)
+
+
+def test_programs_are_read_for_all_shipped_machines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    (tmp_path / "turned.h").write_bytes(KLARTEXT.replace(b"Z+50", b"Z+50 B+0"))
+    found = take_survey(tmp_path)
+    assert {each.machine for each in found.machines if each.posts} == set(MACHINES)
+    assert [each.machine for each in found.files[0].tries] == ["mikron_600u"]  # which has a B, unlike dmu65
+
+
+def test_what_only_follows_from_other_errors_blocks_nothing() -> None:
+    problems = [Problem("a.cls", line, foreign("x", "y", code)) for line, code in ((3, "PLN120"), (4, "PLN160"))]
+    outcome = Outcome(Status.FAILED, (*problems, Problem("a.cls", 0, foreign("z", "", "CTL940"))))
+    tried = trying(SurveyedMachine("m", "c"), FileKind.CL, outcome)
+    file = surveyed(FoundFile("a.cls", Path("a.cls"), FileKind.CL, "NX CLSF"), [tried])
+    (blocker,) = Survey("f", (), 1.0, {}, (file,)).blockers
+    assert (blocker.code, blocker.opens, blocker.first.line) == ("PLN120", 1, 3)
+
+
+def test_what_no_reader_understands_is_not_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    (tmp_path / "table.csv").write_text("X1,Y1,Z1,,\nX 2,Y2,Z3,,\n" * 5)
+    (file,) = take_survey(tmp_path, machine=["yl569", "matsuura_mx330"]).files
+    assert (str(file.became), file.looks) == ("not ours", "understood by no reader")
+
+
+def test_what_cannot_be_opened_is_not_tried(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.nc")
+    (tmp_path / "huge.cls").touch()
+    os.truncate(tmp_path / "huge.cls", 1 << 40)
+    (tmp_path / "bomb.zip").write_bytes(b"PK\x03\x04" + b"x" * 100)
+    found = {each.name: (each.kind, each.looks, each.is_tried) for each in found_files(tmp_path)}
+    assert found == {
+        "bomb.zip": (FileKind.OTHER, "an archive of others", True),
+        "huge.cls": (FileKind.OTHER, "larger than 200 MB", False),
+        "pipe.nc": (FileKind.OTHER, "a device or a pipe", False),
+    }
+
+
+def test_there_is_a_machine_for_each_reader() -> None:
+    read = {entry.reader for entry in FAMILIES.values()}
+    assert {FAMILIES[family_of(as_machine(name))].reader for name in MACHINES} == read
