@@ -53,10 +53,12 @@ BALLS = {
     "ROOT_BLEND": (2.0, (0.0, 0.0), 0.005),
 }
 
-FOUR = ("STOCK_ROUGHING", "STOCK_FINISHING", "CHANNEL_ROUGHING", "ROOT_BLEND")
+ROUND = "STOCK_ROUGHING", "STOCK_FINISHING"
+FOUR = (*ROUND, "CHANNEL_ROUGHING", "ROOT_BLEND")
+SIX = pytest.param((*ROUND, *BALLS), marks=pytest.mark.nightly)
 
 
-@pytest.fixture(scope="module", params=[FOUR, pytest.param(None, marks=pytest.mark.nightly)], ids=["four", "all six"])
+@pytest.fixture(scope="module", params=[FOUR, SIX], ids=["four", "six"])
 def coarse(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> trunnion.ImpellerCut:
     """The published impeller with few passes: its operations with wide step-overs."""
     folder = tmp_path_factory.mktemp("impeller")
