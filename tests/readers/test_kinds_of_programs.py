@@ -36,6 +36,12 @@ def test_each_kind_has_a_file_or_a_reader() -> None:
     }
 
 
+def test_values_behind_equals_signs_are_words_of_a_program(tmp_path: Path) -> None:
+    program = tmp_path / "increments.mpf"
+    program.write_text("X1\nX=IC(1)\nX=IC(2)\nY = IC(3)\n")
+    assert recognize(program) is None
+
+
 def test_a_tape_is_known_by_the_end_of_its_blocks(tmp_path: Path) -> None:
     tape = tmp_path / "tape.nc"
     tape.write_text("N1G01X+0010000Y+0020000F10$\nN2X+0030000$\nN3M02$\n", encoding="utf-8")

@@ -13,13 +13,14 @@ from tests.support.locations import TESTS, YL569
 from trunnion.batch.worker_task import Outcome, Status
 from trunnion.batch.workers import timed_out
 from trunnion.cli import main
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES
 from trunnion.jobs.inputs.reading import as_machine
+from trunnion.messages import foreign
 from trunnion.readers.program.settings import family_of
 from trunnion.survey import taking
-from trunnion.survey.found_files import FileKind, found_files
-from trunnion.survey.result import Became, Survey
+from trunnion.survey.found_files import FileKind, FoundFile, found_files
+from trunnion.survey.result import Became, Survey, SurveyedMachine, surveyed, trying
 from trunnion.survey.taking import MACHINES, take_survey
 from trunnion.survey.trying import Step, Trial, try_steps
 
@@ -169,6 +170,12 @@ def test_later_steps_are_of_the_program_that_was_posted(pile: Path) -> None:
     assert (outcome.status, outcome.figures["step"], outcome.files) == (Status.PASSED, "convert", {})
 
 
+def test_the_program_that_was_posted_is_named_by_its_cl_file(tmp_path: Path) -> None:
+    shutil.copy(TESTS / "golden" / "hs664rt" / "radial_holes.cls", tmp_path / "a.cls")
+    outcome = try_steps(Trial("a.cls", tmp_path / "a.cls", "hs664rt", (Step.POST, Step.CONVERT)))
+    assert (outcome.figures["step"], outcome.problems[0].file) == ("convert", "a.cls (its program)")
+
+
 def test_a_program_of_no_certain_control_counts_where_it_reads_best(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -177,6 +184,23 @@ def test_a_program_of_no_certain_control_counts_where_it_reads_best(
     (file,) = take_survey(tmp_path, machine=["dmu65", "matsuura_mx330"]).files
     assert (file.looks, [each.machine for each in file.tries]) == ("", ["matsuura_mx330"])
     assert file.became in (Became.READ, Became.READ_WARNED)
+
+
+def test_programs_are_read_for_all_shipped_machines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    (tmp_path / "turned.h").write_bytes(KLARTEXT.replace(b"Z+50", b"Z+50 B+0"))
+    found = take_survey(tmp_path)
+    assert {each.machine for each in found.machines if each.posts} == set(MACHINES)
+    assert [each.machine for each in found.files[0].tries] == ["mikron_600u"]  # which has a B, unlike dmu65
+
+
+def test_what_only_follows_from_other_errors_blocks_nothing() -> None:
+    problems = [Problem("a.cls", line, foreign("x", "y", code)) for line, code in ((3, "PLN120"), (4, "PLN160"))]
+    outcome = Outcome(Status.FAILED, (*problems, Problem("a.cls", 0, foreign("z", "", "CTL940"))))
+    tried = trying(SurveyedMachine("m", "c"), FileKind.CL, outcome)
+    file = surveyed(FoundFile("a.cls", Path("a.cls"), FileKind.CL, "NX CLSF"), [tried])
+    (blocker,) = Survey("f", (), 1.0, {}, (file,)).blockers
+    assert (blocker.code, blocker.opens, blocker.first.line) == ("PLN120", 1, 3)
 
 
 def test_what_no_reader_understands_is_not_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -56,11 +56,13 @@ class SurveyContent:
 
     facts     names and values at the head
     machines  with their controls
+    others    machines on which programs were read as well
     """
 
     folder: str
     facts: Sequence[tuple[str, str]]
     machines: Sequence[tuple[str, str]]
+    others: Sequence[str]
     rates: Sequence[RateRow]
     blockers: Sequence[BlockerRow]
     files: Sequence[FileRow]
@@ -72,6 +74,7 @@ def render_survey_page(content: SurveyContent) -> bytes:
     policy = f"default-src 'none'; style-src {source_hash(style)}; base-uri 'none'; form-action 'none'"
     facts = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in content.facts)
     machines = ", ".join(f"<bdi>{_text(name)}</bdi> ({_text(control)})" for name, control in content.machines)
+    others = f"; programs were read for {', '.join(map(_text, content.others))} as well" if content.others else ""
     parts = (_rates(content.rates), _blockers(content.blockers), _files(content.files))
     body = f"""<body>
 <main>
@@ -80,7 +83,7 @@ def render_survey_page(content: SurveyContent) -> bytes:
 <dl>{facts}</dl>
 <p class="note">Each CL file was posted for each of these machines, and its program proven against it; each NC program
 was read and run by itself, without a CL file, for the machines of the control that it looks like, and the one that
-reads it best counts. A program that was read is not proven. Machines: {machines}.</p>
+reads it best counts. A program that was read is not proven. Machines: {machines}{others}.</p>
 </header>
 {"".join(parts)}</main>
 </body>

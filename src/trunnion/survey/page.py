@@ -25,14 +25,15 @@ def survey_page(found: Survey, spoken: Callable[[str], str] = str) -> bytes:
         SurveyContent(
             found.folder,
             facts,
-            [(each.machine, each.control) for each in found.machines],
+            [(each.machine, each.control) for each in found.machines if each.posts],
+            [each.machine for each in found.machines if not each.posts],
             [
                 RateRow(str(each.kind), each.looks, each.control, each.files, each.passed, _became(each.became))
                 for each in found.rates
             ],
             [
                 BlockerRow(each.code, each.files, each.opens, _place(each.first), spoken(each.first.what),
-                           spoken(each.first.cure))
+                           spoken(each.cure))
                 for each in found.blockers
             ],
             [_row(file, spoken) for file in found.files],

@@ -59,6 +59,9 @@ _BLOCKED: Final = frozenset({Became.CHECK_FAILED, Became.PROOF_FAILED, Became.RE
 #: The check that fails where something is not understood.
 _WORDS: Final = "words"
 
+#: Codes that only say what follows from the errors before them.
+_SEQUELS: Final = frozenset({"CNV130", "CTL940", "PLN160"})
+
 #: The code of a program of which more is not understood than understood.
 _OTHER_CONTROL: Final = "NC113"
 
@@ -72,10 +75,12 @@ class SurveyedMachine:
 
     machine  name of its definition
     control  name of its control
+    posts    whether CL files were posted for it; for others, programs were read
     """
 
     machine: str
     control: str
+    posts: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +158,11 @@ class Blocker:
     files: int
     opens: int
     first: Problem
+
+    @property
+    def cure(self) -> str:
+        """How to correct the first one, or where that is said."""
+        return self.first.cure or f"trunnion explain {self.code} says more"
 
 
 @dataclass(frozen=True)
@@ -234,15 +244,16 @@ def trying(machine: SurveyedMachine, kind: FileKind, outcome: Outcome) -> Trying
     became = _BECAME[outcome.status](kind, outcome)
     codes = _codes(outcome, errors)
     firsts = {each.code: each for each in reversed(errors)}
-    step, told = str(outcome.figures.get(STEP, "")), tuple(each for each in errors if firsts[each.code] is each)
+    told = tuple(firsts[code] for code in codes if code in firsts)
+    step = str(outcome.figures.get(STEP, ""))
     return Trying(machine.machine, machine.control, became, step, codes, told, outcome.warnings, count_errors(outcome))
 
 
 def _codes(outcome: Outcome, errors: Sequence[Problem]) -> tuple[str, ...]:
-    """Return the codes of all errors; checks that fail only where no other error is behind them."""
+    """Return the codes of all errors but sequels; checks that fail only where no other error is behind them."""
     codes = outcome.figures.get("error_codes") or [each.code for each in errors]
     failed = outcome.figures.get("failed_checks") or ()
-    return tuple(dict.fromkeys(code for code in codes if code not in failed)) or tuple(failed)
+    return tuple(dict.fromkeys(code for code in codes if code not in {*failed, *_SEQUELS})) or tuple(failed)
 
 
 def _passed(kind: FileKind, outcome: Outcome) -> Became:

@@ -14,14 +14,15 @@ from trunnion.jobs.arguments import taken
 from trunnion.jobs.inputs.arguments import check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.machines import Machine
+from trunnion.machines import Machine, shipped_machines
 from trunnion.messages import Wording
 from trunnion.readers.program.settings import family_of
 from trunnion.survey.found_files import FileKind, FoundFile, count_files, found_files
 from trunnion.survey.result import Survey, SurveyedMachine, Trying, surveyed, trying
 from trunnion.survey.trying import Step, Trial, try_in_worker
 
-#: One shipped machine for each control.
+#: One shipped machine for each control: CL files are posted for them. Programs are read for all that are shipped, as a
+#: program for A and C says nothing on a machine with B.
 MACHINES: Final = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt")
 
 #: Seconds that a file has on each machine.
@@ -61,7 +62,7 @@ def take_survey(
     observer
         Receives the progress, in files.
     machine
-        Names of shipped machines, or TOML files; by default one shipped machine for each control.
+        Names of shipped machines, or TOML files; by default one shipped machine for each control, and for programs all.
     timeout
         Seconds that a file has on each machine; by default 60.
     workers
@@ -88,9 +89,10 @@ def take_survey(
         raise InputError(argument_problem("timeout", Wording("ARG140", "no_timeout", timeout=timeout)))
     if written := found["written"]:
         check_outputs(written, (each.path for each in found_files(root)))
-    asked = [_absolute(name) for name in machine or MACHINES]
+    others = [] if machine else [name for name in shipped_machines() if name not in MACHINES]
+    asked = [_absolute(name) for name in machine or [*MACHINES, *others]]
     seconds = TIMEOUT if timeout is None else timeout
-    team = _Team(tuple(zip(asked, map(as_machine, asked), strict=True)), steps)
+    team = _Team(tuple(zip(asked, map(as_machine, asked), strict=True)), len(others), steps)
     count = max(1, workers or os.cpu_count() or 1)
     with (
         observer.progress("survey", count_files(root), "files") as advance,
@@ -113,12 +115,18 @@ def _absolute(name: FilePath) -> str:
 class _Team:
     """The machines, the files as they are found, and what became of each on each machine."""
 
-    def __init__(self, loaded: Sequence[tuple[str, Machine]], steps: Mapping[FileKind, tuple[Step, ...]]) -> None:
+    def __init__(
+        self, loaded: Sequence[tuple[str, Machine]], others: int, steps: Mapping[FileKind, tuple[Step, ...]]
+    ) -> None:
         self._names, self._steps = [name for name, _ in loaded], steps
         self._languages = [_language(machine) for _, machine in loaded]
         self.machines = tuple(
-            SurveyedMachine(Path(name).name if name.endswith(".toml") else name, load_control(machine.control).name)
-            for name, machine in loaded
+            SurveyedMachine(
+                Path(name).name if name.endswith(".toml") else name,
+                load_control(machine.control).name,
+                posts=number < len(loaded) - others,
+            )
+            for number, (name, machine) in enumerate(loaded)
         )
         self.files = list[FoundFile]()
         self.tries = list[dict[int, Trying]]()
@@ -148,7 +156,8 @@ class _Team:
         if file.kind is FileKind.OTHER:
             return
         for on, language in enumerate(self._languages):
-            if file.languages is None or file.kind is FileKind.CL or language in file.languages:
+            is_cl, languages = file.kind is FileKind.CL, file.languages
+            if self.machines[on].posts if is_cl else languages is None or language in languages:
                 yield on
 
 

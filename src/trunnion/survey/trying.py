@@ -93,7 +93,13 @@ def try_steps(trial: Trial) -> Outcome:
         outcome = replace(outcome, figures={**outcome.figures, STEP: str(step)})
         if outcome.status is not Status.PASSED:
             break
-    return replace(outcome, files={}, warnings=warnings)
+    told = tuple(replace(each, file=_shown(each.file, trial)) for each in outcome.problems)
+    return replace(outcome, files={}, warnings=warnings, problems=told)
+
+
+def _shown(file: str, trial: Trial) -> str:
+    """Return a file as the survey names it: the program that was posted has no place of its own."""
+    return f"{trial.file} (its program)" if Path(file).stem == _NAME and file != trial.file else file
 
 
 @cache

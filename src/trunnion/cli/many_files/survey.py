@@ -46,12 +46,14 @@ def survey_lines(found: Survey) -> Iterator[str]:
     for each in found.blockers[:_MOST_CODES]:
         first = each.first
         place = f"{first.file}:{first.line}" if first.line else first.file
-        message = in_command_words(f"{first.what}; {first.cure}".removesuffix("; "))
+        message = in_command_words(f"{first.what}; {each.cure}")
         yield f"{each.code:<12} {each.files:>5} {each.opens:>5}  {place}: {message}"
     if len(found.blockers) > _MOST_CODES:
         yield f"and {counted(len(found.blockers) - _MOST_CODES, 'code')} more"
-    machines = ", ".join(f"{each.machine} ({each.control})" for each in found.machines)
-    yield from ("", f"tried on {machines}, for at most {found.timeout:g} s each")
+    machines = ", ".join(f"{each.machine} ({each.control})" for each in found.machines if each.posts)
+    others = ", ".join(each.machine for each in found.machines if not each.posts)
+    also = f"; programs also on {others}" if others else ""
+    yield from ("", f"tried on {machines}{also}; at most {found.timeout:g} s each")
     counts = ", ".join(f"{count} {became}" for became, count in found.counts.items())
     yield f"{counted(len(found.files), 'file')}: {counts}" if found.files else "no files"
 

@@ -121,7 +121,7 @@ KINDS: Final = (
 #: A text that is no program.
 TEXT: Final = ProgramKind("a text, and no program", ())
 
-_WORD: Final = re.compile(r"(?:^|[\s(])[GMXYZFSTN] ?[-+]?\.?\d", re.IGNORECASE)
+_WORD: Final = re.compile(r"(?:^|[\s(])[GMXYZFSTN] ?(?:[-+]?\.?\d|=)", re.IGNORECASE)
 
 
 def recognize(file: Path) -> Recognized | None:
