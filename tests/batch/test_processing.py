@@ -131,6 +131,16 @@ def test_a_program_is_compared_with_the_cl_file_beside_it() -> None:
     assert (missing.problems[0].file, missing.problems[0].code) == ("x.cls", "FIL110")
 
 
+def test_what_is_not_understood_is_told_by_its_own_codes_with_the_first_of_each() -> None:
+    program = b"N1 G90 G94 F100 M3 S100\n" + b"FOO(3\n" * 30 + b"R1=R2\nN9 M30\n"
+    found = done(Action.VERIFY, {"machine": "yl569"}, {"x.mpf": program})
+    told = [(each.code, each.line) for each in found.problems]
+    assert found.status is Status.FAILED
+    assert [each for each in told if each[0] == "NC210"][:2] == [("NC210", 2), ("NC210", 3)]
+    assert len({code for code, _ in told}) == len(found.figures["error_codes"]) > 1
+    assert "words" not in found.figures["error_codes"]
+
+
 def test_what_the_simulation_finds_fails() -> None:
     found = done(Action.SIMULATE, {**SIMULATED, "tools": ["2=flat:30,length=9,flutes=5"]}, {"x.mpf": NC})
     assert found.status is Status.FAILED

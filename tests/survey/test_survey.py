@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Self
@@ -217,10 +218,30 @@ def test_what_cannot_be_opened_is_not_tried(tmp_path: Path) -> None:
     (tmp_path / "bomb.zip").write_bytes(b"PK\x03\x04" + b"x" * 100)
     found = {each.name: (each.kind, each.looks, each.is_tried) for each in found_files(tmp_path)}
     assert found == {
-        "bomb.zip": (FileKind.OTHER, "an archive of others", True),
+        "bomb.zip": (FileKind.OTHER, "an archive: cannot be unpacked: File is not a zip file", True),
         "huge.cls": (FileKind.OTHER, "larger than 200 MB", False),
         "pipe.nc": (FileKind.OTHER, "a device or a pipe", False),
     }
+
+
+def test_a_folder_that_cannot_be_read_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "locked").mkdir()
+    scandir = os.scandir
+
+    def refuse(path: str) -> Any:
+        if str(path).endswith("locked"):
+            raise PermissionError(13, "Permission denied", str(path))
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    (found,) = found_files(tmp_path)
+    assert (found.name, found.looks, found.is_tried) == ("locked", "cannot be read: Permission denied", False)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names are texts there")
+def test_a_name_that_is_no_text_has_question_marks(tmp_path: Path) -> None:
+    Path(os.fsdecode(os.fsencode(tmp_path) + b"/bad\xff.nc")).write_bytes(b"")
+    assert [each.name for each in found_files(tmp_path)] == ["bad?.nc"]
 
 
 def test_there_is_a_machine_for_each_reader() -> None:

@@ -53,12 +53,19 @@ class FoundFile:
 
 
 def found_files(folder: Path) -> Iterator[FoundFile]:
-    """Yield the files of a folder and those below, in the order of their names; links are not followed."""
-    for place, folders, names in os.walk(folder):
+    """Yield the files of a folder and those below, in the order of their names; links are not followed.
+
+    A folder that cannot be read stands for its files.
+    """
+    unread = list[OSError]()
+    for place, folders, names in os.walk(folder, onerror=unread.append):
         folders.sort()
         for name in sorted(names):
             path = Path(place, name)
-            yield _found(path.relative_to(folder).as_posix(), path)
+            yield _found(_name(path, folder), path)
+    for error in unread:
+        path = Path(error.filename)
+        yield FoundFile(_name(path, folder), path, FileKind.OTHER, _unreadable(error), is_tried=False)
 
 
 def count_files(folder: Path) -> int:
@@ -73,10 +80,12 @@ def _found(name: str, path: Path) -> FoundFile:
         with path.open("rb") as stream:
             head = stream.read(_HEAD)
     except OSError as error:
-        return FoundFile(name, path, FileKind.OTHER, f"cannot be read: {error.strerror}", is_tried=False)
+        return FoundFile(name, path, FileKind.OTHER, _unreadable(error), is_tried=False)
     if is_cl_file(path):
-        dialect = _dialect(path)
-        return FoundFile(name, path, FileKind.CL, dialect) if dialect else _other(name, path, "an archive of others")
+        try:
+            return FoundFile(name, path, FileKind.CL, _dialect(path))
+        except InputError as error:
+            return _other(name, path, f"an archive: {error.problems[0].what}")
     if not head.strip():
         return _other(name, path, "an empty file")
     if b"\0" in head:
@@ -98,7 +107,7 @@ def _untouchable(path: Path) -> str:
     try:
         found = path.lstat()
     except OSError as error:
-        return f"cannot be read: {error.strerror}"
+        return _unreadable(error)
     if stat.S_ISLNK(found.st_mode):
         return "a link"
     if not stat.S_ISREG(found.st_mode):
@@ -107,10 +116,18 @@ def _untouchable(path: Path) -> str:
 
 
 def _dialect(path: Path) -> str:
-    """Return the dialect of a CL file, by the first file of an archive; empty if that is none of CL data."""
-    try:
-        with cl_sources(path)[0].open() as text:
-            head = text.read(_HEAD)
-    except (InputError, OSError):
-        return ""
-    return recognize_dialect(head).dialect.title
+    """Return the dialect of a CL file, by the first file of an archive.
+
+    Raises ``InputError`` for an archive that has none, or cannot be unpacked.
+    """
+    with cl_sources(path)[0].open() as text:
+        return recognize_dialect(text.read(_HEAD)).dialect.title
+
+
+def _name(path: Path, folder: Path) -> str:
+    """Return a name as texts can have it: what is no letter in UTF-8 is a question mark."""
+    return path.relative_to(folder).as_posix().encode("utf-8", "replace").decode()
+
+
+def _unreadable(error: OSError) -> str:
+    return f"cannot be read: {error.strerror}"

@@ -104,7 +104,7 @@ def take_survey(
                 advance(1)
     files = tuple(surveyed(file, team.tried(number)) for number, file in enumerate(team.files))
     said = {str(kind): tuple(map(str, some)) for kind, some in steps.items()}
-    return Survey(root.as_posix(), team.machines, seconds, said, files)
+    return Survey(root.as_posix().encode("utf-8", "replace").decode(), team.machines, seconds, said, files)
 
 
 def _absolute(name: FilePath) -> str:

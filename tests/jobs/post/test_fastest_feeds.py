@@ -242,7 +242,7 @@ def published(folder: Path, rows: int) -> tuple[Path, Path]:
 
 def test_the_published_path(tmp_path: Path) -> None:
     """A control that stops for no corner still needs more than the fastest run; feeds are none that the axes miss."""
-    source, machine = published(tmp_path, 401)
+    source, machine = published(tmp_path, 201)
     least = fastest_run(PATH, LIMITS, 100).duration
     seconds = []
     every: tuple[Settings, ...] = ({}, FASTEST, {**FASTEST, "feed_limit": 20000})
