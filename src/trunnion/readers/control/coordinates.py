@@ -365,6 +365,7 @@ class CoordinateControl(RowRecorder):
         self.length_unit = INCH if inches else 1.0
         self.feed_unit = INCH if inches and feeds_too else 1.0
         self.modal.inches.set(self.row, inches)
+        self.said_from.setdefault("units", self.row)
         if self.units_from is None:
             self.units_from = self.row
 
