@@ -159,12 +159,9 @@ def _operations(
 def _entries(program: Program, motions: Sequence[Motion], call: str) -> Iterator[str]:
     """Yield what the operator enters for radius compensation."""
     for each in entries_of(program, motions, call):
-        larger = (
-            "" if each.holds == "radius" else ", by which the tool is larger than its size here (smaller: negative)"
-        )
-        yield (
-            f"radius compensation: the path is that of the tool's centre, so enter {each.value} {each.where}{larger}"
-        )
+        is_radius = each.contour or each.holds == "radius"
+        larger = "" if is_radius else ", by which the tool is larger than its size here (smaller: negative)"
+        yield f"radius compensation: the path is that of the {each.path}, so enter {each.value} {each.where}{larger}"
 
 
 def _notes(motions: Sequence[Motion]) -> Iterator[str]:
