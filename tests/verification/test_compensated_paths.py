@@ -47,11 +47,35 @@ def test_the_radius_in_the_register_of_a_centre_line_is_a_doubled_radius(
     assert unknown.state == "not checked"
     assert "radius_register" in unknown.told
     doubled = compensation(programs[machine], machine, "radius")
-    if machine == "hs664rt":  # how a Fidia compensates is not known
-        assert (doubled.state, "is not known" in doubled.told) == ("not checked", True)
-        return
     assert doubled.state == "FAIL"
     assert "compensates by 6.000 mm" in doubled.summary
+
+
+@pytest.mark.parametrize("word", ["KONT", "CUT3DC"])
+def test_a_doubled_radius_fails_however_the_control_rounds_corners(
+    word: str, programs: dict[str, Path], tmp_path: Path
+) -> None:
+    program = tmp_path / "corners.mpf"
+    program.write_text(programs["yl569"].read_text().replace("G41 ", f"{word} G41 "))
+    assert compensation(program, "yl569", "difference").state != "FAIL"
+    assert "compensates by 6.000 mm" in compensation(program, "yl569", "radius").summary
+
+
+@pytest.mark.parametrize("holds", ["unknown", "difference", "radius"])
+@pytest.mark.parametrize(
+    ("machine", "word", "block"), [("yl569", "TOFFR=1", "G41 "), ("dmu65", "TOOL CALL DR+1", " RL ")]
+)
+def test_a_radius_added_within_compensation_fails_whatever_the_register_holds(
+    machine: str, word: str, block: str, holds: str, programs: dict[str, Path], tmp_path: Path
+) -> None:
+    lines = programs[machine].read_text().splitlines()
+    at = next(k for k, line in enumerate(lines) if block in f"{line} ") + 2
+    program = tmp_path / f"added{programs[machine].suffix}"
+    program.write_text("\n".join([*lines[:at], word, *lines[at:], ""]))
+    found = trunnion.verify(program, machine=machine, cl=POCKET, radius_register=holds)  # type: ignore[arg-type]
+    assert check(found, "tool").state == "FAIL"
+    if holds != "unknown":
+        assert check(found, "compensation").state == "FAIL"
 
 
 def test_klartext_takes_the_radius_off_that_of_the_tool_table(tmp_path: Path) -> None:

@@ -64,8 +64,11 @@ class _Plane:
 def run_of_centre(run: Run, offsets: Sequence[tuple[Stretch, float]]) -> CentreRun:
     """Return the run of the tool's centre, ``offsets`` mm beside what the stretches program, each on its side."""
     found, faults = list[Insertion](), list[tuple[int, Fault]]()
+    before, last = 0.0, 0
     for stretch, offset in offsets:
-        if abs(offset) <= NOTHING:
+        comes_back = stretch.first == last and abs(before) > NOTHING
+        before, last = offset, stretch.end
+        if abs(offset) <= NOTHING and not comes_back:
             continue
         insertion = _insertion(run, stretch, offset, faults)
         if insertion is not None:

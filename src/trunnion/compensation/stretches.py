@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -79,17 +80,20 @@ def is_of_compensation(wording: Wording) -> bool:
 
 
 def offsets_of(run: Run, holds: RegisterValue, radius_of: RadiusOf) -> tuple[tuple[Stretch, float | None], ...]:
-    """Return how far the control goes beside the programmed path of each stretch, mm; None where nobody knows it."""
+    """Return how far the control goes beside the programmed path of each stretch, mm; None where nobody knows it.
+
+    Where the program adds another value within a stretch, it is more than one.
+    """
     stretches = list(compensated_stretches(run))
     additions = [each for each in tool_additions(run) if each.name in ADDED_RADII] if stretches else []
+    changes = {row for each in additions for row in (each.first, each.end)}
     found = list[tuple[Stretch, float | None]]()
     for stretch in stretches:
-        added = {
-            sum(each.value for each in additions if each.first <= row < each.end)
-            for row in (stretch.first, stretch.end - 1)
-        }
-        base = _base(run, stretch.first, holds, radius_of)
-        found.append((stretch, None if base is None or len(added) > 1 else base + added.pop()))
+        bounds = sorted({stretch.first, stretch.end, *(row for row in changes if stretch.first < row < stretch.end)})
+        for first, end in pairwise(bounds):
+            base = _base(run, first, holds, radius_of)
+            added = sum(each.value for each in additions if each.first <= first < each.end)
+            found.append((replace(stretch, first=first, end=end), None if base is None else base + added))
     return tuple(found)
 
 

@@ -34,6 +34,12 @@ _CENTRE_LINE: Final = (
     "the control compensates by {offset:.3f} mm, and the points of the CL file are those of the tool's centre: it goes"
     " up to {off:.3f} mm beside them; the register must hold the difference (radius_register=difference)"
 )
+#: The same where only this is known: along its elements the tool is beside the path, however it goes round corners.
+_BESIDE_ELEMENTS: Final = (
+    "the control compensates by {offset:.3f} mm, and the points of the CL file are those of the tool's centre: it goes"
+    " that far beside them, whatever it does at corners; the register must hold the difference"
+    " (radius_register=difference)"
+)
 _CONTOUR: Final = (
     "the control compensates by {offset:.3f} mm, and the points of the CL file are those of the contour, which the tool"
     " would cut into: its centre must go {radius:.3f} mm beside them; the register must hold the radius"
@@ -120,6 +126,10 @@ def _off_centre_line(context: ComparedContext, driven: DrivenPath, stretch: Stre
     """Yield the first motion of a stretch that goes beside the points of the tool's centre."""
     centre, matching = driven.centre, context.matching
     pairs = matching.nc.count_before(stretch.first), matching.nc.count_before(stretch.end)
+    if driven.is_unsure(stretch) and pairs[0] < pairs[1]:
+        row, point = int(matching.nc[pairs[0]]), int(matching.cl[pairs[0]])
+        yield context.place_with_cl(row, abs(offset), _BESIDE_ELEMENTS.format(offset=offset), point)
+        return
     for nc, cl in matching.pair_chunks(*pairs):
         tip = centre.run.positions(centre.row_of[nc]).tip
         off = np.linalg.norm(tip - context.expected.tip(cl), axis=1)

@@ -34,6 +34,10 @@ class DrivenPath:
     stretches: tuple[DrivenStretch, ...]
     centre: CentreRun
 
+    def is_unsure(self, stretch: Stretch) -> bool:
+        """Whether it is not known how the control goes on from one element of a stretch to the next."""
+        return any(fault is Fault.UNSURE and stretch.first <= row < stretch.end for row, fault in self.centre.faults)
+
     def missing(self, context: Context) -> tuple[Wording, ...]:
         """Return what nobody has stated, or what is not simulated, of the path."""
         found = list[Wording]()
@@ -48,9 +52,9 @@ class DrivenPath:
 def driven_path(context: Context) -> DrivenPath:
     """Return what the control drives; the radius of a tool is that of its CL file."""
     run, holds = context.run, context.settings.register_holds
-    offsets = offsets_of(run, holds, lambda row: _cl_radius(context, row))
+    offsets = offsets_of(run, holds, lambda row: cl_radius(context, row))
     stretches = tuple(
-        DrivenStretch(stretch, offset, _cl_radius(context, stretch.first) if of_contour else 0.0)
+        DrivenStretch(stretch, offset, cl_radius(context, stretch.first) if of_contour else 0.0)
         for (stretch, offset), of_contour in zip(offsets, _are_of_contour(context, offsets), strict=True)
     )
     ways = [(each.stretch, each.wanted if each.offset is None else each.offset) for each in stretches]
@@ -74,7 +78,7 @@ def _cl_row(context: Context, row: int) -> int | None:
     return int(context.matching.cl[pairs]) if pairs < len(context.matching.nc) else None
 
 
-def _cl_radius(context: Context, row: int) -> float | None:
+def cl_radius(context: Context, row: int) -> float | None:
     """Return the radius of the tool of the CL file at a row."""
     cl = _cl_row(context, row)
     if cl is None or not isinstance(context, ComparedContext):

@@ -9,8 +9,9 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.compensation.stretches import ADDED_RADII, RegisterValue
 from trunnion.model.columns import StepColumn
-from trunnion.model.run import Run
-from trunnion.model.tool_additions import REPLACED
+from trunnion.model.run import Run, RunEvent
+from trunnion.model.tool_additions import LENGTHS, REPLACED
+from trunnion.verification.checks.driven_path import cl_radius
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.spindle_and_tool import names_tool
@@ -83,12 +84,19 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
         if event.kind != "delta" or not isinstance(event.value, tuple):
             continue
         name, value = str(event.value[0]), float(event.value[1] or 0.0)
-        if name in ADDED_RADII and context.settings.register_holds is RegisterValue.RADIUS:
-            continue  # the check of compensation judges what comes of it
-        if value and not any(abs(value - wanted) <= _DELTA for wanted in context.settings.tool_deltas.get(name, ())):
+        asked = [*context.settings.tool_deltas.get(name, ()), *_radii_taken_off(context, event, name)]
+        if value and not any(abs(value - wanted) <= _DELTA for wanted in asked):
             does = "puts {:g} mm in the place of the tool's length" if name in REPLACED else "adds {:g} mm to the tool"
             text = f"{name} {does.format(value)}, which nothing asks for"
             yield context.place_of_event(event, value, text)
+
+
+def _radii_taken_off(context: ComparedContext, event: RunEvent, name: str) -> Iterator[float]:
+    """Yield what makes a difference of the radius in the tool table, as the centre line of a tool wants it."""
+    if name in ADDED_RADII - LENGTHS and context.settings.register_holds is RegisterValue.RADIUS:
+        radius = cl_radius(context, event.before_row)
+        if radius is not None:
+            yield -radius
 
 
 def tool_fault(has: str, names: tuple[str, ...]) -> str:
