@@ -142,6 +142,8 @@ class Control:
     blocks_in_compensation  most blocks in a row without motion in the plane, within radius compensation, before which
                           the control still finds the corner; ``NO_LIMIT`` where it reads as many as there are
     stops_in_compensation  it finds the corner across a stop (M0, M1) too
+    radius_as_diameter    when the operator enters the radius of compensation as a diameter: ``always``, or a condition
+                          ("setting 40 is DIAMETER"); empty: never
     threads_stop_spindle  the spindle stands still after a thread, until the program starts it again
     first_lines           lines at the start of a program before which nothing may be written, not even a comment
     axis_tolerance        how far the tool axis may leave its path between CL points where no setting says it
@@ -185,6 +187,7 @@ class Control:
     own_blocks: bool
     blocks_in_compensation: int
     stops_in_compensation: bool
+    radius_as_diameter: str
     threads_stop_spindle: bool
     first_lines: int
     axis_tolerance: AxisTolerance

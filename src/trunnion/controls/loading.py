@@ -102,6 +102,7 @@ def load_control(own: Table) -> Control:
         own_blocks=table.flag("own_blocks", False),
         blocks_in_compensation=table.integer("blocks_in_compensation", 1, at_least=0, at_most=NO_LIMIT),
         stops_in_compensation=table.flag("stops_in_compensation", False),
+        radius_as_diameter=table.text("radius_as_diameter", ""),
         threads_stop_spindle=table.flag("threads_stop_spindle", False),
         first_lines=table.integer("first_lines", 0, at_least=0, at_most=9),
         axis_tolerance=_read_axis_tolerance(table.table("between_points")),

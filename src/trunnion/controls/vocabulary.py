@@ -122,6 +122,9 @@ FORCED_NOTICE: Final = "MUST NOT RUN AS IT IS"
 #: The same in a program whose motion a user's hooks have changed.
 HOOKS_NOTICE: Final = "MOTION CHANGED BY HOOKS"
 
+#: The same for what the operator enters for radius compensation; every program of the toolpath says it anew.
+ENTRY_NOTICE: Final = "radius compensation of tool"
+
 #: Values of the records of tools and of operations, for templates with expressions.
 TOOL_VALUES: Final = (
     "call", "number", "name", "kind", "diameter", "corner_radius", "length", "flute_length", "taper_angle", "tip_angle",

@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.controls.definition import Control
 from trunnion.controls.vocabulary import FORCED_NOTICE
-from trunnion.conversion.notices import without_notices
+from trunnion.conversion.notices import entry_lines, without_notices
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
@@ -70,7 +70,7 @@ class HeaderReader:
                 head = self._text.line_texts(1, section.line if section.line > 1 else first)
                 # How the part is clamped goes into the head of what is made of it; its zero is that of this machine.
                 of_part = {number for number, text in head_comments(head) if may_be_notice(text)}
-                self.template_lines |= of_part
+                self.template_lines |= of_part | entry_lines(head, self._control.family)
                 program_start = without_notices(head, self._control.family)
                 self.forced_line = next((number for number, text in head if FORCED_NOTICE in text), 0)
                 self.template_lines |= match_lines(program_start, self._patterns.of("program_start"), program_values)

@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter
-from trunnion.controls.vocabulary import FORCED_NOTICE, HOOKS_NOTICE
-from trunnion.model.clamping_notices import PLACED_NOTICES
+from trunnion.controls.vocabulary import ENTRY_NOTICE, FORCED_NOTICE, HOOKS_NOTICE
+from trunnion.model.clamping_notices import PLACED_NOTICES, head_comments
 from trunnion.model.toolpath import Message, Operation, Toolpath
 
 _OF_HEADS: Final = (FORCED_NOTICE, HOOKS_NOTICE, *PLACED_NOTICES)
@@ -57,17 +57,28 @@ def _is_notice(event: object) -> bool:
 
 def without_notices(lines: Iterable[tuple[int, str]], family: FamilyWriter) -> list[tuple[int, str]]:
     """Return the lines of a head, by their numbers, without those that are notices of this program, and no title."""
-    kept, notice = [], ""
+    lines = list(lines)
+    taken = {*_lines_of(lines, _OF_HEADS, family), *entry_lines(lines, family)}
+    return [(number, text) for number, text in lines if number not in taken]
+
+
+def entry_lines(lines: Iterable[tuple[int, str]], family: FamilyWriter) -> set[int]:
+    """Return the lines of a head that say what the operator enters for radius compensation, by their numbers."""
+    return _lines_of(head_comments(lines), (ENTRY_NOTICE.upper(),), family)
+
+
+def _lines_of(lines: Iterable[tuple[int, str]], beginnings: tuple[str, ...], family: FamilyWriter) -> set[int]:
+    """Return the numbers of lines that have one of some capitals, and of those that go on with them."""
+    found, notice = set[int](), ""
     for number, text in lines:
         own = text.strip(_AROUND)
-        if any(each in text for each in _OF_HEADS):
+        if any(each in text.upper() for each in beginnings):
             notice = own
-        elif notice and (joined := _joined(notice, own, family)):
-            notice = joined
         else:
-            notice = ""
-            kept.append((number, text))
-    return kept
+            notice = notice and _joined(notice, own, family)
+        if notice:
+            found.add(number)
+    return found
 
 
 def _notices(operation: Operation, family: FamilyWriter) -> list[tuple[list[Message], str]]:

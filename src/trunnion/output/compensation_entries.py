@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, RADIUS_REGISTER_SETTING
+from trunnion.controls.vocabulary import ENTRY_NOTICE, RADIUS_NUMBER_WORD, RADIUS_REGISTER_SETTING
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CutterComp
 from trunnion.output.program import Program
@@ -16,6 +16,9 @@ from trunnion.output.tool_calls import ToolCalls
 
 #: The setting for what a tool call adds to the radius, on controls that have a word for it.
 _ADDED: str = "delta_radius"
+
+#: Of ``Control.radius_as_diameter``: the control knows diameters only.
+_ALWAYS: str = "always"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +30,7 @@ class CompensationEntry:
     radius    of the tool in the CL file, mm; 0: not known
     holds     what the register holds: ``difference``, ``radius`` or ``unknown``
     contour   the path is that of the contour, and not that of the tool's centre
+    doubled   when the control takes the diameter instead: ``always``, a condition, or never (empty)
     """
 
     call: str
@@ -34,11 +38,13 @@ class CompensationEntry:
     radius: float
     holds: str
     contour: bool
+    doubled: str
 
     @property
     def where(self) -> str:
-        """Where it is entered."""
-        return f"in D{self.register}" if self.register else "in the tool table"
+        """Where it is entered, and when twice that is."""
+        place = f"in D{self.register}" if self.register else "in the tool table"
+        return f"{place}, twice that if {self.doubled}" if self.doubled not in ("", _ALWAYS) else place
 
     @property
     def path(self) -> str:
@@ -48,9 +54,10 @@ class CompensationEntry:
     @property
     def value(self) -> str:
         """What is entered."""
+        what, size = ("diameter", 2.0 * self.radius) if self.doubled == _ALWAYS else ("radius", self.radius)
         if self.contour or self.holds == "radius":
-            return "the radius"
-        return f"the radius minus {self.radius:.10g} mm" if self.radius else "the radius minus that of the CL file"
+            return f"the {what}"
+        return f"the {what} minus {size:.10g} mm" if size else f"the {what} minus that of the CL file"
 
 
 def entries_at_control(program: Program) -> list[str]:
@@ -58,7 +65,7 @@ def entries_at_control(program: Program) -> list[str]:
     calls = [call for call, *_ in ToolCalls(program).calls]
     found = _entries(program, calls)
     return list(
-        dict.fromkeys(f"radius compensation of tool {each.call}: enter {each.value} {each.where}" for each in found)
+        dict.fromkeys(f"{ENTRY_NOTICE} {each.call}: enter {each.value} {each.where}" for each in found)
     )
 
 
@@ -84,7 +91,8 @@ def entries_of(program: Program, motions: Sequence[Motion], call: str) -> Iterat
         if isinstance(event, CutterComp) and event.side != "OFF"
     )
     for register, contour in registers:
-        yield CompensationEntry(call, register, 0.5 * operation.tool.diameter, holds, contour)
+        doubled = program.control.radius_as_diameter
+        yield CompensationEntry(call, register, 0.5 * operation.tool.diameter, holds, contour, doubled)
 
 
 def with_radius_taken_off(program: Program) -> Program:

@@ -29,7 +29,7 @@ from trunnion.model.toolpath import (
     Stop,
     Tool,
 )
-from trunnion.output.compensation_entries import entries_of
+from trunnion.output.compensation_entries import entries_at_control, entries_of
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
@@ -317,7 +317,13 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     yield _check_of_zeros(run, program.machine)
     if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions):
         yield "Measure zero and tool length before each part: without TCP the program holds for these alone."
-    yield "Check each tool: the right one in its pocket, length and radius measured and entered, edge sharp."
+    if entries_at_control(program):
+        yield (
+            "Check each tool: the right one in its pocket, length measured and entered, edge sharp; for radius compensation"
+            " what its operation says, for other tools the radius."
+        )
+    else:
+        yield "Check each tool: the right one in its pocket, length and radius measured and entered, edge sharp."
     yield "Check that the part is clamped, that the blank has its size, and that everything that turns has room."
     if result.simulation is None:
         yield "Look for collisions of tool, holder and head with part, fixtures and table (no simulation)."

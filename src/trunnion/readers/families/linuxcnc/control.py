@@ -82,6 +82,7 @@ class LinuxcncControl(Rs274Control):
     # M2 and M30 set all others back: G54, G17, G90, G94, G40, G80 (docs/reader-linuxcnc.md).
     compensation_style = OWN_ENTRY
     kept_modes = frozenset({"units", "centres", "length"})
+    reset_by = "M2 and M30 do not end it"
     start_modes = _START_MODES
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:

@@ -133,7 +133,9 @@ class LinuxcncInterpreter(CycleInterpreter):
     # Words
 
     def _may_be_left_on(self) -> list[str]:
-        return []  # M2 and M30 end cycles
+        control = self.control  # M2 and M30 end cycles, but no tool length
+        has_length = control.length_active and control.cuts_behind(0)
+        return ["G43"] if has_length and not control.sets_behind_use("length") else []
 
     def _select_motion(self, code: int) -> None:
         """Select a motion; cycles, and G80, which may stand beside a motion, are selected when the block moves."""
