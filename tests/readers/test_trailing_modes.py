@@ -72,9 +72,16 @@ def test_a_mode_behind_the_last_motion_is_told_unless_it_is_set_back(
     if name not in ("G66", "G93", "M89", "G41", "G42", "G23"):  # these need more than a motion; G23 counts with any
         told = [text for _, _, text in left(tmp_path, machine, word, cut(machine, 10))]
         # A tool length has its use, and is left on all the same.
-        in_use = ["ends with G43 on"] if (machine, name) == ("matsuura_mx330", "G43") else []
+        in_use = ["ends with G43 on"] if name == "G43" else []
         assert [text.partition(",")[0] for text in told] == in_use
         assert left(tmp_path, machine, word, cut(machine, 10), back) == []
+
+
+@pytest.mark.parametrize(("machine", "word"), [("matsuura_mx330", "G43.4 H1"), ("haas_umc750", "G234 H1")])
+def test_tcp_that_is_left_on_is_told(tmp_path: Path, machine: str, word: str) -> None:
+    ((severity, _, text),) = left(tmp_path, machine, word, cut(machine, 10))
+    assert (severity, text.partition(",")[0]) == (Severity.WARNING, f"ends with {word.split()[0]} on")
+    assert left(tmp_path, machine, word, cut(machine, 10), "G49") == []
 
 
 @pytest.mark.parametrize(("machine", "word"), SET_BACK)

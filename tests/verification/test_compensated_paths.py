@@ -92,6 +92,23 @@ def test_klartext_takes_the_radius_off_that_of_the_tool_table(tmp_path: Path) ->
     assert compensation(longer, "dmu65", "radius").state == "FAIL"
 
 
+def test_heads_say_radius_or_diameter_as_the_control_takes_it(programs: dict[str, Path]) -> None:
+    def entered(machine: str) -> str:
+        return " ".join(programs[machine].read_text().replace("(", "").replace(")", "").split())
+
+    assert "enter the diameter minus 12 mm in the tool table" in entered("linuxcnc_5axis")
+    assert "ENTER THE RADIUS MINUS 6 MM IN D1, TWICE THAT IF SETTING 40 IS DIAMETER" in entered("haas_umc750")
+    assert "ENTER THE RADIUS MINUS 6 MM IN D1 " in entered("matsuura_mx330")
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_a_conversion_says_once_what_to_enter(machine: str, programs: dict[str, Path], tmp_path: Path) -> None:
+    again = tmp_path / f"again{programs[machine].suffix}"
+    settings = {"radius_register": "difference"}
+    trunnion.convert(programs[machine], machine=machine, to_machine=machine, output=again, settings=settings)
+    assert again.read_text().lower().count("radius compensation of tool") == 1
+
+
 def test_a_side_that_is_wrong_and_an_end_that_is_lost_fail(programs: dict[str, Path], tmp_path: Path) -> None:
     text = programs["yl569"].read_text()
     for old, new in (("G41", "G42"), ("G40 Y-14.", "Y-14.")):

@@ -191,6 +191,7 @@ def _control_fields(control: LocatedValue, notes: SettingNotes) -> Iterator[Fiel
     yield of("control", "choice", "plane_x", choices=("program", "machine"))
     yield of("control", "choice", "feed_without_tcp", choices=tuple(FEEDS_WITHOUT_TCP))
     yield of("control", "whole", "blocks_in_compensation")
+    yield of("control", "text", "radius_as_diameter")
     yield of("cycles", "choice", "holes_from", choices=tuple(HOLE_APPROACH_HEIGHTS))
     yield from _format_fields(control, of)
     yield of("smoothing", "number", "between_points", "axis_tolerance_deg")

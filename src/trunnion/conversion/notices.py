@@ -72,10 +72,8 @@ def _lines_of(lines: Iterable[tuple[int, str]], beginnings: tuple[str, ...], fam
     found, notice = set[int](), ""
     for number, text in lines:
         own = text.strip(_AROUND)
-        if any(each in text.upper() for each in beginnings):
-            notice = own
-        else:
-            notice = notice and _joined(notice, own, family)
+        begins = any(each in text.upper() for each in beginnings)
+        notice = own if begins else notice and _joined(notice, own, family)
         if notice:
             found.add(number)
     return found

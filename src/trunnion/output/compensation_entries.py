@@ -64,9 +64,7 @@ def entries_at_control(program: Program) -> list[str]:
     """Return what the operator enters at the control, as head and log say it, each text once."""
     calls = [call for call, *_ in ToolCalls(program).calls]
     found = _entries(program, calls)
-    return list(
-        dict.fromkeys(f"{ENTRY_NOTICE} {each.call}: enter {each.value} {each.where}" for each in found)
-    )
+    return list(dict.fromkeys(f"{ENTRY_NOTICE} {each.call}: enter {each.value} {each.where}" for each in found))
 
 
 def _entries(program: Program, calls: Sequence[str]) -> Iterator[CompensationEntry]:

@@ -33,6 +33,10 @@ class WordMeanings:
     g: Mapping[int, int | None]
     m: Mapping[int, int | None]
 
+    def own_text(self, code: int) -> str:
+        """Return the G word of the control for one of the family, in tenths."""
+        return g_code_text(next((own for own, meaning in self.g.items() if meaning == code), code))
+
     def translate(self, block: Block) -> list[str]:
         """Put the family's words in place of the control's; return the words that the control does not have."""
         if not self.g and not self.m:

@@ -319,8 +319,8 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
         yield "Measure zero and tool length before each part: without TCP the program holds for these alone."
     if entries_at_control(program):
         yield (
-            "Check each tool: the right one in its pocket, length measured and entered, edge sharp; for radius compensation"
-            " what its operation says, for other tools the radius."
+            "Check each tool: the right one in its pocket, length measured and entered, edge sharp; the radius"
+            " measured, and for radius compensation entered as the operation says."
         )
     else:
         yield "Check each tool: the right one in its pocket, length and radius measured and entered, edge sharp."

@@ -45,6 +45,8 @@ class FanucInterpreter(CycleInterpreter):
         super().__init__(path, machine, options)
         # The last H, -1 before the first.
         self._length_number = -1
+        # The word that has put the tool length on, with TCP or without.
+        self._length_word = "G43"
         # How many blocks may be read ahead; 0: any number.
         self._blocks_ahead = 0
         # G23: the areas that G22 forbids are not watched.
@@ -240,6 +242,7 @@ class FanucInterpreter(CycleInterpreter):
         control.length_ended_at = 0
         control.set_tcp(False)
         on = word.sets and self._numbers_length(block)
+        self._length_word = word.text
         control.set_mode("length", word.text, control.length_active, on)
         control.set_length(on)
         # Parameter 5001 says whether G43 counts across the plane or along Z.
@@ -299,6 +302,7 @@ class FanucInterpreter(CycleInterpreter):
             self._note(Wording("NC340", "vector_in_block_of_g43_5"), Severity.ERROR)
         if control.plane_of_pose:
             self._note(Wording("NC340", "tcp_plane_rotary_position_control"), Severity.ERROR)
+        self._length_word = control.settings.words.own_text(word.code)
         control.set_tcp(True)
         control.set_length(True)
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
@@ -309,8 +313,8 @@ class FanucInterpreter(CycleInterpreter):
         left = super()._may_be_left_on()
         left += ["G23"] if self._limits_off and self.control.cuts_behind(self._limits_set_at) else []
         control = self.control
-        has_length = control.length_active and not control.tcp and control.cuts_behind(0)
-        left += ["G43"] if has_length and not control.sets_behind_use("length") else []
+        has_length = control.length_active and control.cuts_behind(0)
+        left += [self._length_word] if has_length and not control.sets_behind_use("length") else []
         left += ["G68.2"] if control.tilted and not control.plane_of_pose else []
         left += ["G16"] if self._polar.on else []
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []

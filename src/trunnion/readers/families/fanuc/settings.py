@@ -11,7 +11,7 @@ from trunnion.readers.control.start_modes import MOTION, check_start_modes
 from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
-from trunnion.readers.rs274.block import Block, Number, g_code_text
+from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
 
@@ -88,8 +88,7 @@ class Settings:
     @property
     def extended_word(self) -> str:
         """The word that selects an extended work offset: G54.1, or what the control has in its place."""
-        meanings = self.words.g.items()
-        return g_code_text(next((code for code, meaning in meanings if meaning == MORE_OFFSETS), MORE_OFFSETS))
+        return self.words.own_text(MORE_OFFSETS)
 
     @property
     def angle(self) -> float:
