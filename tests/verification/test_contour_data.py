@@ -37,8 +37,9 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, Path],
             own = check(result.verification, "compensation")
             assert (own.state, "radius_register" in own.told) == ("not checked", True), machine
             assert len(result.entered) == 1
-            assert "enter the radius in " in result.entered[0]
-            assert "enter the radius in " in found[machine, cl].read_text().lower()
+            value = "diameter" if machine == "linuxcnc_5axis" else "radius"
+            assert f"enter the {value} in " in result.entered[0]
+            assert f"enter the {value} in " in found[machine, cl].read_text().lower()
     return found
 
 
