@@ -105,7 +105,7 @@ def test_operations_in_other_coordinate_systems_are_seen_from_the_first(verified
         "MSYS/5.0000,0.0000,0.0000,0.0000000,1.0000000,0.0000000,-1.0000000,0.0000000,0.0000000",
     )
     cl = CL + second + "GOTO/10,0,5\n" + CL_FOOT
-    text = HEAD + CUT + "G0 X5 Y0 Z50\nG1 X5 Y10 Z5\n" + FOOT
+    text = HEAD + CUT + "SUPA G0 Z0 D0\nG0 X5 Y0 Z50 D1\nG1 X5 Y10 Z5\n" + FOOT
     assert verified(text, cl).passed
 
 

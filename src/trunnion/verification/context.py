@@ -54,7 +54,6 @@ class ExpectedValues:
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
     clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
     in_turn                axes move one group after the other from home to an operation
-    between_operations     the tool goes home, or above all operations, from one to the next
     without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     stop_between           an optional stop stands between operations
     demands                what the proof must stand on besides what the machine's definition demands
@@ -89,7 +88,6 @@ class ExpectedValues:
     stop_between: bool = False
     clearance: float | None = None
     in_turn: bool = False
-    between_operations: bool = False
     demands: tuple[str, ...] = ()
 
     def for_operation(self, name: str) -> OperationSettings:

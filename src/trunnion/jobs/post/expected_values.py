@@ -57,7 +57,6 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
         span_tip=options.tip_tolerance if without_tcp else None,
         axis_tolerance=options.default_axis_tolerance,
         absolute=options.absolute_frame,
-        between_operations=True,
         max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
         max_feed=control.formats["feed"].five_axis.greatest,
         fastest_feed=options.fastest_feed,

@@ -45,7 +45,6 @@ def expected_values(
         ),
         rapid_feed=rapid_feed,
         clearance=float(settings["operation_clearance"]) if settings.get("same_tool") == "clearance" else None,
-        between_operations=settings.get("same_tool", "home") != "home",
         in_turn=settings.get("first_approach") == "in_turn",
         stop_between=settings.get("stop_between") == "on",
         below_rapid_feed=slower,

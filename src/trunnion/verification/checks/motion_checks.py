@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.cuts_left_out import cuts_left_out
 from trunnion.verification.checks.passages import passage_rows
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
@@ -46,9 +47,12 @@ def check_order(context: ComparedContext) -> Check:
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
     places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]
     places += [context.place(row, 0.0, "goes to a position that is not a CL point") for row in extra[:MAX_PLACES]]
+    left_out = list(cuts_left_out(context, set(extra)))
+    places += left_out[:MAX_PLACES]
     if not places:
         return _in_order(context, retracts, still)
-    found = Faults(sorted(places, key=lambda place: place.nc_line), len(matching.missing) + len(extra))
+    count = len(matching.missing) + len(extra) + len(left_out)
+    found = Faults(sorted(places, key=lambda place: place.nc_line), count)
     return found.check("order", _ORDER, "")
 
 

@@ -65,18 +65,23 @@ def _comes_from_home(run: Run, row: int) -> bool:
 def without_retract(context: Context) -> Iterator[Place]:
     """Yield the first row of each operation to which the tool comes neither from home nor above all.
 
-    Programs of others may stay at the part; so may one that never goes home, nor retracts by a word.
+    One that never goes home, nor retracts by a word, may stay at the part. Where a definition says which axes a change
+    of the tool needs at home, the machine does the rest.
     """
-    if not isinstance(context, ComparedContext) or not context.settings.between_operations:
+    if not isinstance(context, ComparedContext):
         return
     away = rows_away(context)
     if away is None:
         return
     lawful = passage_rows(context)
+    changes = [event.before_row for event in context.run.events if event.kind == "tool_change"]
+    stated = "tool_change" in context.run.machine.home_at
     for last, first, operation in _bounds(context):
         begin, end = np.searchsorted(away, (last, first), side="right")
         between = range(last + 1, first)
-        if end == begin and not (between and all(row in lawful for row in between)):
+        if end > begin or (stated and any(last < change <= first for change in changes)):
+            continue
+        if not (between and all(row in lawful for row in between)):
             yield context.place(first, 0.0, f"goes on to the operation {operation} without a retract")
 
 
