@@ -8,12 +8,11 @@ from typing import Final
 
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control
-from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
+from trunnion.controls.vocabulary import PROGRAM_CHOICES, RADIUS_REGISTER_SETTING
 from trunnion.jobs.inputs.settings import m_code, work_offset_setting
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.verification import ExpectedValues, OperationSettings
-
 
 #: Settings for the tolerance of the control's own smoothing, and for what tool calls add to the tool, by their words.
 _SMOOTHING: Final = ("tolerance", "three_axis_tolerance", "fallback_tolerance")
@@ -47,9 +46,7 @@ def expected_values(
         register_holds=RegisterValue(settings.get(RADIUS_REGISTER_SETTING) or RegisterValue.UNKNOWN),
         last_edge=every.last_edge,
         by_operation={name: _operation_settings(own, machine, control) for name, own in own_settings.items()},
-        swivel_data=tuple(
-            {each["swivel_data"] for each in everywhere if "swivel_data" in each}
-        ),
+        swivel_data=tuple({each["swivel_data"] for each in everywhere if "swivel_data" in each}),
         rapid_feed=rapid_feed,
         clearance=float(settings["operation_clearance"]) if settings.get("same_tool") == "clearance" else None,
         between_operations=settings.get("same_tool", "home") != "home",
@@ -57,6 +54,7 @@ def expected_values(
         stop_between=settings.get("stop_between") == "on",
         below_rapid_feed=slower,
         coolant=control.coolant if control else {},
+        has_settings=frozenset((*control.settings, *PROGRAM_CHOICES) if control else ()),
         smoothing=max(float(each.get(key) or 0.0) for each in everywhere for key in _SMOOTHING),
         tool_deltas={
             word: tuple({_as_printed(control, key, float(each[key])) for each in everywhere if each.get(key)})
@@ -77,6 +75,7 @@ def _operation_settings(settings: Mapping[str, str], machine: Machine, control: 
     by_register = control is not None and settings.get("edge_from") == "adjust"
     last_edge = int(control.setting_rule("edge").at_most or 0) if control and by_register else 0
     return OperationSettings(settings.get("tool", "").strip('"'), offset, edge, radius_offset, last_edge)
+
 
 def _as_printed(control: Control | None, name: str, value: float) -> float:
     """Return a setting as the digits of its templates print it."""

@@ -20,12 +20,8 @@ _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "o
 
 _ORDER = "every CL point has its block, every block its point"
 
-#: What is said of a motion that no CL point has, by whether it would be lawful with ``same_tool=clearance``.
-_NO_POINT = {
-    False: "goes to a position that is not a CL point",
-    True: "goes on to the next operation above all of them, and the CL file has no such point; if the program was"
-    " posted with same_tool=clearance, give --set same_tool=clearance",
-}
+#: What is said of a motion that no CL point has.
+_NO_POINT = "goes to a position that is not a CL point"
 
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
@@ -53,7 +49,9 @@ def check_order(context: ComparedContext) -> Check:
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
     places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]
     above = rows_of_clearance(context) if extra else set()
-    places += [context.place(row, 0.0, _NO_POINT[row in above]) for row in extra[:MAX_PLACES]]
+    repeat = context.settings.repeat("same_tool", "clearance")
+    texts = [f"{_NO_POINT}{repeat if row in above else ''}" for row in extra[:MAX_PLACES]]
+    places += [context.place(row, 0.0, text) for row, text in zip(extra[:MAX_PLACES], texts, strict=True)]
     if not places:
         return _in_order(context, retracts, still)
     found = Faults(sorted(places, key=lambda place: place.nc_line), len(matching.missing) + len(extra))
