@@ -122,6 +122,7 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total
     feed_limit: float | None
     settings: Settings | None
     radius_register: Literal["unknown", "difference", "radius"] | None
+    cutcom: Literal["centreline", "contour"] | None
     tool_libraries: Sequence[FilePath]
     unit: Literal["mm", "inch"] | None
     recorded: "FilePath | Recording | None"
