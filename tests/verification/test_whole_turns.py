@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.support.locations import TESTS
+from tests.support.locations import TESTS, YL569
 from tests.support.verifying import check
 from trunnion.verification import Verification
 
@@ -93,3 +93,15 @@ def test_a_point_on_the_line_of_the_cl_file_is_taken(machine: str, tmp_path: Pat
 )  # fmt: skip
 def test_such_a_point_is_judged_like_the_points_of_the_cl_file(words: str, key: str, tmp_path: Path) -> None:
     assert not check(changed("yl569", "N690 Y25.", f"{words} Y25.", tmp_path), key).passed
+
+
+@pytest.mark.parametrize("orientation", ["ORIAXES", "ORIVECT"])
+@pytest.mark.parametrize("turn", [360, 2880])
+def test_with_tcp_a_whole_turn_takes_the_tool_axis_off_its_way(orientation: str, turn: int, tmp_path: Path) -> None:
+    text = (YL569 / "3_blade_finish.expected.mpf").read_text(encoding="utf-8").replace("ORIAXES", orientation)
+    cut = "N1480 X36.09145 Y-31.18886 Z-29.92124 B31.71514 C323.78877\n"
+    assert cut in text
+    program = tmp_path / "one.mpf"
+    program.write_text(text.replace(cut, f"{cut}C=IC({turn})\n"), encoding="utf-8")
+    found = trunnion.verify(program, machine="yl569", cl=YL569 / "3_blade_finish.cls")
+    assert not check(found, "span").passed

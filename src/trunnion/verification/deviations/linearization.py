@@ -19,7 +19,7 @@ from trunnion.jit import inner, kernel
 from trunnion.machines import Machine
 from trunnion.machines.forward import KinematicChain, forward, forward_row, kinematic_chain
 from trunnion.model.axis_tolerance import AxisTolerance, allowed_deviation
-from trunnion.model.run import Orientation, RowPositions, Run
+from trunnion.model.run import Orientation, ProgrammedWord, RowPositions, Run
 from trunnion.model.toolpath import Kind, Phase
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
@@ -203,7 +203,10 @@ class LinearizationErrors:
             total = np.radians(turns[:, 0] + turns[:, 1])
             sampled &= 0.25 * total * total > math.radians(self._by_default.tolerance.finishing)
         sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & self._tip_is_limited) | long
-        sampled &= ~tcp | (run.orientation_between(first, end) == Orientation.ANGLES)
+        by_angles = run.orientation_between(first, end) == Orientation.ANGLES
+        # No great circle leads round by more than half a turn: the words of rotary axes do.
+        by_angles |= (turns.max(axis=1) > _HALF_TURN) & (run.programmed[first:end] & int(ProgrammedWord.VECTOR) == 0)
+        sampled &= ~tcp | by_angles
         return np.flatnonzero(sampled)
 
     def _path_ends(self, first: int, rows: Ints, positions: RowPositions) -> tuple[Floats, Floats]:
