@@ -134,6 +134,7 @@ def test_tools_are_preselected_and_changes_without_motion_are_remarked_upon(prog
     assert [(remark.line, remark.what) for remark in converted.warnings] == [
         (1, "no motion follows the change to tool 1: not carried over"),
         (8, "no motion follows the change to tool 3: not carried over"),
+        (7, "cuts while the spindle stands, and so does the new program"),
     ]
 
 

@@ -249,3 +249,16 @@ def test_another_preset_than_that_of_the_head_is_told(tmp_path: Path) -> None:
 
 def test_the_end_of_the_program_ends_the_plane_of_the_rotary_position(tmp_path: Path) -> None:
     assert left(tmp_path, "haas_umc750", cut("haas_umc750", 10), "G53 G0 Z0.", "G254") == []
+
+
+@pytest.mark.parametrize(("words", "back"), [
+    (words, back) for machine, words, back in SET
+    if machine == "dmu65" and not words.startswith(("PLANE", "CYCL DEF 19"))
+])  # fmt: skip
+def test_a_datum_in_use_that_nothing_ends_is_warned_of(tmp_path: Path, words: str, back: str) -> None:
+    """A rotation before a retract in Z changes no path, so that no other check and no comparison sees it."""
+    up = "L Z+100 R0 FMAX"
+    ((severity, _, text),) = left(tmp_path, "dmu65", cut("dmu65", 10), words, up)
+    assert severity is Severity.WARNING
+    assert text.startswith("ends with a datum of cycles 7, 8, 10, 11 or 26 on")
+    assert left(tmp_path, "dmu65", cut("dmu65", 10), words, up, back) == []

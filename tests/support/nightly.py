@@ -22,7 +22,7 @@ class Listing:
 
 def only_nightly(item: pytest.Item) -> str:
     """What an item has in nightly alone: itself, or draws; those of a property that says so are the same each time."""
-    if item.get_closest_marker("hypothesis") is None:
+    if item.get_closest_marker("hypothesis") is None or item.get_closest_marker("nightly") is not None:
         return item.nodeid
     settings = item.obj._hypothesis_internal_use_settings  # type: ignore[attr-defined]
     before = part_of(settings.max_examples, DRAWS["trunnion"])

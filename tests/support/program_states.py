@@ -272,6 +272,9 @@ SAMPLES: Final = {
         "Sinumerik", rooms={"cut": "HOLE"}, also=(("HOLE.SPF", "X12\nM17\n"),), says="2 files become one program",
     ),
     "block skip": Sample("Sinumerik", rooms={"cut": "/X10"}, cl="OPSKIP/ON", probe=_event("block_skip")),
+    "block skip of a tool change, a length, a head or an end": Sample(
+        "Fanuc", rooms={}, change=(("T3 M6", "/T3 M6"),), says="the tool change may be skipped",
+    ),
     "block skip in a program with jumps": Sample(
         "Sinumerik", rooms={"cut": "R1=0\nAGAIN:\n/X=10+R1\nY=R1\nR1=R1+1\nIF R1<3 GOTOB AGAIN"},
         says="block skip signs in",

@@ -63,7 +63,8 @@ def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured
     sound = replace(bare, checks=tuple(check for check in bare.checks if check.passed))
     ok, every = sound.standing.ok, len(sound.checks)
     assert sound.standing.told == (
-        f"Passed: {ok} of {every} checks; {every - ok} not checked; stands on 2 values nobody measured"
+        f"Passed: {ok} of {every} checks; {every - ok} not checked; stands on 2 values nobody measured; "
+        "assumed: the control starts with G40"
     )
 
 

@@ -21,7 +21,20 @@ from trunnion.messages import Wording
 from trunnion.model.arcs import arc_lengths
 from trunnion.model.splines import Splines
 from trunnion.model.tool_faults import tool_faults
-from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool
+from trunnion.model.toolpath import (
+    Arcs,
+    CutterComp,
+    CycleOff,
+    CycleOn,
+    Event,
+    Frame,
+    From,
+    Kind,
+    Moves,
+    Operation,
+    SpindleOn,
+    Tool,
+)
 
 #: No machine reaches farther, mm: a coordinate beyond it is a mistake in the file.
 _MAX_COORDINATE = 1e6
@@ -50,6 +63,7 @@ def assemble_operation(
     kind[rapids] = Kind.RAPID
     fill_phases(columns.phase[rows], rapids, builder.colours)
     _report_unknown_colours(builder, diagnostics)
+    _report_lost_contour(builder, diagnostics)
     _report_far_points(tip, columns.line[rows], builder, unit, diagnostics)
     starts = fill_tool_axes(columns, builder, unit, modal_axis, diagnostics)
     circles = complete_circles(builder.circles, kind, diagnostics)
@@ -122,6 +136,17 @@ def _with_feeds_per_minute(
     for row in np.flatnonzero(cuts & ~(length > 0.0))[: MAX_LISTED + 1].tolist():
         diagnostics.error(int(moves.line[row]), Wording("CL710", "fedrat_invers_move"))
     return replace(moves, feed=feed)
+
+
+def _report_lost_contour(builder: OperationBuilder, diagnostics: Diagnostics) -> None:
+    """Report points of a contour that the tool's centre would go along: no CUTCOM makes the control add the radius."""
+    said = builder.points
+    if said is None or not said.contour or any(isinstance(event, CutterComp) for event in builder.events):
+        return
+    if said.refuses:
+        diagnostics.error(said.line, said.lost)
+    else:
+        diagnostics.remark(said.line, said.lost)
 
 
 def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics) -> None:

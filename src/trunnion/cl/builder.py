@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Lines
 from trunnion.cl.scan import PointColumns
+from trunnion.messages import Wording
 from trunnion.model.splines import SplineRows
 from trunnion.model.toolpath import Event, Frame, Sense, Tool
 
@@ -138,6 +139,20 @@ class AxisStatement(NamedTuple):
     vectors: bool = True
 
 
+class StatedPoints(NamedTuple):
+    """What a file says of its points: those of the contour, or of the tool's centre.
+
+    words  in which it says so
+    lost   what is to say where no CUTCOM makes the control add the radius, and whether that refuses the file
+    """
+
+    contour: bool
+    line: int
+    words: str
+    lost: Wording
+    refuses: bool = False
+
+
 @dataclass(slots=True, eq=False)
 class OperationBuilder:
     """An operation while it is read. Rows count from ``first``, the row of the columns at which it begins.
@@ -152,6 +167,7 @@ class OperationBuilder:
     joined     names of the operations that were joined to it
     stated     what is true of the whole operation: the line that states it, and its value
     curves     the splines in mm, once their points are known, with the rows of these
+    points     what the file says of its points
     """
 
     name: str
@@ -177,3 +193,4 @@ class OperationBuilder:
     joined: list[str] = field(default_factory=list)
     stated: dict[str, tuple[int, object]] = field(default_factory=dict)
     curves: list[SplineRows] = field(default_factory=list)
+    points: StatedPoints | None = None

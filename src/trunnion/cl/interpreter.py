@@ -13,6 +13,7 @@ from trunnion.cl.glued_statements import GluedStatements
 from trunnion.cl.scan import COMMENT, MAKES_ROW
 from trunnion.cl.state import COORDINATE_SYSTEM, MM_PER_INCH, ReaderState
 from trunnion.cl.statement import Statement, comments_of
+from trunnion.cl.statements.cutcom_points import CutcomPoints
 from trunnion.cl.statements.operations import LENGTH_UNITS
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
 from trunnion.messages import Wording
@@ -51,7 +52,7 @@ class ClInterpreter:
     """Interprets the statements of one file."""
 
     def __init__(
-        self, columns: MoveColumns, diagnostics: Diagnostics, dialect: Dialect, encoding: str, strict: bool
+        self, columns: MoveColumns, diagnostics: Diagnostics, dialect: Dialect, encoding: str, *, strict: bool
     ) -> None:
         self._state = ReaderState(columns, diagnostics, dialect, strict)
         self._dialect = dialect
@@ -64,6 +65,10 @@ class ClInterpreter:
         self._unknown_statements = 0
         self._parse_cache: dict[bytes, tuple[Handler | None, Statement]] = {}
         self._notices: list[tuple[int, str]] = []
+
+    def take_points_for(self, what: str | None) -> None:
+        """Say what points under CUTCOM are where the file does not: a value of the setting ``cutcom``, or None."""
+        self._state.own(CutcomPoints).asked = what
 
     @property
     def builders(self) -> list[OperationBuilder]:

@@ -67,12 +67,15 @@ class ClReading:
     strict            make an unknown statement an error instead of a remark
     spline_tolerance  how far the points that splines become may leave them between each other, mm; None: as INTOL and
                       OUTTOL say
+    cutcom            what points under CUTCOM are where the file does not say it, ``"centreline"`` or ``"contour"``;
+                      None: those of the tool's centre
     """
 
     units: str | None = None
     dialect: str | None = None
     strict: bool = False
     spline_tolerance: float | None = None
+    cutcom: str | None = None
 
 
 #: As the file itself says, with remarks about what is unknown.
@@ -126,7 +129,8 @@ def read_source(
         else:
             recognized = Recognition(DIALECTS[dialect], "as it was asked for")
         columns = MoveColumns.allocate(survey.rows)
-        interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, how.strict)
+        interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, strict=how.strict)
+        interpreter.take_points_for(how.cutcom)
         scanner = _Scanner(recognized.dialect.text, columns, interpreter, diagnostics)
         with source.open() as file:
             file.read(survey.bom_bytes)

@@ -129,7 +129,8 @@ def print_dialects(toolpaths: Sequence[Toolpath]) -> None:
 
 
 def print_summary(target: str, result: PostResult) -> None:
-    """Name the files of a program."""
+    """Name the files of a program, and say what the operator enters for it."""
+    tell(*(f"{target}: {text}" for text in result.entered))
     if result.output is None:
         return
     rows = sum(len(motion.operation.moves) for motion in result.motions)

@@ -32,7 +32,7 @@ def post_files(given: Given, group: "OutputGroup | None" = None, observer: "Obse
     try:
         settings = dict(given.settings)
         within = spline_tolerance(settings.get("spline_tolerance", ""))
-        how = ClReading(settings.get("cl_units"), settings.get("dialect"), given.strict, within)
+        how = ClReading(settings.get("cl_units"), settings.get("dialect"), given.strict, within, settings.get("cutcom"))
         coming = begin_reading(given.cl, how, executor)
         from trunnion.cli.post import post
 

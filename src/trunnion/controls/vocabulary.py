@@ -99,10 +99,10 @@ PROGRAM_MEANINGS: Final = {
 #: Settings of a run besides these: a definition cannot set them.
 RUN_ONLY_SETTINGS: Final = frozenset(
     {
-        "cl_units", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance",
-        "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways", "tool_retract",
-        "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number",
-        "listing",
+        "cl_units", "cutcom", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance",
+        "axis_tolerance", "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways",
+        "tool_retract", "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit",
+        "first_number", "listing",
         *(option.setting for option in POSTING),
     }
 )  # fmt: skip

@@ -117,6 +117,7 @@ STATES: Final = (
     State("jump, loop, subprogram", "GOTO, WHILE, CALL LBL, M97", _PATH, columns=("file",)),
     State("subprogram in a file of its own", "M98, CALL PGM", _REPORTED, lacks=("CL",), lacking=_PATH),
     State("block skip", "/", _CARRIED, kinds=("block_skip",)),
+    State("block skip of a tool change, a length, a head or an end", "/M6, /G43, /M5", _REPORTED),
     State("block skip in a program with jumps", "/", _REFUSED),
     State(
         "radius compensation", "G41, G42, RL, RR", _CARRIED,

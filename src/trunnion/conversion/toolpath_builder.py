@@ -23,6 +23,7 @@ from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection, assign_events, divide_sections, split_program
 from trunnion.conversion.settings import parse_number, settings_from_headers
 from trunnion.conversion.spindle_holes import read_spindle_holes
+from trunnion.conversion.unsaid import warn_of_missing_words, warn_of_skipped_words
 from trunnion.conversion.unsupported import (
     Warnings,
     refuse_unsimulated_motions,
@@ -186,6 +187,8 @@ class _ToolpathBuilder:
         if self._headers.forced_line:
             self._warn.refuse(self._headers.forced_line, Wording("CNV178", "program_says_must"))
         refuse_unsimulated_motions(run, self._warn)
+        warn_of_missing_words(run, rows, self._warn)
+        warn_of_skipped_words(run, rows, self._texts[0], self._headers.template_lines, self._warn)
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)
         warn_of_splines(run, self._warn)

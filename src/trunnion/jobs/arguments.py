@@ -121,6 +121,7 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total
     feed: Literal["programmed", "fastest"]
     feed_limit: float | None
     radius_register: Literal["unknown", "difference", "radius"] | None
+    cutcom: Literal["centreline", "contour"] | None
     tool_libraries: Sequence[FilePath]
     unit: Literal["mm", "inch"] | None
     recorded: "FilePath | Recording | None"

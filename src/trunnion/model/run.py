@@ -140,6 +140,8 @@ class Run:
     normals                        a ``SurfaceNormals``: those of blocks that program them (LN)
     units_from                     row from which on the program has said mm or inches, or its control is known to
                                    count so; None: never
+    assumed_modes                  words of modes, such as ``G90``, that hold at the first motion although neither the
+                                   program nor the definition states them
     language                       the same for all programs whose words mean the same; empty: not known
     encoding                       of names and texts, as it was stated; empty: the likeliest for each line
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
@@ -201,6 +203,7 @@ class Run:
     compensation_planes: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     planes: Floats = field(default_factory=lambda: np.zeros((0, 3, 4)))
     mode_words: tuple[ModeWord, ...] = ()
+    assumed_modes: tuple[str, ...] = ()
     setups: RunSetups | None = None
     skipped: tuple[SkippedRun, ...] = ()
 

@@ -159,16 +159,17 @@ class Coolant(Event):
 
 @dataclass(frozen=True, slots=True)
 class CutterComp(Event):
-    """Cutter radius compensation.
+    """Cutter radius compensation: ``side`` is LEFT, RIGHT, ON or OFF.
 
-    side      LEFT, RIGHT, ON or OFF
     plane     XYPLAN, ZXPLAN, YZPLAN or empty
     register  0 if none is given
+    contour   the points behind it are those of the contour, and the control adds the radius; else of the tool's centre
     """
 
     side: str
     plane: str = ""
     register: int = 0
+    contour: bool = False
 
 
 @dataclass(frozen=True, slots=True)

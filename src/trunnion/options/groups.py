@@ -119,6 +119,14 @@ TOOL_LENGTH: Final = Option(
     level=Level.OWN,
 )
 
+CUTCOM: Final = Option(
+    "cutcom",
+    "--cutcom",
+    Choice(("centreline", "contour")),
+    "what points under CUTCOM are where the CL files do not say it: the tool's centre line, or the contour",
+    key="cutcom",
+)
+
 RADIUS_REGISTER: Final = Option(
     "radius_register",
     "--radius-register",

@@ -1,6 +1,7 @@
 """What the operator enters for radius compensation: said in the head of the program, on the setup sheet and in the log.
 
-Points of CL files are those of the tool's centre; contours are refused.
+Where the points of a CL file are those of the tool's centre that is a difference; where they are those of the contour,
+the radius.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,6 +12,7 @@ from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, RADIUS_REGISTER_SET
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CutterComp
 from trunnion.output.program import Program
+from trunnion.output.tool_calls import ToolCalls
 
 #: The setting for what a tool call adds to the radius, on controls that have a word for it.
 _ADDED: str = "delta_radius"
@@ -24,12 +26,14 @@ class CompensationEntry:
     register  D; 0: the radius in the tool table
     radius    of the tool in the CL file, mm; 0: not known
     holds     what the register holds: ``difference``, ``radius`` or ``unknown``
+    contour   the path is that of the contour, and not that of the tool's centre
     """
 
     call: str
     register: int
     radius: float
     holds: str
+    contour: bool
 
     @property
     def where(self) -> str:
@@ -37,14 +41,28 @@ class CompensationEntry:
         return f"in D{self.register}" if self.register else "in the tool table"
 
     @property
+    def path(self) -> str:
+        """Whose path the program has."""
+        return "contour" if self.contour else "tool's centre"
+
+    @property
     def value(self) -> str:
         """What is entered."""
-        if self.holds == "radius":
+        if self.contour or self.holds == "radius":
             return "the radius"
         return f"the radius minus {self.radius:.10g} mm" if self.radius else "the radius minus that of the CL file"
 
 
-def compensation_entries(program: Program, calls: Sequence[str]) -> Iterator[CompensationEntry]:
+def entries_at_control(program: Program) -> list[str]:
+    """Return what the operator enters at the control, as head and log say it, each text once."""
+    calls = [call for call, *_ in ToolCalls(program).calls]
+    found = _entries(program, calls)
+    return list(
+        dict.fromkeys(f"radius compensation of tool {each.call}: enter {each.value} {each.where}" for each in found)
+    )
+
+
+def _entries(program: Program, calls: Sequence[str]) -> Iterator[CompensationEntry]:
     """Yield what each operation with CUTCOM compensates by; ``calls`` are the tools of all operations."""
     starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
     groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
@@ -60,25 +78,19 @@ def entries_of(program: Program, motions: Sequence[Motion], call: str) -> Iterat
     own = int(call) + more if call.isdigit() else 0
     holds = program.effective_setting(RADIUS_REGISTER_SETTING, operation) or "unknown"
     registers = dict.fromkeys(
-        (event.register or own) if names_register else 0
+        ((event.register or own) if names_register else 0, event.contour)
         for motion in motions
         for event in motion.operation.events
         if isinstance(event, CutterComp) and event.side != "OFF"
     )
-    for register in registers:
-        yield CompensationEntry(call, register, 0.5 * operation.tool.diameter, holds)
-
-
-def head_texts(entries: Iterator[CompensationEntry]) -> list[str]:
-    """Return what the head of a program says."""
-    texts = [f"radius compensation of tool {each.call}: enter {each.value} {each.where}" for each in entries]
-    return list(dict.fromkeys(texts))
+    for register, contour in registers:
+        yield CompensationEntry(call, register, 0.5 * operation.tool.diameter, holds, contour)
 
 
 def with_radius_taken_off(program: Program) -> Program:
     """Return a program whose tool calls take the radius off the one in the tool table, where that is what it holds.
 
-    That is so on controls with a word for it (DR), for the tools of operations with CUTCOM.
+    That is so on controls with a word for it (DR), for the tools of operations with CUTCOM along the tool's centre.
     """
     if _ADDED not in program.control.settings:
         return program
@@ -86,7 +98,7 @@ def with_radius_taken_off(program: Program) -> Program:
     compensated = {
         each.tool.name
         for each in operations
-        if any(isinstance(event, CutterComp) and event.side != "OFF" for event in each.events)
+        if any(isinstance(event, CutterComp) and event.side != "OFF" and not event.contour for event in each.events)
     }
     own: dict[str, Mapping[str, str]] = {**program.own_settings}
     for each in operations:

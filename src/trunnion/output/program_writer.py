@@ -20,7 +20,7 @@ from trunnion.model.operation_start import OperationStart
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn, Stop
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
-from trunnion.output.compensation_entries import compensation_entries, head_texts
+from trunnion.output.compensation_entries import entries_at_control
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
 from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
@@ -111,8 +111,7 @@ class _ProgramWriter:
         """Write the program, and return where its operations begin."""
         motions = self._program.motions
         values = self._values(motions[0], 0)
-        calls = [call for call, *_ in self._tool_calls]
-        entered = self._comments(head_texts(compensation_entries(self._program, calls)))
+        entered = self._comments(entries_at_control(self._program))
         head = [*self._notices, *entered, *self._tool_list(values), *self._operation_list()]
         self._templates.write("program_start", values, motions[0], head)
         for k, motion in enumerate(motions):

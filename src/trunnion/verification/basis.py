@@ -68,18 +68,31 @@ def _no_spindle_speeds(run: Run) -> Wording | None:
     return None if states_spindle_range(run.machine) else phrase("no_spindle_speeds")
 
 
+def assumed_modes(run: Run) -> tuple[str, ...]:
+    """Return the modes that the control is taken to start with, in each meaning of a program: nobody states them."""
+    runs = (run, *(each.run for each in run.skipped))
+    return tuple(dict.fromkeys(word for each in runs for word in each.assumed_modes))
+
+
+def _no_start_modes(run: Run) -> Wording | None:
+    words = assumed_modes(run)
+    return phrase("assumed_modes", words=words) if words else None
+
+
 ZERO: Final = Basis("zero", _no_zero)
 TOOL_LENGTH: Final = Basis("tool_length", _no_tool_length)
 TRAVEL: Final = Basis("travel", _no_travel)
 RAPID: Final = Basis("rapid", _no_rapid)
 ACCELERATION: Final = Basis("acceleration", _no_acceleration)
 SPINDLE: Final = Basis("spindle", _no_spindle_speeds)
+START_MODES: Final = Basis("start_modes", _no_start_modes)
 
 #: What ``[proof] require`` and ``--strict`` may demand, with its bases; of ``measured`` each program has its own.
 DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "zero": (ZERO,),
     "tool_length": (TOOL_LENGTH,),
     "dynamics": (RAPID, ACCELERATION),
+    "start_modes": (START_MODES,),
     "measured": (),
 }
 

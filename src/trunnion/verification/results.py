@@ -16,6 +16,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
+from trunnion.verification.basis import assumed_modes
 from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -202,6 +203,7 @@ class Verification:
             not_checked=states.count(State.NOT_CHECKED),
             warnings=severities.count(Severity.WARNING),
             not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
+            assumed=assumed_modes(self.run),
         )
 
     def __repr__(self) -> str:

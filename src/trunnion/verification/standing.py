@@ -21,6 +21,7 @@ class Standing:
     not_checked   how many were not made, or only in part
     warnings      that were given
     not_measured  values that answers of checks stand on although nobody has measured them
+    assumed       modes that the control is taken to start with: neither the program nor the definition states them
     """
 
     passed: bool
@@ -29,6 +30,7 @@ class Standing:
     not_checked: int
     warnings: int = 0
     not_measured: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
     @property
     @Figure(after="passed")
@@ -48,6 +50,8 @@ class Standing:
             yield phrase("standing_warnings", count=self.warnings)
         if self.not_measured:
             yield phrase("standing_not_measured", count=len(self.not_measured))
+        if self.assumed:
+            yield phrase("assumed_modes", words=self.assumed)
 
     def said(self, words: Words = LIBRARY, language: str = "en") -> str:
         """Return what is said behind "Passed" or "Failed"."""

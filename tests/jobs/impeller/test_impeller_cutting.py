@@ -1,6 +1,7 @@
 """Impellers, machined: CL files, one proven program, and what it leaves."""
 
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Never
 
@@ -44,16 +45,29 @@ def definition(folder: Path, text: str) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def coarse(tmp_path_factory: pytest.TempPathFactory) -> trunnion.ImpellerCut:
-    """The published impeller with few passes: all six operations, with wide step-overs."""
+#: Of each operation of a channel: radius of its ball, its allowances on blade and hub, its tolerance.
+BALLS = {
+    "CHANNEL_ROUGHING": (3.0, (0.3, 0.3), 0.01),
+    "HUB_FINISH": (3.0, (0.1, 0.0), 0.005),
+    "BLADE_FINISH": (2.0, (0.0, 0.0), 0.005),
+    "ROOT_BLEND": (2.0, (0.0, 0.0), 0.005),
+}
+
+ROUND = "STOCK_ROUGHING", "STOCK_FINISHING"
+FOUR = (*ROUND, "CHANNEL_ROUGHING", "ROOT_BLEND")
+SIX = pytest.param((*ROUND, *BALLS), marks=pytest.mark.nightly)
+
+
+@pytest.fixture(scope="module", params=[FOUR, SIX], ids=["four", "six"])
+def coarse(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> trunnion.ImpellerCut:
+    """The published impeller with few passes: its operations with wide step-overs."""
     folder = tmp_path_factory.mktemp("impeller")
     text = TEXT.replace("stepover_mm = 0.5", "stepover_mm = 5").replace("step_down_mm = 1.5", "step_down_mm = 8")
     text = text.replace("stepover_mm = 0.8\nstep_down_mm = 1.0", "stepover_mm = 3\nstep_down_mm = 5")
     text, _, root = text.replace("stepover_mm = 0.2", "stepover_mm = 2.5").rpartition("stepover_mm = 2.5")
     return trunnion.cut_impeller(
         definition(folder, f"{text}stepover_mm = {ROOT}{root}"), machine="yl569", output=folder / "nc",
-        settings={"zero": (0, 0, 0)},
+        settings={"zero": (0, 0, 0)}, operations=request.param,
     )  # fmt: skip
 
 
@@ -64,29 +78,27 @@ def roots(coarse: trunnion.ImpellerCut) -> Fillets:
 
 def test_all_files_are_there_and_the_program_is_proven(coarse: trunnion.ImpellerCut) -> None:
     assert coarse.passed
-    first, second = coarse.remarks  # such wide step-overs leave more than what comes next should find
+    first, *others = coarse.remarks  # such wide step-overs leave more than what comes next should find
     assert first.what.startswith("STOCK_FINISHING: up to 8.5 mm of metal stand")
-    assert second.what.startswith("BLADE_FINISH: its shank comes as near as 1.")
-    assert [len(step.seconds) for step in coarse.steps] == [1, 1, 6, 6, 6, 6]
+    in_channels = [step.step.name for step in coarse.steps[2:]]
+    assert len(others) == in_channels.count("BLADE_FINISH")
+    assert all(each.what.startswith("BLADE_FINISH: its shank comes as near as 1.") for each in others)
+    assert [len(step.seconds) for step in coarse.steps] == [1, 1, *(6 for _ in in_channels)]
     output = coarse.result.output
     assert output is not None
     assert {file.name for file in output.parent.iterdir()} == {
         "IMPELLER.mpf", "IMPELLER.html", "STOCK_ROUGHING.spf", "STOCK_FINISHING.spf",
-        *(
-            f"{name}_{k}.spf"
-            for name in ("CHANNEL_ROUGHING", "HUB_FINISH", "BLADE_FINISH", "ROOT_BLEND")
-            for k in range(1, 7)
-        ),
+        *(f"{name}_{k}.spf" for name in in_channels for k in range(1, 7)),
         *(f"IMPELLER_{step.step.name}.cls" for step in coarse.steps),
     }  # fmt: skip
     assert all(step.minutes > 0.0 for step in coarse.steps)
 
 
 def test_all_programs_fit_in_one_region_which_ends_where_a_slide_ends(coarse: trunnion.ImpellerCut) -> None:
-    """Its corners and its best place by the words of the posted programs: all six operations, 26 files."""
+    """Its corners and its best place by the words of the posted programs of all operations."""
     assert coarse.result.output is not None
     programs = sorted(coarse.result.output.parent.glob("*.spf"))
-    assert len(programs) == 26
+    assert len(programs) == 2 + 6 * len(coarse.steps[2:])
     found = trunnion.place(coarse.cl_files, machine="yl569", turns=[0.0], tool_length=160.0, stock="cylinder:90,35")
     assert found.fits
     assert found.region is not None
@@ -120,36 +132,22 @@ def test_a_cl_file_is_what_was_posted(coarse: trunnion.ImpellerCut) -> None:
             np.testing.assert_array_equal(own.moves.phase, other.moves.phase)
 
 
-@pytest.mark.parametrize(
-    ("name", "radius", "allowances", "tolerance"),
-    [
-        ("CHANNEL_ROUGHING", 3.0, (0.3, 0.3), 0.01),
-        ("HUB_FINISH", 3.0, (0.1, 0.0), 0.005),
-        ("BLADE_FINISH", 2.0, (0.0, 0.0), 0.005),
-        ("ROOT_BLEND", 2.0, (0.0, 0.0), 0.005),
-    ],
-)
-def test_no_ball_of_the_posted_programs_is_in_blade_hub_or_fillet(
-    coarse: trunnion.ImpellerCut,
-    roots: Fillets,
-    name: str,
-    radius: float,
-    allowances: tuple[float, float],
-    tolerance: float,
-) -> None:
-    impeller, slack = coarse.impeller, tolerance + DECIMALS
-    for copy in (1, 4):  # all of them are the same turned about Z, which another test says
+def test_no_ball_of_the_posted_programs_is_in_blade_hub_or_fillet(coarse: trunnion.ImpellerCut, roots: Fillets) -> None:
+    impeller = coarse.impeller
+    for name, copy in product((step.step.name for step in coarse.steps[2:]), (1, 4)):  # the others are these, turned
+        radius, allowances, tolerance = BALLS[name]
+        slack = tolerance + DECIMALS
         centres = reaching(impeller, ball_centres(coarse, f"{name}_{copy}", radius, 0.5), radius)
         blades, hub = gaps(impeller, centres)
-        assert blades.min() >= radius + allowances[0] - slack
-        assert hub.min() >= radius + allowances[1] - slack
+        assert blades.min() >= radius + allowances[0] - slack, name
+        assert hub.min() >= radius + allowances[1] - slack, name
         reach = radius + max(allowances) + 2.0 * impeller.definition.fillet  # a fillet is that near to blade and hub
         beside = centres[np.maximum(blades, hub) < reach]
-        assert fillet_gaps(roots, beside).min() >= radius + min(allowances) - slack
+        assert fillet_gaps(roots, beside).min() >= radius + min(allowances) - slack, name
         # What a step is for, it touches, but for its allowance.
         touched = {"BLADE_FINISH": [blades], "HUB_FINISH": [hub]}.get(name, [blades, hub])
         for one, allowance in zip(touched, allowances if len(touched) == 2 else (0.0,), strict=True):
-            assert one.min() <= radius + allowance + slack
+            assert one.min() <= radius + allowance + slack, name
 
 
 def test_no_tool_that_goes_round_the_part_is_in_the_form_of_the_shroud(coarse: trunnion.ImpellerCut) -> None:

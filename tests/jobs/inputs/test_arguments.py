@@ -176,7 +176,10 @@ _OPTION = re.compile(r"--[a-z]{3,}(?!-)\b(?!--)")
 
 def options_in(module: Path) -> list[tuple[str, str]]:
     """The texts of a module that name an option of the command line, each with the module's name."""
-    tree = ast.parse(module.read_text(encoding="utf-8"))
+    source = module.read_text(encoding="utf-8")
+    if "--" not in source:
+        return []
+    tree = ast.parse(source)
     documents = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     texts = [
         node.value

@@ -60,6 +60,8 @@ def convert(base: Base, program: Path) -> Told:
         return Told(True, found)
     if found[1:] != known[1:]:
         return Told(True, "warnings or settings")
+    if _skipped(found[0]) != _skipped(known[0]):
+        return Told(True, "OPSKIP")
     cl = program.with_suffix(".cls")
     cl.write_text(found[0], encoding="utf-8")
     against = Base(base.family, base.name, base.machine, cl, base.text, base.stated)
@@ -85,6 +87,16 @@ def _converted(base: Base, program: Path) -> tuple[str, list[str], dict[str, Any
     except trunnion.TrunnionError as refused:
         return type(refused).__name__
     return found.text or "", sorted(warned.codes), dict(found.settings)
+
+
+def _skipped(text: str) -> list[str]:
+    """What a CL file lets the operator skip; tool changes are made all the same."""
+    found, skips = list[str](), False
+    for line in text.splitlines():
+        skips = line == "OPSKIP/ON" or (skips and line != "OPSKIP/OFF")
+        if skips and line.startswith(("GOTO/", "SPINDL/", "COOLNT/", "CYCLE/", "STOP", "OPSTOP", "DELAY/")):
+            found.append(line)
+    return found
 
 
 def _suffix(base: Base) -> str:

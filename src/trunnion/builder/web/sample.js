@@ -18,7 +18,7 @@ export class Sample {
 
   /** @param {{lines: string[], all: number, changed: number[], removed: number, checks: {key: string, state: string, summary: string}[],
    *   problems: {severity: string, text: string, cure: string | null, code: string | null, subject: {kind: string, name: string} | null}[], passed: boolean,
-   *   standing: {checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[]} | null}} found
+   *   standing: {checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[], assumed: string[]} | null}} found
    * @param {number} marks values that are still to be entered */
   show(found, marks) {
     if (found.lines.length) this.lines = found.lines;
@@ -51,13 +51,14 @@ export class Sample {
 
   /**
    * What "passed" stands on.
-   * @param {{checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[]}} standing
+   * @param {{checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[], assumed: string[]}} standing
    */
   #said(standing) {
     const parts = [say("passed", standing.ok, standing.checks)];
     if (standing.not_checked) parts.push(`${standing.not_checked} ${say("notChecked")}`);
     if (standing.warnings) parts.push(say("warnings", standing.warnings));
     if (standing.not_measured.length) parts.push(say("notMeasured", standing.not_measured.length));
+    if (standing.assumed.length) parts.push(say("assumed", standing.assumed.join(", ")));
     return parts.join("; ");
   }
 

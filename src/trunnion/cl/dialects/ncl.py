@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from trunnion.cl.builder import NoAxis
+from trunnion.cl.builder import NoAxis, StatedPoints
 from trunnion.cl.conventions import CycleParts, CycleWords
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import Dialect, marks
@@ -10,6 +10,7 @@ from trunnion.cl.dialects.apt import APT_HANDLERS
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, parse
 from trunnion.cl.statements import apt_refused, apt_tools, events, motion, operations
+from trunnion.cl.statements.cutcom_points import CutcomPoints
 from trunnion.messages import Wording
 
 
@@ -35,9 +36,14 @@ def _mfgno(state: ReaderState, statement: Statement) -> None:
 
 
 def _geometry_type(state: ReaderState, statement: Statement) -> None:
-    """Say so where points are those of the contour, and not of the tool."""
-    if statement.values != ("OUTPUT_ON_CENTER",):
-        state.diagnostics.remark(state.line, Wording("CL470", "cutcom_geometry_type", listed=statement.listed()))
+    """Read what the points are from here on: those of the tool's centre, or of the contour (profile)."""
+    lost = Wording("CL470", "cutcom_geometry_type", listed=statement.listed())
+    if statement.values not in (("OUTPUT_ON_CENTER",), ("OUTPUT_ON_PROFILE",)):
+        state.diagnostics.remark(state.line, lost)
+        return
+    of_contour = statement.values == ("OUTPUT_ON_PROFILE",)
+    words = f"CUTCOM_GEOMETRY_TYPE/{statement.listed()}"
+    state.own(CutcomPoints).take(state, StatedPoints(of_contour, state.line, words, lost))
 
 
 def _comment(state: ReaderState, text: str) -> None:

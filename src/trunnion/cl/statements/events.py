@@ -4,17 +4,20 @@ Words are recognized by their meaning, not by their place: some systems write ``
 """
 
 from dataclasses import replace
+from typing import TypeGuard
 
 from trunnion.cl.builder import FeedChange, SurfaceSpeed
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import FEED_UNITS, FILE_UNIT_FEEDS, MM_PER_FOOT, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
+from trunnion.cl.statements.cutcom_points import CutcomPoints
 from trunnion.messages import Wording
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
     CutterComp,
     Dwell,
+    Event,
     Insert,
     Message,
     SelectTool,
@@ -36,6 +39,9 @@ _SPINDLE_WORDS = frozenset({"RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "DIAMTR"})
 _COOLANTS = frozenset({"ON", "OFF", "FLOOD", "MIST", "TAP", "THRU", "AIR"})
 _SIDES = frozenset({"LEFT", "RIGHT", "ON", "OFF"})
 _REGISTER = "ADJUST"
+
+#: The points behind this CUTCOM are those where the tool touches the contour.
+_CONTACT = "CONTACT"
 _PLANES = frozenset({"XYPLAN", "ZXPLAN", "YZPLAN"})
 
 #: Statements about the form of a program that every program fulfils.
@@ -185,11 +191,22 @@ def cutcom(state: ReaderState, statement: Statement) -> None:
     register = statement.plain_numbers()
     if side and _names_register(statement.values):
         words.remove(_REGISTER)
+    if contact := side in (["LEFT"], ["RIGHT"]) and _CONTACT in words:
+        words.remove(_CONTACT)
     if len(side) != 1 or len(plane) > 1 or len(words) != len(side) + len(plane) or len(register) > 1:
         state.note_unknown(statement, f"CUTCOM/{statement.listed()} is not known", *words)
         return
     number = whole_number("CUTCOM", register) if register else 0
-    state.add(CutterComp(state.operation_row, state.line, side[0], plane[0] if plane else "", number))
+    if side == ["ON"]:  # as it was last
+        contour = next((event.contour for event in reversed(state.builder.events) if _has_side(event)), False)
+    else:
+        points = state.own(CutcomPoints)
+        contour = side != ["OFF"] and points.are_of_contour(state, statement, contact=contact)
+    state.add(CutterComp(state.operation_row, state.line, side[0], plane[0] if plane else "", number, contour))
+
+
+def _has_side(event: Event) -> TypeGuard[CutterComp]:
+    return isinstance(event, CutterComp) and event.side in ("LEFT", "RIGHT")
 
 
 def _names_register(values: tuple[str | float, ...]) -> bool:

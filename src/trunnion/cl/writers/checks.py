@@ -12,6 +12,7 @@ from trunnion.errors import Problem
 from trunnion.messages import Wording
 from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.model.toolpath import (
+    CutterComp,
     CycleOff,
     CycleOn,
     From,
@@ -73,6 +74,9 @@ def is_detected_as_utf8(toolpath: Toolpath, comments: Iterable[str]) -> bool:
 def _operation_problems(file: str, operation: Operation) -> Iterator[Problem]:
     yield from (_bad_text(file, line, what) for line, what, text in _texts(operation) if not _is_one_line(text))
     yield from _arc_problems(file, operation)
+    for event in operation.events:
+        if isinstance(event, CutterComp) and event.contour:
+            yield Problem(file, event.line, Wording("CL910", "points_of_contour", side=event.side))
 
 
 def _arc_problems(file: str, operation: Operation) -> Iterator[Problem]:

@@ -160,6 +160,7 @@ def _converted_program(
         if others and not (divided or to_cl):
             converter.warn_of_one_program(1 + len(others))
         carried = converter.carry(converted.settings, control, job, source)
+        is_given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
         posted = None
         if to_cl:
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
@@ -167,12 +168,13 @@ def _converted_program(
             comments = [*job.notices, *(f"--set {key}={value}" for key, value in carried.items())]
             whole = conversion.with_whole_notices(converted.toolpath, control.family)
             converter.report(write_and_prove(whole, target, str(given["to_dialect"]), comments=comments))
+            if not is_given:
+                converter.warn_of_new_offset(run, job, to_cl=True)
         else:
-            is_given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
             toolpath, notices = conversion.take_notices(converted.toolpath, control.family)
             job = replace(with_settings(job, carried), notices=(*notices, *job.notices))
             if not is_given:
-                converter.warn_of_new_offset(run, job)
+                converter.warn_of_new_offset(run, job, to_cl=False)
             posted = post_toolpaths([toolpath], job, target, observer)
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)

@@ -7,6 +7,7 @@ from trunnion.messages import phrase
 from trunnion.options.groups import (
     BODIES,
     CLAMPING,
+    CUTCOM,
     CUTTING,
     FEED,
     HOOKS,
@@ -79,6 +80,7 @@ _VERIFY: Final = job(
     TOOL_LIBRARIES.but(help="tool library that has the lengths of tools, as of simulate"),
     TOOL_UNIT,
     RADIUS_REGISTER,
+    CUTCOM,
     FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed", key="feed"),
     Option(
         "feed_limit", "--feed-limit", length(phrase("kind_feed"), "2000", "MM_MIN"),

@@ -125,7 +125,7 @@ def cl_reading(settings: Mapping[str, str], strict: bool = False) -> ClReading:
     Raises ``InputError`` if the tolerance of splines is no number, or out of range.
     """
     within = number_setting(settings, "spline_tolerance")
-    return ClReading(settings.get("cl_units"), settings.get("dialect"), strict, within)
+    return ClReading(settings.get("cl_units"), settings.get("dialect"), strict, within, settings.get("cutcom"))
 
 
 def _is_spline_tolerance(value: object) -> bool:

@@ -99,6 +99,13 @@ def _declared(option: Option) -> RunSetting:
 RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     "cl_units": _choice("Length unit of the CL files.", "mm", "inch", default="what the files say"),
     "dialect": _choice("What the CL files are written in.", *DIALECTS, default="what their content says"),
+    "cutcom": _choice(
+        "What the points under CUTCOM are where the CL files do not say it: those of the tool's centre, so that the "
+        "control corrects by a difference, or those of the contour, so that it adds the radius.",
+        "centreline",
+        "contour",
+        default="what the CL files say; else centreline",
+    ),
     "spline_tolerance": RunSetting(
         "How far the points that splines (NURBS) of CL files become may leave them between each other.",
         "the smaller of INTOL and OUTTOL, from 0.0001 to 0.01; 0.001 without them",

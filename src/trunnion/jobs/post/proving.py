@@ -20,6 +20,7 @@ from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
 from trunnion.messages import Wording
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
+from trunnion.output.compensation_entries import entries_at_control
 from trunnion.verification import Verification, rows_from_starts, verify, without_columns
 from trunnion.verification.skip_meanings import with_other_meanings
 
@@ -94,7 +95,10 @@ def report_proof(posting: Posting, planned: PlannedProgram, proof: Proof) -> Pos
     if found is not None:
         observer.verified(replace(found, remarks=(*remarks, *problems)))
     toolpaths = tuple(posting.toolpaths)
-    return PostResult(toolpaths, planned.plan, found, (*remarks, *problems), simulation=proof.simulation)
+    entered = tuple(entries_at_control(planned.program))
+    return PostResult(
+        toolpaths, planned.plan, found, (*remarks, *problems), simulation=proof.simulation, entered=entered
+    )
 
 
 def _nothing_checked(posting: Posting) -> Problem:

@@ -33,6 +33,7 @@ class PostResult:
     subprograms   files of its subprograms
     simulation    what it cuts and hits; None: it was not simulated
     encoding      of its files
+    entered       what the operator enters for radius compensation, and where
     """
 
     toolpaths: Annotated[tuple[Toolpath, ...], NOT_DATA]
@@ -47,6 +48,7 @@ class PostResult:
     subprograms: tuple[Path, ...] = ()
     simulation: Annotated["SimulationResult | None", NOT_DATA] = None
     encoding: Annotated[str, NOT_DATA] = "utf-8"
+    entered: tuple[str, ...] = ()
     _memory: io.BytesIO | None = None
 
     def __repr__(self) -> str:

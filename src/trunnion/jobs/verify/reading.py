@@ -51,7 +51,8 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
 
     Raises ``InputError`` if a file cannot be used, or a CL file states that its part is clamped otherwise.
     """
-    toolpaths = as_toolpaths(given["cl"], observer, ClReading(given["units"], given["dialect"], given["strict"]))
+    how = ClReading(given["units"], given["dialect"], given["strict"], cutcom=given["cutcom"])
+    toolpaths = as_toolpaths(given["cl"], observer, how)
     on = replace(on, machine=with_lengths_of_tools(on.machine, toolpaths))
     run = as_run(nc, on.machine, given["subprograms"])
     observer.problems(program_warnings(run))

@@ -87,6 +87,9 @@ def verify(
     radius_register
         What radius compensation works with: ``"difference"``, by how much the tool is larger than in the CL file, or
         ``"radius"``, its radius; by default as the control's definition says.
+    cutcom
+        What the points under CUTCOM are where the CL files do not say it: those of the tool's ``"centreline"``, which
+        is the default, or of the ``"contour"``, where the control has to add the radius.
     columns
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.

@@ -1,4 +1,6 @@
-"""Radius compensation that the control would make in another plane than across the tool, or at holes."""
+"""Radius compensation that the control would make in another plane than across the tool, at holes, or by what no
+register can hold; and that blocks which the operator may skip would switch for those that he may not.
+"""
 
 from typing import Final
 
@@ -7,7 +9,8 @@ import numpy as np
 from trunnion.errors import Problem
 from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import CutterComp
+from trunnion.model.toolpath import BlockSkip, CutterComp, LoadTool
+from trunnion.output.compensation_entries import entries_of
 from trunnion.output.program import Program
 from trunnion.planning.holes.operations import cycle_row_ranges
 
@@ -62,4 +65,43 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
                 ),
             )
         )
+    return problems
+
+
+def register_problems(program: Program) -> list[Problem]:
+    """Refuse one register for a contour and for the path of a tool's centre: it cannot hold radius and difference."""
+    problems: list[Problem] = []
+    known: dict[tuple[str, int], tuple[bool, str]] = {}
+    tool = ""
+    for motion in program.motions:
+        operation = motion.operation
+        tool = next((str(event.number) for event in operation.events if isinstance(event, LoadTool)), tool)
+        for entry in entries_of(program, [motion], tool):
+            contour, before = known.setdefault((tool, entry.register), (entry.contour, operation.name))
+            if contour != entry.contour:
+                names = (operation.name, before) if entry.contour else (before, operation.name)
+                wording = Wording("CTL220", "contour_and_centre", where=entry.where, contour=names[0], centre=names[1])
+                problems.append(Problem(program.file_of(operation), operation.line, wording))
+    return problems
+
+
+def skipped_side_problems(program: Program, motion: Motion) -> list[Problem]:
+    """Refuse CUTCOM within OPSKIP that waits for the motion behind it, where its words make no block alone.
+
+    That motion is not skipped, so the words could not be skipped either.
+    """
+    control = program.control
+    bare = {word.name for word in control.words if word.bare}
+    problems: list[Problem] = []
+    waiting: CutterComp | None = None
+    skips = False
+    for event in motion.operation.events:
+        if isinstance(event, BlockSkip):
+            if waiting is not None and not event.on and waiting.row == event.row:
+                wording = Wording("CTL460", "cutcom_waits", side=waiting.side, off=event.line)
+                problems.append(Problem(program.file_of(motion.operation), waiting.line, wording))
+            skips, waiting = event.on, None
+        elif isinstance(event, CutterComp) and skips:
+            words = control.family.event_words(event, control.codes, control.coolant)
+            waiting = event if bare.issuperset(words) else None
     return problems

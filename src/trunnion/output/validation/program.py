@@ -4,7 +4,7 @@ from trunnion.errors import Problem
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import LoadTool, Sense, SpindleOff, SpindleOn, Stop
 from trunnion.output.program import Program
-from trunnion.output.validation.compensation import compensation_problems
+from trunnion.output.validation.compensation import compensation_problems, register_problems, skipped_side_problems
 from trunnion.output.validation.compensation_corners import corner_problems
 from trunnion.output.validation.cycles import cycle_problems
 from trunnion.output.validation.events import block_skip_problems, event_problems
@@ -66,7 +66,8 @@ def check_program(program: Program) -> list[Problem]:
         tool_in_spindle = operation.tool.name
         problems += machining_mode_problems(program, motion)
         problems += tolerance_problems(program, motion)
-    return [*problems, *block_skip_problems(program), *machine_problems(program), *text_problems(program)]
+    problems += [*register_problems(program), *block_skip_problems(program)]
+    return [*problems, *machine_problems(program), *text_problems(program)]
 
 
 def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -76,6 +77,7 @@ def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
         problems += tool_vector_problems(program, motion)
     problems += [*plane_entry_problems(program, motion), *normal_problems(program, motion)]
     problems += [*compensation_problems(program, motion), *corner_problems(program, motion)]
+    problems += skipped_side_problems(program, motion)
     if motion.mode is MachiningMode.WITHOUT_TCP and program.template_suffix(motion):
         problems += problems_without_tcp(program, motion)
     problems += [*missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]

@@ -304,9 +304,9 @@ class CoordinateControl(RowRecorder):
         """Whether the program sets a mode behind the last motion with a use for it, as is reported then."""
         return any(mode.name == name for mode in self._trailing.changed())
 
-    def report_left(self, left: Wording, *, may_begin: bool = False) -> None:
-        """Report a plane, a rotation or a shift that the program leaves on: the next one begins with it, or may."""
-        self._note_left(Wording("NC351", "may_be_left" if may_begin else "left", left=left))
+    def report_left(self, left: Wording, *, may_begin: bool = False, in_use: bool = False) -> None:
+        """Report a plane, a rotation or a shift that is left to the next program; one in use is warned of."""
+        self._note_left(Wording("NC351", "may_be_left" if may_begin else "left", left=left), stays=not in_use)
 
     def _note_left(self, wording: Wording, *, stays: bool = True) -> None:
         """Note what is left to the next program; one that never cuts may leave it on purpose, as a set-up does."""
@@ -365,6 +365,7 @@ class CoordinateControl(RowRecorder):
         self.length_unit = INCH if inches else 1.0
         self.feed_unit = INCH if inches and feeds_too else 1.0
         self.modal.inches.set(self.row, inches)
+        self.said_from.setdefault("units", self.row)
         if self.units_from is None:
             self.units_from = self.row
 

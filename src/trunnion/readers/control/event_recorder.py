@@ -34,6 +34,8 @@ class EventRecorder:
         self.events: list[RunEvent] = []
         self.mode_words: list[ModeWord] = []
         self._modes_said: dict[str, str] = {}
+        #: The row from which on the program has said a mode.
+        self.said_from: dict[str, int] = {}
         self._told_words: set[str] = set()
         self._told_waits: set[tuple[int, int]] = set()
         self.tools: dict[str, int] = {"": 0}
@@ -72,6 +74,7 @@ class EventRecorder:
 
     def say_mode(self, mode: str, word: str = "") -> None:
         """Record that the program says a mode, which another may have left otherwise: as in ``ModeWord``."""
+        self.said_from.setdefault(mode, self.row)
         if self._modes_said.get(mode) != word:
             self._modes_said[mode] = word
             self.mode_words.append(ModeWord(self.row, mode, word))

@@ -5,7 +5,8 @@ What programmed positions mean is the subject of ``trunnion.readers.control.coor
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -33,6 +34,7 @@ from trunnion.model.toolpath import Arcs, Kind
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
 from trunnion.readers.control.event_recorder import EventRecorder, Note
+from trunnion.readers.control.start_modes import assumed_modes
 from trunnion.readers.scan.buffers import MAX_BLOCKS, BlockWords, RowColumns, ScanRecords, ScanSettings
 from trunnion.readers.scan.rows import execute_blocks
 
@@ -83,6 +85,9 @@ class RowRecorder(EventRecorder):
 
     #: Whether the control counts in millimetres unless the program says otherwise.
     knows_units = False
+
+    #: The modes that a program may rely on without saying them: the word with which the control starts, by mode.
+    start_modes: Mapping[str, str] = MappingProxyType({})
 
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(note)
@@ -341,6 +346,7 @@ class RowRecorder(EventRecorder):
             compensation_planes=np.array(self._compensation_planes).reshape(-1, 3),
             planes=np.array(self._planes).reshape(-1, 3, 4),
             mode_words=tuple(self.mode_words),
+            assumed_modes=assumed_modes(self.machine, self.start_modes, self.said_from, c.kind[:n], c.programmed[:n]),
         )
 
     def _normal_columns(self) -> SurfaceNormals:

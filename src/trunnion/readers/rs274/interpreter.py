@@ -15,6 +15,7 @@ from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import ScannedRows
+from trunnion.readers.control.start_modes import MOTION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
@@ -119,7 +120,7 @@ class Rs274Interpreter(Interpreter[A]):
     # Plain blocks
 
     def _may_scan(self, source: SourceText) -> bool:
-        if self.motion_code not in (0, 10) or not self.control.absolute:
+        if self.motion_code not in (0, 10) or not self.control.absolute or MOTION not in self.control.said_from:
             return False
         beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
         return _PLAIN_START.match(beginning.tobytes()) is not None

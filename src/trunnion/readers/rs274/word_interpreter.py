@@ -9,6 +9,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
+from trunnion.readers.control.start_modes import MOTION
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.word_values import fault_of_value
@@ -148,6 +149,8 @@ class WordInterpreter(Rs274Interpreter[A]):
             letters = [letter for letter in word.letters if letter in block.words and not word.group]
             said = " ".join((word.text, *(f"{letter}{block.words[letter].value:g}" for letter in letters)))
             self.control.say_mode(word.mode, "" if word.shows else said)
+        if word.is_motion or word.act == "cancel":
+            self.control.said_from.setdefault(MOTION, self.control.row)
         if word.act:
             self._acts[word.act](word, block)
 

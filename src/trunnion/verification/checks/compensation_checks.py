@@ -9,11 +9,11 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.compensation.offsets import Fault
-from trunnion.compensation.stretches import RegisterValue
+from trunnion.compensation.stretches import RegisterValue, Stretch
 from trunnion.model.run import Run
 from trunnion.verification.checks.driven_path import DrivenPath, driven_path
 from trunnion.verification.checks.matched_rows import first_wrong_pair
-from trunnion.verification.context import ComparedContext, check_from_places
+from trunnion.verification.context import ComparedContext, ExpectedValues, check_from_places
 from trunnion.verification.expected.states import compensation_states
 from trunnion.verification.results import Check, Place
 
@@ -29,6 +29,16 @@ _FAULTS: Final = {
     Fault.SHORT_ENTRY: "the line on which compensation begins is no longer than the radius: the control stops",
     Fault.NO_CONTOUR: "radius compensation begins and ends with no motion between: where the tool goes is not known",
 }
+#: What is wrong where the register holds the other value than the points of the CL file ask for.
+_CENTRE_LINE: Final = (
+    "the control compensates by {offset:.3f} mm, and the points of the CL file are those of the tool's centre: it goes"
+    " up to {off:.3f} mm beside them; the register must hold the difference (radius_register=difference)"
+)
+_CONTOUR: Final = (
+    "the control compensates by {offset:.3f} mm, and the points of the CL file are those of the contour, which the tool"
+    " would cut into: its centre must go {radius:.3f} mm beside them; the register must hold the radius"
+    " (radius_register=radius)"
+)
 _SIDES: Final = {1: "left of the path", -1: "right of the path", 0: "off"}
 
 
@@ -81,30 +91,43 @@ def _alarms(context: ComparedContext, driven: DrivenPath) -> Iterator[Place]:
 def _beside(context: ComparedContext, driven: DrivenPath) -> Iterator[Place]:
     """Yield the first motion of each stretch whose tool centre goes elsewhere than the CL file has it.
 
-    What the settings let the program add to the radius (DR) is meant to be there.
+    What the settings let the program add to the radius (DR) is meant to be there, but for what makes a centre line of a
+    contour.
     """
-    centre, matching = driven.centre, context.matching
-    meant = {0.0}
-    if context.settings.register_holds is RegisterValue.DIFFERENCE:
-        meant |= {value for word in ("DR", "TOFFR") for value in context.settings.tool_deltas.get(word, ())}
-    for stretch, offset in driven.offsets:
-        if offset is None or min(abs(offset - each) for each in meant) <= _SAME:
+    for each in driven.stretches:
+        if each.offset is None or each.wanted is None:
             continue
-        pairs = matching.nc.count_before(stretch.first), matching.nc.count_before(stretch.end)
-        for nc, cl in matching.pair_chunks(*pairs):
-            tip = centre.run.positions(centre.row_of[nc]).tip
-            off = np.linalg.norm(tip - context.expected.tip(cl), axis=1)
-            far = np.flatnonzero(off > _SAME)
-            if len(far):
-                worst = int(off.argmax())
-                text = (
-                    f"the control compensates by {offset:.3f} mm, and the points of the CL file are those of the tool's"
-                    f" centre: it goes up to {off[worst]:.3f} mm beside them; the register must hold the difference"
-                    " (radius_register=difference)"
-                )
-                row = int(nc[far[0]])
-                yield context.place_with_cl(row, float(off[worst]), text, int(cl[far[0]]))
-                break
+        off = each.offset - each.wanted
+        if min(abs(off - added) for added in _meant(context.settings, each.wanted)) <= _SAME:
+            continue
+        if each.wanted:
+            pair = context.matching.nc.count_before(each.stretch.first)
+            row, cl = int(context.matching.nc[pair]), int(context.matching.cl[pair])
+            yield context.place_with_cl(row, abs(off), _CONTOUR.format(offset=each.offset, radius=each.wanted), cl)
+        else:
+            yield from _off_centre_line(context, driven, each.stretch, each.offset)
+
+
+def _meant(settings: ExpectedValues, wanted: float) -> set[float]:
+    """Return what the program may add to the radius, mm."""
+    meant = {0.0}
+    if wanted or settings.register_holds is RegisterValue.DIFFERENCE:
+        meant |= {value for word in ("DR", "TOFFR") for value in settings.tool_deltas.get(word, ())}
+    return {value for value in meant if not wanted or value + wanted > _SAME}
+
+
+def _off_centre_line(context: ComparedContext, driven: DrivenPath, stretch: Stretch, offset: float) -> Iterator[Place]:
+    """Yield the first motion of a stretch that goes beside the points of the tool's centre."""
+    centre, matching = driven.centre, context.matching
+    pairs = matching.nc.count_before(stretch.first), matching.nc.count_before(stretch.end)
+    for nc, cl in matching.pair_chunks(*pairs):
+        tip = centre.run.positions(centre.row_of[nc]).tip
+        off = np.linalg.norm(tip - context.expected.tip(cl), axis=1)
+        far = np.flatnonzero(off > _SAME)
+        if len(far):
+            row, worst = int(nc[far[0]]), float(off.max())
+            yield context.place_with_cl(row, worst, _CENTRE_LINE.format(offset=offset, off=worst), int(cl[far[0]]))
+            return
 
 
 def _takes_other_radius(run: Run, register: int, nc: Ints) -> Flags:

@@ -62,10 +62,14 @@ def all_coolants(expected: ExpectedPath) -> set[str]:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedCompensation:
-    """Radius compensation: ``side`` 1 left, -1 right, 0 off; ``register`` of the radius, 0 if no number is known."""
+    """Radius compensation: ``side`` 1 left, -1 right, 0 off; ``register`` of the radius, 0 if no number is known.
+
+    ``contour``: the points are those of the contour, and the tool's centre goes the radius beside them.
+    """
 
     side: int = 0
     register: int = 0
+    contour: bool = False
 
 
 def compensation_states(expected: ExpectedPath) -> list[StateRange[ExpectedCompensation]]:
@@ -84,7 +88,7 @@ def compensation_states(expected: ExpectedPath) -> list[StateRange[ExpectedCompe
                 own = int(called) if called.isdigit() else number
                 own += section.settings.radius_offset if own else 0
                 side = 0 if event.side == "OFF" else last
-                changes.append((event.row, ExpectedCompensation(side, event.register or own)))
+                changes.append((event.row, ExpectedCompensation(side, event.register or own, event.contour)))
         states += _ranges(section, changes)
     return states
 

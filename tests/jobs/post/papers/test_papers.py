@@ -483,3 +483,14 @@ def test_a_sheet_has_the_way_of_a_rotary_axis_and_no_kind_that_is_not_known(tmp_
     assert "<bdi>DR5</bdi><br><small>drill, tip 118°</small>" in holes
     assert "<bdi>TAP6</bdi></td>" in holes
     assert "<bdi>REAM8</bdi></td>" in holes
+
+
+def test_a_sheet_has_the_lengths_and_numbers_of_its_tools_and_the_zeros_that_are_known(tmp_path: Path) -> None:
+    cl, sheet = tmp_path / "part.cls", tmp_path / "a.json"
+    second = HEAD.replace("OP1", "OP2").replace("TOOL,1,ADJUST,1", "TOOL,2")
+    cl.write_text(HEAD + FOOT + second + FOOT, encoding="utf-8")
+    settings = {"zero": "G54=-200,-200,100", "work_offset": "OP2:G55", "tool_length": "1=110,2=85"}
+    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", settings=settings, sheet=sheet)
+    data = json.loads(sheet.read_text(encoding="utf-8"))
+    assert [(tool["set_length"], tool["register"]) for tool in data["tools"]] == [(110.0, 1), (85.0, 2)]
+    assert any("proven for it, and not for G55" in task for task in data["to_check"])

@@ -30,7 +30,7 @@ END-OF-PATH
         ("CUTCOM/LEFT\nDELAY/2\n", "", "CUTCOM/OFF\nDELAY/2\n"),
         ("CUTCOM/LEFT\nPPRINT/A\n", "", "CUTCOM/OFF\nPPRINT/B\n"),
         ("CUTCOM/LEFT\nOPSTOP\n", "", "CUTCOM/OFF\nSTOP\n"),
-        ("CUTCOM/LEFT\n", "OPSKIP/ON\n", "CUTCOM/OFF\nOPSKIP/OFF\n"),
+        ("CUTCOM/LEFT\n", "OPSKIP/ON\n", "OPSKIP/OFF\nCUTCOM/OFF\n"),
         ("CUTCOM/RIGHT\nDELAY/1\nCUTCOM/LEFT\n", "", "CUTCOM/OFF\n"),
     ],
 )
@@ -46,3 +46,15 @@ def test_radius_compensation_waits_for_the_next_motion(left: str, skip: str, off
     back = tmp_path / "back.h"
     trunnion.convert(nc, machine="dmu65", to_machine="dmu65", output=back)
     assert [line.split()[-1] for line in back.read_text().splitlines() if " RL" in line] == ["RL"]
+
+
+@pytest.mark.parametrize("machine", ["dmu65", "yl569"])
+def test_a_side_that_would_wait_for_a_motion_which_is_not_skipped_is_refused(machine: str, tmp_path: Path) -> None:
+    """R0 stands in the block behind OPSKIP/OFF, so that who skips blocks gets it too; G40 has a block of its own."""
+    cl, nc = tmp_path / "contour.cls", tmp_path / "contour.nc"
+    cl.write_text(JOB.format(left="CUTCOM/LEFT\n", skip="OPSKIP/ON\n", off="CUTCOM/OFF\nOPSKIP/OFF\n"))
+    if machine == "yl569":
+        assert trunnion.post(cl, machine=machine, output=nc).passed
+        return
+    with pytest.raises(trunnion.InputError, match="acts in the motion behind OPSKIP/OFF in line 15"):
+        trunnion.post(cl, machine=machine, output=nc)

@@ -90,7 +90,7 @@ def setup_sheet(
         tool_length=machine.tool_length,
         system=_system(program, job),
         rotary=rotary,
-        tools=tuple(_with_bodies(_tools(calls, operations, run.uses_length_numbers), job, result.simulation)),
+        tools=tuple(_with_bodies(_tools(calls, operations, run, machine), job, result.simulation)),
         operations=operations,
         start=tuple(_start(program, run, operations, rotary)),
         to_check=tuple(clean(one_line(text)) for text in _to_check(program, job, result, run)),
@@ -114,6 +114,18 @@ def _untimed(machine: Machine) -> str:
 def _offsets(run: Run) -> tuple[str, ...]:
     values = [int(value) for value in dict.fromkeys(run.state.work_offset.values.tolist())]
     return tuple(clean(run.work_offset_name(value)) for value in values if value not in (0, NO_OFFSET))
+
+
+def _check_of_zeros(run: Run, machine: Machine) -> str:
+    """Return what to check of the workpiece zeros: limits of the linear axes were proven for those that are known."""
+    values = dict.fromkeys(run.state.work_offset.values.tolist())
+    unknown = [int(value) for value in values if machine.zeros.get(int(value), machine.workpiece_zero) is None]
+    unknown = [value for value in unknown if value not in (0, NO_OFFSET)] if machine.zeros else unknown
+    if machine.workpiece_zero is None and not machine.zeros:
+        return "Check the travel: nobody said where the workpiece zero is, and it is only proven to fit somewhere."
+    text = "Check that the workpiece zero is where the sheet says: the limits of the linear axes were proven for it"
+    names = ", ".join(clean(run.work_offset_name(value)) for value in unknown)
+    return f"{text}, and not for {names}, whose zero nobody said." if names else f"{text}."
 
 
 def _system(program: Program, job: PostJob) -> str:
@@ -147,12 +159,9 @@ def _operations(
 def _entries(program: Program, motions: Sequence[Motion], call: str) -> Iterator[str]:
     """Yield what the operator enters for radius compensation."""
     for each in entries_of(program, motions, call):
-        larger = (
-            "" if each.holds == "radius" else ", by which the tool is larger than its size here (smaller: negative)"
-        )
-        yield (
-            f"radius compensation: the path is that of the tool's centre, so enter {each.value} {each.where}{larger}"
-        )
+        is_radius = each.contour or each.holds == "radius"
+        larger = "" if is_radius else ", by which the tool is larger than its size here (smaller: negative)"
+        yield f"radius compensation: the path is that of the {each.path}, so enter {each.value} {each.where}{larger}"
 
 
 def _notes(motions: Sequence[Motion]) -> Iterator[str]:
@@ -228,7 +237,7 @@ def _box(motions: Sequence[Motion]) -> tuple[tuple[float, float, float], tuple[f
 
 
 def _tools(
-    calls: Sequence[tuple[str, int, Operation]], operations: Sequence[SheetOperation], by_register: bool
+    calls: Sequence[tuple[str, int, Operation]], operations: Sequence[SheetOperation], run: Run, machine: Machine
 ) -> Iterator[SheetTool]:
     """Each tool once, in the order in which they are called."""
     tools: dict[str, list[int]] = {}
@@ -237,6 +246,8 @@ def _tools(
     for call, used in tools.items():
         _, register, operation = calls[used[0]]
         tool = operation.tool
+        stated = machine.set_up_for(call, 0).tool_length
+        own_register = register or (int(call) if call.isdecimal() else 0)
         yield SheetTool(
             call=clean(call),
             name=clean(tool.name),
@@ -246,9 +257,9 @@ def _tools(
             length=tool.length,
             flute_length=tool.flute_length,
             stick_out=tool.extension,
-            set_length=tool.set_length,
+            set_length=tool.set_length or stated or 0.0,
             holder=clean(tool.holder),
-            register=register if by_register else 0,
+            register=own_register if run.uses_length_numbers else 0,
             operations=tuple(number + 1 for number in used),
             seconds=sum(operations[number].cutting_seconds for number in used),
         )
@@ -303,10 +314,7 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     single = list(setup_notices(job, result.toolpaths)) if job.setups or job.settings.get("delta_length") else []
     for notice in dict.fromkeys(single):
         yield f"Check that this is so: {notice}."
-    if run.machine.workpiece_zero is None:
-        yield "Check the travel: nobody said where the workpiece zero is, and it is only proven to fit somewhere."
-    else:
-        yield "Check that the workpiece zero is where the sheet says: the limits of the linear axes were proven for it."
+    yield _check_of_zeros(run, program.machine)
     if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions):
         yield "Measure zero and tool length before each part: without TCP the program holds for these alone."
     yield "Check each tool: the right one in its pocket, length and radius measured and entered, edge sharp."

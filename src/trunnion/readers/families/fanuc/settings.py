@@ -7,6 +7,7 @@ from typing import Final
 
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.readers.control.start_modes import MOTION, check_start_modes
 from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
@@ -20,6 +21,9 @@ ANGLES: Final = tuple("ABC")
 
 #: What decides on a Fanuc which modes a reset, and so the end of a program, ends.
 KEPT_BY: Final = "parameter 3402"
+
+#: How the reader takes the control to start.
+START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", MOTION: "G80"}
 
 #: P of G54.1 on a control with all of them.
 HIGHEST_EXTENDED: Final = 300
@@ -144,6 +148,7 @@ def settings_of(machine: Machine) -> Settings:
     numbers = table.text("whole_numbers", "increments", one_of=("increments", "calculator"))
     increment = table.number("least_increment_mm", 0.001, above=0.0)
     unit = unit_of(table)
+    check_start_modes(table, START_MODES)
     settings = Settings(
         numbers == "calculator",
         increment,

@@ -16,6 +16,7 @@ from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.control.start_modes import check_start_modes
 from trunnion.readers.families.fidia.words import TABLE
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
@@ -44,15 +45,21 @@ def settings_of(machine: Machine) -> Settings:
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     unit = unit_of(table)
     words = read_word_meanings(table, TABLE.is_own)
+    check_start_modes(table, _START_MODES)
     table.report_unread_keys()
     table.raise_problems()
     return Settings(FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit, words)
+
+
+#: How the reader takes the control to start; it has one feed mode.
+_START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40"}
 
 
 class FidiaControl(Rs274Control):
     """A Fidia on a machine. Work offsets are the machine's workpiece zero."""
 
     relative_centres = False
+    start_modes = _START_MODES
 
     doubtful_modes = frozenset({"units", "distances", "plane", "compensation"})
     reset_by = "no source says what the end of a program sets back"

@@ -107,7 +107,7 @@ class HeidenhainControl(LeadControl):
         self.report_unused_offsets()
         self.report_trailing_modes()
         if left := self.left_on():
-            self.report_left(left, may_begin=True)
+            self.report_left(left, may_begin=True, in_use=not (self.in_unused_plane or self.unused_shift))
         if self._cancels_shortest_path:
             self.end_operation("ends_with_m126")
             end = self.line

@@ -78,11 +78,10 @@ class PlaneControl(VirtualControl):
         self._require_settled_datum()
 
     def left_on(self) -> Wording | None:
-        """Return a plane or a datum without use that the end of the program leaves on; None if nothing."""
+        """Return a plane without use, or a datum, that the end of the program leaves on; None if nothing."""
         if self.in_unused_plane and self._is_turned:
             return phrase("left_plane")
-        unused = self.unused_shift and not self.datum.frame(self.plane_axis).is_identity
-        return phrase("left_datum") if unused else None
+        return None if self.datum.frame(self.plane_axis).is_identity else phrase("left_datum")
 
     @property
     def _is_turned(self) -> bool:

@@ -16,6 +16,7 @@ from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.control.start_modes import check_start_modes
 from trunnion.readers.families.linuxcnc.words import is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
@@ -37,6 +38,9 @@ _SAME_LENGTH: Final = 1e-6
 #: Axes within this of zero, degrees, carry no length sideways; directions within this are parallel.
 _STILL: Final = 1e-9
 
+#: How the reader takes the control to start.
+_START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94"}
+
 #: Parameters that keep their values from one program to the next.
 _PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
 
@@ -46,6 +50,7 @@ def settings_of(machine: Machine) -> tuple[str, WordMeanings, dict[str, float]]:
     table = reading_of(machine)
     unit, words = unit_of(table), read_word_meanings(table, is_own_word)
     variables = read_variables(table, _PARAMETER, "#100")
+    check_start_modes(table, _START_MODES)
     table.report_unread_keys()
     table.raise_problems()
     return unit, words, variables
@@ -77,6 +82,7 @@ class LinuxcncControl(Rs274Control):
     # M2 and M30 set all others back: G54, G17, G90, G94, G40, G80 (docs/reader-linuxcnc.md).
     compensation_style = OWN_ENTRY
     kept_modes = frozenset({"units", "centres", "length"})
+    start_modes = _START_MODES
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)

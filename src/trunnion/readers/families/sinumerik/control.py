@@ -26,7 +26,7 @@ from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
-from trunnion.readers.families.sinumerik.settings import WITH_LENGTH, Settings, settings_of
+from trunnion.readers.families.sinumerik.settings import START_MODES, WITH_LENGTH, Settings, settings_of
 from trunnion.readers.families.sinumerik.words import WITHIN_COMPENSATION
 from trunnion.readers.scan.letter_blocks import letter_table
 
@@ -52,6 +52,7 @@ class SinumerikControl(VirtualControl):
     compensation_style = CIRCLES
     no_offset = NO_OFFSET
     knows_units = True
+    start_modes = START_MODES
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self._machine_vectors = False

@@ -7,12 +7,16 @@ from typing import Final
 
 from trunnion.machines import Machine
 from trunnion.readers.control.contour_control import FEED_BEFORE, FEED_BEHIND
+from trunnion.readers.control.start_modes import check_start_modes
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of
 
 #: Whether the length of the edge in force counts in positions of the machine (G53, G153, SUPA).
 WITH_LENGTH: Final = "with_length"
 WITHOUT_LENGTH: Final = "without_length"
+
+#: How the reader takes the control to start.
+START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", "units": "G71"}
 
 #: R parameters, variables of the control (GUD) and system variables, in capitals, with their index.
 _VARIABLE: Final = re.compile(r"R(?:0|[1-9][0-9]{0,4})|\$?[A-Z_][A-Z0-9_]+(?:\[[0-9]{1,5}(?:,[0-9]{1,5})*\])?")
@@ -50,6 +54,7 @@ def settings_of(machine: Machine) -> Settings:
         corner_feed=table.text("corner_feed", "", one_of=("", FEED_BEFORE, FEED_BEHIND)),
         variables=read_variables(table, _VARIABLE, "R100"),
     )
+    check_start_modes(table, START_MODES)
     table.report_unread_keys()
     table.raise_problems()
     return settings
