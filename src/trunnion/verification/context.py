@@ -57,6 +57,7 @@ class ExpectedValues:
     between_operations     the tool goes home, or above all operations, from one to the next
     without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     stop_between           an optional stop stands between operations
+    has_settings           names of the settings that the control has: only those can be told again
     demands                what the proof must stand on besides what the machine's definition demands
     """
 
@@ -90,7 +91,14 @@ class ExpectedValues:
     clearance: float | None = None
     in_turn: bool = False
     between_operations: bool = False
+    has_settings: frozenset[str] = frozenset()
     demands: tuple[str, ...] = ()
+
+    def repeat(self, name: str, value: object) -> str:
+        """Return how a setting of the post is told again, to follow a fault; empty if the control has none of it."""
+        if name not in self.has_settings:
+            return ""
+        return f"; if the program was posted with {name}={value}, give --set {name}={value}"
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""
