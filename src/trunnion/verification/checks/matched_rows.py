@@ -16,6 +16,8 @@ def first_wrong_pair(
     Motions on the way to the CL points of these pairs count, too. ``is_wrong`` tells which of some rows of the run are
     wrong, (k,) bool.
     """
+    if first >= end:  # no motion goes to any of the CL rows
+        return None
     found = [_first(is_wrong, *matching.on_the_way(int(matching.cl[first]), int(matching.cl[end - 1])))]
     for nc, cl in matching.pair_chunks(first, end):
         found.append(_first(is_wrong, nc, cl))
