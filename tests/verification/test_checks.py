@@ -31,7 +31,7 @@ def test_a_program_that_does_what_its_cl_file_says_passes_every_check(verified: 
         ("X20\n", "X20.1\n", "tip", "X20.1"),
         ("X20\n", "X20 B1\n", "axis", "X20 B1"),
         ("X20\n", "", "order", "SUPA G0 Z0 D0"),
-        ("X20\n", "X15\nX20\n", "order", "X15"),
+        ("X20\n", "X15 Y1\nX20 Y0\n", "order", "X15 Y1"),
         ("X20\n", "G0 X20\n", "kind", "G0 X20"),
         ("G1 X10", "G2 CR=6 X10", "kind", "G2 CR=6 X10 Z5 F500"),
         ("X20\n", "X20 F501\n", "feed", "X20 F501"),
