@@ -31,7 +31,7 @@ def test_a_program_that_does_what_its_cl_file_says_passes_every_check(verified: 
         ("X20\n", "X20.1\n", "tip", "X20.1"),
         ("X20\n", "X20 B1\n", "axis", "X20 B1"),
         ("X20\n", "", "order", "SUPA G0 Z0 D0"),
-        ("X20\n", "X15\nX20\n", "order", "X15"),
+        ("X20\n", "X15 Y1\nX20 Y0\n", "order", "X15 Y1"),
         ("X20\n", "G0 X20\n", "kind", "G0 X20"),
         ("G1 X10", "G2 CR=6 X10", "kind", "G2 CR=6 X10 Z5 F500"),
         ("X20\n", "X20 F501\n", "feed", "X20 F501"),
@@ -105,7 +105,7 @@ def test_operations_in_other_coordinate_systems_are_seen_from_the_first(verified
         "MSYS/5.0000,0.0000,0.0000,0.0000000,1.0000000,0.0000000,-1.0000000,0.0000000,0.0000000",
     )
     cl = CL + second + "GOTO/10,0,5\n" + CL_FOOT
-    text = HEAD + CUT + "G0 X5 Y0 Z50\nG1 X5 Y10 Z5\n" + FOOT
+    text = HEAD + CUT + "SUPA G0 Z0 D0\nG0 X5 Y0 Z50 D1\nG1 X5 Y10 Z5\n" + FOOT
     assert verified(text, cl).passed
 
 

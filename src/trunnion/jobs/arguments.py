@@ -120,6 +120,7 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total
     frame: Literal["first", "absolute"]
     feed: Literal["programmed", "fastest"]
     feed_limit: float | None
+    settings: Settings | None
     radius_register: Literal["unknown", "difference", "radius"] | None
     cutcom: Literal["centreline", "contour"] | None
     tool_libraries: Sequence[FilePath]

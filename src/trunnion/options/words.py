@@ -8,6 +8,13 @@ FEEDS: Final = ("programmed", "fastest")
 #: What becomes of a file that is not as a job has written it, where a new program takes its place.
 EDITED: Final = ("refuse", "keep", "replace")
 
+#: Settings of a post that its CL files do not show and the proof stands on: ``verify`` is told them again.
+PROOF_SETTINGS: Final = (
+    "same_tool", "operation_clearance", "first_approach", "stop_between", "radius_offset", "edge_from", "rapid_feed",
+    "rigid_tap", "swivel_data", "delta_length", "delta_radius", "tolerance", "three_axis_tolerance",
+    "fallback_tolerance",
+)  # fmt: skip
+
 #: What the best place is best for.
 GOALS: Final = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
 

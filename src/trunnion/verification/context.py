@@ -54,9 +54,9 @@ class ExpectedValues:
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
     clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
     in_turn                axes move one group after the other from home to an operation
-    between_operations     the tool goes home, or above all operations, from one to the next
     without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
     stop_between           an optional stop stands between operations
+    has_settings           names of the settings that the control has: only those can be told again
     demands                what the proof must stand on besides what the machine's definition demands
     """
 
@@ -89,8 +89,14 @@ class ExpectedValues:
     stop_between: bool = False
     clearance: float | None = None
     in_turn: bool = False
-    between_operations: bool = False
+    has_settings: frozenset[str] = frozenset()
     demands: tuple[str, ...] = ()
+
+    def repeat(self, name: str, value: object) -> str:
+        """Return how a setting of the post is told again, to follow a fault; empty if the control has none of it."""
+        if name not in self.has_settings:
+            return ""
+        return f"; if the program was posted with {name}={value}, give --set {name}={value}"
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""

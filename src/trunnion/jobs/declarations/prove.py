@@ -17,6 +17,7 @@ from trunnion.options.groups import (
     RADIUS_REGISTER,
     READING,
     REPORT,
+    SETTINGS,
     SETUP,
     SUBPROGRAMS,
     TOOL_LENGTH,
@@ -27,6 +28,7 @@ from trunnion.options.groups import (
 )
 from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Switch, Text, any_number, length, whole
 from trunnion.options.option import Level, Many, Option
+from trunnion.options.words import PROOF_SETTINGS
 
 _CL: Final = Option("cl", "--cl", FileIn("CL", stdin=True), many=Many.REPEAT, key="cl")
 
@@ -85,6 +87,10 @@ _VERIFY: Final = job(
     Option(
         "feed_limit", "--feed-limit", length(phrase("kind_feed"), "2000", "MM_MIN"),
         "the feed_limit of that post, in place of the CL file's",
+    ),
+    SETTINGS.but(
+        help=f"setting that the program was posted with and its CL files do not show: {', '.join(PROOF_SETTINGS)};"
+        " may be repeated",
     ),
     Option(
         "recorded", "--recorded", FileIn(),

@@ -6,9 +6,7 @@ Out:    tolerances and settings for ``trunnion.verification.verify``.
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final
 
-from trunnion.controls import Control
 from trunnion.jobs.post.tolerances import program_tolerances
 from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.model.motion import MachiningMode
@@ -29,11 +27,6 @@ class Expectation:
     settings: ExpectedValues
 
 
-#: Settings for the tolerance of the control's own smoothing, and for what tool calls add to the tool, by their words.
-_SMOOTHING: Final = ("tolerance", "three_axis_tolerance", "fallback_tolerance")
-_TOOL_DELTAS: Final = {"delta_length": "DL", "delta_radius": "DR"}
-
-
 def expectation(program: Program, options: PlanOptions | None = None, *, demands: tuple[str, ...] = ()) -> Expectation:
     """Return what the proof holds against a program that was planned with these options; it must stand on ``demands``
     too.
@@ -48,7 +41,6 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
     operations = {motion.operation.name: motion.operation for motion in program.motions}
     by_operation = {name: program.effective_settings(operation) for name, operation in operations.items()}
     own = {name: values for name, values in by_operation.items() if name in program.own_settings}
-    every = [settings, *by_operation.values()]
     without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
     axis_tolerance, inverse_time = options.axis_tolerance_between_points, control.formats.get("inverse_time")
     return replace(
@@ -57,23 +49,8 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
         span_tip=options.tip_tolerance if without_tcp else None,
         axis_tolerance=options.default_axis_tolerance,
         absolute=options.absolute_frame,
-        between_operations=True,
         max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
         max_feed=control.formats["feed"].five_axis.greatest,
         fastest_feed=options.fastest_feed,
         feed_limit=options.feed_limit,
-        smoothing=max(float(each.get(key) or 0.0) for each in every for key in _SMOOTHING),
-        tool_deltas={
-            word: tuple({_as_printed(control, key, float(each[key])) for each in every if each.get(key)})
-            for key, word in _TOOL_DELTAS.items()
-        },
     )
-
-
-def _as_printed(control: Control, name: str, value: float) -> float:
-    """Return a setting as the digits of its templates print it."""
-    fields = {field for template in control.templates.values() for field in template.fields()}
-    formats = [
-        control.formats[number_format] for field, number_format in sorted(fields) if field == name and number_format
-    ]
-    return formats[0].three_axis.rounded(value) if formats else value

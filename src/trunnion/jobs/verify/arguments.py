@@ -4,12 +4,13 @@ import math
 from typing import Final
 
 from trunnion.controls.setting_rules import tool_number
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, argument_problem, setting_problem
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
 from trunnion.jobs.inputs.hooked import no_cl_files
-from trunnion.jobs.inputs.settings import check_tolerance
+from trunnion.jobs.inputs.settings import as_texts, check_tolerance
 from trunnion.messages import Wording, phrase
+from trunnion.options.words import PROOF_SETTINGS
 
 #: How far the tip may be off its CL point, mm.
 DEFAULT_TOLERANCE: Final = 0.001
@@ -39,7 +40,8 @@ def checked(given: VerifyArguments) -> VerifyArguments:
     if (turn or tilt) and not has_cl:
         raise InputError(argument_problem("turn" if turn else "tilt", Wording("ARG130", "clamping_without_cl")))
     return {
-        **given, "feed_limit": feed_limit, "tool": tool, "edge": edge, "hooks": hooks, "turn": turn, "tilt": tilt
+        **given, "feed_limit": feed_limit, "settings": _settings(given), "tool": tool, "edge": edge, "hooks": hooks,
+        "turn": turn, "tilt": tilt,
     }  # fmt: skip
 
 
@@ -58,6 +60,15 @@ def _feed_limit(given: VerifyArguments) -> float | None:
     if isinstance(limit, bool) or not isinstance(limit, int | float) or not 0.0 < limit < math.inf:
         raise InputError(argument_problem("feed_limit", Wording("ARG220", "no_feed_limit", value=repr(limit))))
     return float(limit)
+
+
+def _settings(given: VerifyArguments) -> dict[str, str]:
+    """Return the settings of the post as texts; ``expected`` checks their values."""
+    texts = as_texts(given["settings"])
+    wording = Wording("ARG210", "not_of_proof", allowed=PROOF_SETTINGS)
+    if problems := [setting_problem(key, wording) for key in texts if key not in PROOF_SETTINGS]:
+        raise InputError(problems)
+    return texts
 
 
 def _tool(tool: object) -> str:

@@ -10,13 +10,15 @@ from typing import Final
 
 from trunnion.controls import Control
 from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
+from trunnion.errors import InputError, setting_problem
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.control_settings import default_settings
-from trunnion.jobs.inputs.settings import check_operation_names
+from trunnion.jobs.inputs.settings import as_texts, check_operation_names, check_settings, split_by_operation
 from trunnion.jobs.verify.arguments import DEFAULT_TOLERANCE
 from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine
 from trunnion.machines.loading import DEMANDS
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification import ExpectedValues, PrintedDigits, Tolerances, tolerances_in_planes
 
@@ -30,7 +32,8 @@ _READ_CHORD: Final = 0.001
 def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> ExpectedValues:
     """Return what the program is expected to be; without CL files it may have any work offset and edge.
 
-    Raises ``InputError`` if a work offset is none of the control's, or that of an operation which there is not.
+    Raises ``InputError`` if a work offset is none of the control's, or that of an operation which there is not; or if a
+    setting of the post is none of the control's.
     """
     usual = default_settings(on.control)
     settings = {"work_offset": "G54", **usual}
@@ -40,7 +43,12 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
     own = {"tool": given["tool"], "work_offset": offset, "edge": given["edge"]}
     own[RADIUS_REGISTER_SETTING] = given["radius_register"]
     settings |= {key: str(value) for key, value in own.items() if value is not None}
-    by_operation = {name: {**settings, "work_offset": value} for name, value in of_operations.items()}
+    repeated, own_repeated = _repeated(on, read, given)
+    settings |= repeated
+    single = {name: {**own_repeated.get(name, {})} for name in (*own_repeated, *of_operations)}
+    for name, value in of_operations.items():
+        single[name]["work_offset"] = value
+    by_operation = {name: {**settings, **values} for name, values in single.items()}
     return replace(
         expected_values(on.control, on.machine, settings, by_operation),
         span=given["span"],
@@ -51,6 +59,21 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
         feeds_as_programmed=True,
         demands=DEMANDS if given["strict"] else (),
     )
+
+
+def _repeated(
+    on: VerifiedMachine, read: ReadProgram, given: VerifyArguments
+) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
+    """Return the settings of the post that are given again, and those of single operations by their names."""
+    texts = given["settings"]
+    if not texts:
+        return {}, {}
+    if on.control is None:
+        raise InputError([setting_problem(key, Wording("ARG210", "not_of_read_control")) for key in texts])
+    program, own = split_by_operation(as_texts(texts), on.control, on.machine)
+    check_settings(program, on.control, on.machine)
+    check_operation_names(own, program, [each.name for toolpath in read.toolpaths for each in toolpath.operations])
+    return program, own
 
 
 def _work_offsets(

@@ -4,14 +4,19 @@ Posts and verifications ask the same function; each adds what it alone knows.
 """
 
 from collections.abc import Mapping
+from typing import Final
 
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control
-from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
+from trunnion.controls.vocabulary import PROGRAM_CHOICES, RADIUS_REGISTER_SETTING
 from trunnion.jobs.inputs.settings import m_code, work_offset_setting
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.verification import ExpectedValues, OperationSettings
+
+#: Settings for the tolerance of the control's own smoothing, and for what tool calls add to the tool, by their words.
+_SMOOTHING: Final = ("tolerance", "three_axis_tolerance", "fallback_tolerance")
+_TOOL_DELTAS: Final = {"delta_length": "DL", "delta_radius": "DR"}
 
 
 def expected_values(
@@ -30,6 +35,7 @@ def expected_values(
     Raises ``InputError`` if a work offset is none of the control's.
     """
     every = _operation_settings(settings, machine, control)
+    everywhere = (settings, *own_settings.values())
     rapid_feed = float(settings["rapid_feed"]) if settings.get("rapid_feed") else None
     slower = None if rapid_feed is None or control is None else rapid_feed - control.formats["feed"].five_axis.digit
     return ExpectedValues(
@@ -40,16 +46,19 @@ def expected_values(
         register_holds=RegisterValue(settings.get(RADIUS_REGISTER_SETTING) or RegisterValue.UNKNOWN),
         last_edge=every.last_edge,
         by_operation={name: _operation_settings(own, machine, control) for name, own in own_settings.items()},
-        swivel_data=tuple(
-            {each["swivel_data"] for each in (settings, *own_settings.values()) if "swivel_data" in each}
-        ),
+        swivel_data=tuple({each["swivel_data"] for each in everywhere if "swivel_data" in each}),
         rapid_feed=rapid_feed,
         clearance=float(settings["operation_clearance"]) if settings.get("same_tool") == "clearance" else None,
-        between_operations=settings.get("same_tool", "home") != "home",
         in_turn=settings.get("first_approach") == "in_turn",
         stop_between=settings.get("stop_between") == "on",
         below_rapid_feed=slower,
         coolant=control.coolant if control else {},
+        has_settings=frozenset((*control.settings, *PROGRAM_CHOICES) if control else ()),
+        smoothing=max(float(each.get(key) or 0.0) for each in everywhere for key in _SMOOTHING),
+        tool_deltas={
+            word: tuple({_as_printed(control, key, float(each[key])) for each in everywhere if each.get(key)})
+            for key, word in _TOOL_DELTAS.items()
+        },
         rigid_tap=m_code(settings.get("rigid_tap", "")),
         blocks_in_compensation=control.blocks_in_compensation if control else 1,
         stops_in_compensation=control.stops_in_compensation if control else False,
@@ -65,3 +74,14 @@ def _operation_settings(settings: Mapping[str, str], machine: Machine, control: 
     by_register = control is not None and settings.get("edge_from") == "adjust"
     last_edge = int(control.setting_rule("edge").at_most or 0) if control and by_register else 0
     return OperationSettings(settings.get("tool", "").strip('"'), offset, edge, radius_offset, last_edge)
+
+
+def _as_printed(control: Control | None, name: str, value: float) -> float:
+    """Return a setting as the digits of its templates print it."""
+    if control is None:
+        return value
+    fields = {field for template in control.templates.values() for field in template.fields()}
+    formats = [
+        control.formats[number_format] for field, number_format in sorted(fields) if field == name and number_format
+    ]
+    return formats[0].three_axis.rounded(value) if formats else value

@@ -84,6 +84,9 @@ def verify(
         (check ``reach``), not by those of the CL files.
     feed_limit
         The setting ``feed_limit`` of that post, mm/min.
+    settings
+        Settings that the program was posted with and its CL files do not show, such as
+        ``{"same_tool": "clearance", "operation_clearance": 25}``; by default those of the control's definition.
     radius_register
         What radius compensation works with: ``"difference"``, by how much the tool is larger than in the CL file, or
         ``"radius"``, its radius; by default as the control's definition says.

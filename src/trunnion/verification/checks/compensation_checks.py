@@ -71,7 +71,9 @@ def check_compensation(context: ComparedContext) -> Check:
             row, cl = bad
             has = run.state.radius[row]
             text = f"radius compensation works {f'with D{has}' if has else 'without D'}; the CL file wants D{register}"
-            places.append(context.place_with_cl(row, 0.0, text, cl))
+            more = int(has) - register + context.settings.radius_offset
+            repeat = context.settings.repeat("radius_offset", more) if has and more > 0 else ""
+            places.append(context.place_with_cl(row, 0.0, text + repeat, cl))
     home = run.state.machine_frame.rows_with(True)
     still_on = home[side.at(home) != 0]
     if len(still_on):

@@ -71,10 +71,14 @@ def check_home(context: Context) -> Check:
     """Motions in the machine frame: at rapid, back along one linear axis first, and to the machine's home positions.
 
     A program that never goes to the home of the machine's definition has positions of its own, which are not checked.
+    Between two operations of the CL files every program that retracts at all does so.
     """
+    check = _check_motions(context)
     unretracted = list(without_retract(context))
-    if unretracted:
-        return check_from_places("home", _TITLE, unretracted, "")
+    return check_from_places("home", _TITLE, [*check.places, *unretracted], "") if unretracted else check
+
+
+def _check_motions(context: Context) -> Check:
     motions = _HomeMotions.of(context.run)
     if not len(motions.rows):
         return _check_retracts_by_word(context)

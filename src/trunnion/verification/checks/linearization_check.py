@@ -117,7 +117,7 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     settings = context.settings
     asked = settings.span is not None or settings.span_tip is not None
     axis = errors.axis if settings.span is not None or errors.axis.count else motion.axis_deviation
-    tip = errors.tip if asked else motion.tip_deviation
+    tip = errors.tip if asked or errors.tip.count else motion.tip_deviation
     where = "on the way" if axis is errors.axis else "half-way"
     deviation, deviation_row = _largest_deviation(context)
     splines = spline_faults(context) if isinstance(context, ComparedContext) else SplineFaults()
@@ -133,7 +133,8 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     faults = [*arc_chord_faults(context), *splines.places] if isinstance(context, ComparedContext) else []
     if row >= 0 and off_tip > 0.0 and not (faults and row == deviation_row):
         rows = tip.rows or [(row, off_tip)]
-        places += [context.place(r, v, f"between its ends the tip is {v:.5f} mm off") for r, v in rows]
+        longest = "" if asked or not errors.tip.count else "a rotary axis turns by more than half a turn without TCP; "
+        places += [context.place(r, v, f"{longest}between its ends the tip is {v:.5f} mm off") for r, v in rows]
     summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off {where}"
     if axis.row >= 0:
         summary += f", in {context.block_name(axis.row)}"

@@ -13,11 +13,21 @@ def first_wrong_pair(
 ) -> tuple[int, int] | None:
     """Rows of run and CL files of the first wrong pair, from pair ``first`` to the one before ``end``.
 
-    ``is_wrong`` tells which of some rows of the run are wrong, (k,) bool.
+    Motions on the way to the CL points of these pairs count, too. ``is_wrong`` tells which of some rows of the run are
+    wrong, (k,) bool.
     """
+    if first >= end:  # no motion goes to any of the CL rows
+        return None
+    found = [_first(is_wrong, *matching.on_the_way(int(matching.cl[first]), int(matching.cl[end - 1])))]
     for nc, cl in matching.pair_chunks(first, end):
-        found = is_wrong(nc)
-        if found.any():
-            k = int(np.argmax(found))
-            return int(nc[k]), int(cl[k])
-    return None
+        found.append(_first(is_wrong, nc, cl))
+        if found[-1] is not None:
+            break
+    return min((pair for pair in found if pair is not None), default=None)
+
+
+def _first(is_wrong: Callable[[Ints], Flags], nc: Ints, cl: Ints) -> tuple[int, int] | None:
+    """Return the first pair of which the row of the run is wrong."""
+    wrong = is_wrong(nc) if len(nc) else np.zeros(0, np.bool_)
+    k = int(np.argmax(wrong)) if wrong.any() else -1
+    return None if k < 0 else (int(nc[k]), int(cl[k]))

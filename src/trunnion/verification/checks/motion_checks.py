@@ -6,7 +6,8 @@ import numpy as np
 
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.verification.checks.passages import passage_rows
+from trunnion.verification.checks.cuts_left_out import cuts_left_out
+from trunnion.verification.checks.passages import passage_rows, rows_of_clearance
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -19,6 +20,9 @@ from trunnion.wording import counted
 _KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
 
 _ORDER = "every CL point has its block, every block its point"
+
+#: What is said of a motion that no CL point has.
+_NO_POINT = "goes to a position that is not a CL point"
 
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
@@ -45,10 +49,16 @@ def check_order(context: ComparedContext) -> Check:
     still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
     places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]
-    places += [context.place(row, 0.0, "goes to a position that is not a CL point") for row in extra[:MAX_PLACES]]
+    above = rows_of_clearance(context) if extra else set()
+    repeat = context.settings.repeat("same_tool", "clearance")
+    texts = [f"{_NO_POINT}{repeat if row in above else ''}" for row in extra[:MAX_PLACES]]
+    places += [context.place(row, 0.0, text) for row, text in zip(extra[:MAX_PLACES], texts, strict=True)]
+    left_out = list(cuts_left_out(context, set(extra)))
+    places += left_out[:MAX_PLACES]
     if not places:
         return _in_order(context, retracts, still)
-    found = Faults(sorted(places, key=lambda place: place.nc_line), len(matching.missing) + len(extra))
+    count = len(matching.missing) + len(extra) + len(left_out)
+    found = Faults(sorted(places, key=lambda place: place.nc_line), count)
     return found.check("order", _ORDER, "")
 
 

@@ -34,6 +34,15 @@ def passage_rows(context: ComparedContext) -> set[int]:
     """Return the motions without a CL point that lead from one operation to the next above all of them, or from home
     to a place above all of them from which the next motion goes straight down.
     """
+    return _passage_rows(context, context.settings.clearance)
+
+
+def rows_of_clearance(context: ComparedContext) -> set[int]:
+    """Return the motions without a CL point that would be lawful if the tool might go on above all operations."""
+    return set() if context.settings.clearance is not None else _passage_rows(context, 0.0) - passage_rows(context)
+
+
+def _passage_rows(context: ComparedContext, clearance: float | None) -> set[int]:
     run, extra = context.run, context.matching.extra
     found: set[int] = set()
     rows: Ints = np.array(extra, np.int64)
@@ -43,12 +52,12 @@ def passage_rows(context: ComparedContext) -> set[int]:
         first, down = int(unbroken[0]), int(unbroken[-1]) + 1
         way = _Way(context, first, down)
         if len(unbroken) == 1 and _comes_from_home(run, first):
-            wanted = context.settings.in_turn and run.state.tcp[first]  # a plane has first legs of its own
-            if wanted and way.comes_down_from(context.highest_point(way.axis)):
+            # Whatever the settings: above all points the leg is harmless. A plane has first legs of its own.
+            if run.state.tcp[first] and way.comes_down_from(context.highest_point(way.axis)):
                 found.add(first)
-        elif context.settings.clearance is None or not _begins_operation(context, down):
+        elif clearance is None or not _begins_operation(context, down):
             continue
-        elif way.leaves_above(context.highest_point(way.axis) + context.settings.clearance):
+        elif way.leaves_above(context.highest_point(way.axis) + clearance):
             found.update(unbroken.tolist())
     return found
 
@@ -65,18 +74,23 @@ def _comes_from_home(run: Run, row: int) -> bool:
 def without_retract(context: Context) -> Iterator[Place]:
     """Yield the first row of each operation to which the tool comes neither from home nor above all.
 
-    Programs of others may stay at the part; so may one that never goes home, nor retracts by a word.
+    One that never goes home, nor retracts by a word, may stay at the part. Where a definition says which axes a change
+    of the tool needs at home, the machine does the rest.
     """
-    if not isinstance(context, ComparedContext) or not context.settings.between_operations:
+    if not isinstance(context, ComparedContext):
         return
     away = rows_away(context)
     if away is None:
         return
     lawful = passage_rows(context)
+    changes = [event.before_row for event in context.run.events if event.kind == "tool_change"]
+    stated = "tool_change" in context.run.machine.home_at
     for last, first, operation in _bounds(context):
         begin, end = np.searchsorted(away, (last, first), side="right")
         between = range(last + 1, first)
-        if end == begin and not (between and all(row in lawful for row in between)):
+        if end > begin or (stated and any(last < change <= first for change in changes)):
+            continue
+        if not (between and all(row in lawful for row in between)):
             yield context.place(first, 0.0, f"goes on to the operation {operation} without a retract")
 
 

@@ -1,6 +1,6 @@
 """The tools of a program against LOAD/TOOL in the CL files: which one, which cutting edge, which length."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Final
 
@@ -20,6 +20,9 @@ from trunnion.verification.results import Check, Place
 
 #: Half the last digit of what a program adds to a tool, mm.
 _DELTA: Final = 6e-5
+
+#: Settings that add to a tool, by their words.
+_DELTA_SETTINGS: Final = {"DL": "delta_length", "DR": "delta_radius"}
 
 
 def check_tool(context: ComparedContext) -> Check:
@@ -87,7 +90,8 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
         asked = [*context.settings.tool_deltas.get(name, ()), *_radii_taken_off(context, event, name)]
         if value and not any(abs(value - wanted) <= _DELTA for wanted in asked):
             does = "puts {:g} mm in the place of the tool's length" if name in REPLACED else "adds {:g} mm to the tool"
-            text = f"{name} {does.format(value)}, which nothing asks for"
+            repeat = context.settings.repeat(_DELTA_SETTINGS.get(name, ""), f"{value:g}")
+            text = f"{name} {does.format(value)}, which nothing asks for{repeat}"
             yield context.place_of_event(event, value, text)
 
 
@@ -124,13 +128,20 @@ def _wrong_edges(context: ComparedContext) -> Iterator[Place]:
         if bad is not None:
             row, cl = bad
             has = f"with D{used[row]}" if used[row] >= 0 else "without a D word"
-            yield context.place_with_cl(row, 0.0, f"works {has}, not with D{edge}", cl)
+            text = f"works {has}, not with D{edge}{_by_register(context, int(used[row]), registers)}"
+            yield context.place_with_cl(row, 0.0, text, cl)
     rows = context.run.state.machine_frame.rows_with(True)
     edges = used.at(rows)
     others = rows[(edges > 0) & ~np.isin(edges, known)]
     if len(others):
         row = int(others[0])
-        yield context.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{known[0]}")
+        repeat = _by_register(context, int(used[row]), registers)
+        yield context.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{known[0]}{repeat}")
+
+
+def _by_register(context: ComparedContext, edge: int, registers: Mapping[int, int]) -> str:
+    """Return the setting to tell again where a wrong edge is the register of a tool; empty elsewhere."""
+    return context.settings.repeat("edge_from", "adjust") if edge > 0 and edge in registers.values() else ""
 
 
 def _has_other_edge(used: StepColumn, edge: int, nc: Ints) -> Flags:

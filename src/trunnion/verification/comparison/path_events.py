@@ -56,7 +56,7 @@ class PathEvents:
         ]
         found += [(hole.first, _spindle_words(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
         found += [(len(run), f"left to the next program: {text}") for text in _left_on(run)] if same_machine else []
-        found += [(len(run), text) for text in _switched_behind(run)]
+        found += [(len(run), text) for text in _switched_behind(run, same_machine)]
         at = np.searchsorted(rows, [row for row, _ in found])
         self._events: dict[int, list[str]] = {}
         for motion, (_, text) in zip(at.tolist(), found, strict=True):
@@ -88,9 +88,13 @@ def _texts(run: Run, names: Mapping[str, str]) -> Iterator[tuple[RunEvent, str]]
             yield event, f"{text} while the spindle turns {turns}" if turns and event.kind == "stop" else text
 
 
-def _switched_behind(run: Run) -> list[str]:
-    """Return what becomes of spindle and coolant behind the last motion: no row shows it."""
+def _switched_behind(run: Run, same_machine: bool) -> list[str]:
+    """Return what becomes of spindle and coolant behind the last motion: no row shows it. On another machine what the
+    end of a program switches off may have no word.
+    """
     found = {event.kind: event.value for event in run.events if event.before_row == len(run)}
+    if not same_machine and any(event.kind == "end" for event in run.events):
+        found = {kind: value for kind, value in found.items() if value != "off"}
     return [f"{kind} {found[kind]} behind the last motion" for kind in ("spindle", "coolant") if kind in found]
 
 

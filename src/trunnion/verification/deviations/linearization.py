@@ -16,18 +16,26 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Floats2, Floats3, Ints, Lines
 from trunnion.jit import inner, kernel
-from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
+from trunnion.machines import Machine
+from trunnion.machines.forward import KinematicChain, forward, forward_row, kinematic_chain
 from trunnion.model.axis_tolerance import AxisTolerance, allowed_deviation
-from trunnion.model.run import Orientation, RowPositions, Run
+from trunnion.model.run import Orientation, ProgrammedWord, RowPositions, Run
 from trunnion.model.toolpath import Kind, Phase
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
+from trunnion.verification.kinematics.positioning_moves import (
+    POSITION_WORDS,
+    comes_from_home,
+    rotary_positioning_flags,
+)
 from trunnion.verification.kinematics.worst_rows import WorstRows
 from trunnion.verification.matching.pairs import Matching
 
 #: Between points nearer to each other than this, mm, the tool axis tells how far the tool has come.
 _SHORT: Final = 1e-3
+
+#: What comes of arithmetic only, mm.
+_ARITHMETIC: Final = 1e-6
 
 #: Smaller rotary motion, degrees, makes no error.
 _STILL: Final = 1e-9
@@ -35,8 +43,16 @@ _STILL: Final = 1e-9
 #: Phases in which the tool does not touch the part.
 _FREE_PHASES: Final = (Phase.RAPID, Phase.APPROACH, Phase.DEPARTURE, Phase.TRAVERSE)
 
-#: Positions within a motion at which it is sampled.
+#: Positions within a motion at which it is sampled, and by how many degrees they are apart in longer turns. No multiple
+#: of that is a whole turn, so that none passes unseen.
 _SAMPLES: Final = 7
+_STEP: Final = 22.5
+
+#: Turns beyond this are sampled as coarsely as they come, degrees.
+_MOST_TURN: Final = 3.6e6
+
+#: No step of a CL file needs a longer turn of a rotary axis than half a turn, degrees, rounding included.
+_HALF_TURN: Final = 180.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +89,8 @@ class LinearizationErrors:
     circle from the CL point before. Without a CL file, and for the tool axis in rapids, it is measured against the path
     between its own ends.
 
-    tip   mm from the straight line, without TCP
+    tip   mm from the straight line, without TCP; where no setting limits it, of motions that turn a rotary axis by more
+          than half a turn, which no step of a CL file asks for
     axis  degrees from the great circle, wherever the control interpolates rotary angles
     """
 
@@ -88,10 +105,13 @@ class LinearizationErrors:
         self._run = run
         self._tip_uncertainty = 2.0 * math.sqrt(3.0) * limits.tip_tolerance
         self._rotary = np.array(run.machine.rotary, np.int64)
+        self._is_rotary = np.array([axis.is_rotary for axis in run.machine.axes])
         self._expected = expected
         self._matching = matching
         self._by_default = limits.by_default
-        self.tip = WorstRows(limits.tip, max_rows)
+        self._tip_is_limited = math.isfinite(limits.tip)
+        self._judges_turns = expected is not None
+        self.tip = WorstRows(limits.tip if self._tip_is_limited else self._tip_uncertainty + _ARITHMETIC, max_rows)
         self.axis = WorstRows(0.0 if limits.by_default else math.inf if limits.axis is None else limits.axis, max_rows)
 
     @cached_property
@@ -108,16 +128,23 @@ class LinearizationErrors:
         """Add rows, in order; ``positions`` is the ``Run.chunk`` of them."""
         kind = self._run.kind[first:end]
         tcp = self._run.state.tcp.part(first, end)
-        rows = self._rows_to_sample(first, end, positions, tcp)
+        long = self._long_turns(first, end, positions, tcp)
+        rows = self._rows_to_sample(first, end, positions, tcp, long)
+        off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
+        on_arcs = np.flatnonzero(long & (kind == Kind.ARC))
+        off_tip[on_arcs] = _off_arcs(self._run.machine_at(first), positions.joints, self._rotary, on_arcs)
         if not len(rows):
+            self.tip.add(first, off_tip)
             return
         tips, axes = self._path_ends(first, rows, positions)
-        off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
         chain = kinematic_chain(self._run.machine_at(first))
         _linearization_errors(
-            chain, positions.joints, positions.tip, positions.axis, rows, tips, axes, kind[rows] == Kind.RAPID,
-            tcp, self._tip_uncertainty, off_tip, off_axis,
+            chain, positions.joints, positions.tip, positions.axis, self._is_rotary, rows, tips, axes,
+            kind[rows] == Kind.RAPID, tcp, self._tip_uncertainty, off_tip, off_axis,
         )  # fmt: skip
+        if not self._tip_is_limited:
+            off_tip[~long] = 0.0
+            off_axis[kind == Kind.RAPID] = 0.0
         self.tip.add(first, off_tip)
         if self._by_default is not None:
             off_axis[rows] = np.where(
@@ -147,21 +174,39 @@ class LinearizationErrors:
             tolerance[here] = np.where(free, math.inf, limits.tolerance.of(section.operation))
         return allowed_deviation(tolerance, turn) + limits.rounding
 
-    def _rows_to_sample(self, first: int, end: int, positions: RowPositions, tcp: Flags) -> Ints:
+    def _long_turns(self, first: int, end: int, positions: RowPositions, tcp: Flags) -> Flags:
+        """Which rows turn a rotary axis by more than half a turn, whole turns included, without TCP, (end - first,).
+
+        Rapids that only position rotary axes do not count, as they may do so away from the part, nor those from home.
+        """
+        turns = np.abs(np.diff(positions.joints[:, self._rotary], axis=0)).max(axis=1)
+        long = (turns > _HALF_TURN) & ~tcp & ~self._run.state.machine_frame.part(first, end)
+        if not self._judges_turns or not long.any():
+            return np.zeros(end - first, np.bool_)
+        long &= ~rotary_positioning_flags(self._run, first, end)
+        rapids = np.flatnonzero(long & (self._run.kind[first:end] == Kind.RAPID))
+        long[[k for k in rapids.tolist() if comes_from_home(self._run, first + k)]] = False
+        return np.asarray(long)
+
+    def _rows_to_sample(self, first: int, end: int, positions: RowPositions, tcp: Flags, long: Flags) -> Ints:
         """Rows, counted from ``first``, in which rotary motion may lead the tool off its path.
 
-        Rapids count only where the tip has a limit, and those that only position rotary axes never do.
+        Rapids count only where the tip has a limit, or in ``long`` turns, and those that only position rotary axes
+        never do.
         """
         run = self._run
         kind, frame = run.kind[first:end], run.state.machine_frame.part(first, end)
         moves_tip = (run.programmed[first:end] & int(POSITION_WORDS)) != 0
         turns = np.abs(np.diff(positions.joints[:, self._rotary], axis=0))
         sampled = (turns > _STILL).any(axis=1) & ~frame & (kind != Kind.ARC)
-        if self._by_default is not None and math.isinf(self.tip.limit):
+        if self._by_default is not None and not self._tip_is_limited:
             total = np.radians(turns[:, 0] + turns[:, 1])
             sampled &= 0.25 * total * total > math.radians(self._by_default.tolerance.finishing)
-        sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & math.isfinite(self.tip.limit))
-        sampled &= ~tcp | (run.orientation_between(first, end) == Orientation.ANGLES)
+        sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & self._tip_is_limited) | long
+        by_angles = run.orientation_between(first, end) == Orientation.ANGLES
+        # No great circle leads round by more than half a turn: the words of rotary axes do.
+        by_angles |= (turns.max(axis=1) > _HALF_TURN) & (run.programmed[first:end] & int(ProgrammedWord.VECTOR) == 0)
+        sampled &= ~tcp | by_angles
         return np.flatnonzero(sampled)
 
     def _path_ends(self, first: int, rows: Ints, positions: RowPositions) -> tuple[Floats, Floats]:
@@ -180,12 +225,28 @@ class LinearizationErrors:
         return tips, axes
 
 
+def _off_arcs(machine: Machine, joints: Floats, rotary: Ints, rows: Ints) -> Floats:
+    """How far the turn within arcs leads the tip off, at least, (k,) mm: as if the slides stood at one of its ends."""
+    off = np.zeros(len(rows))
+    shares = np.linspace(0.0, 1.0, 2 * _SAMPLES + 3)[:, None]
+    for k, row in enumerate(rows.tolist()):
+        step = joints[row + 1, rotary] - joints[row, rotary]
+        step *= min(1.0, 360.0 / float(np.abs(step).max()))
+        for end in (row, row + 1):
+            turned = np.tile(joints[end], (len(shares), 1))
+            turned[:, rotary] += shares * step * (1.0 if end == row else -1.0)
+            tips = forward(machine, turned)[0]
+            off[k] = max(off[k], float(np.linalg.norm(tips - tips[0], axis=1).max()))
+    return off
+
+
 @kernel(writes="off_tip off_axis")
 def _linearization_errors(
     chain: KinematicChain,
     joints: Floats2,
     tip_at: Floats2,
     axis_at: Floats2,
+    is_rotary: Flags,
     rows: Ints,
     tips: Floats3,
     axes: Floats3,
@@ -198,6 +259,7 @@ def _linearization_errors(
     """Write how far the tool is off within ``rows``, mm and degrees.
 
     joints, tip_at, axis_at  the position before the first row comes first
+    is_rotary  (5,)        which axes are rotary
     tips, axes  (k, 2, 3)    ends of the paths that the k rows are on
     free_axis   (k,)         the tool axis has the ends of the motion itself
     tip_uncertainty          how far a tip may be off along its path, mm
@@ -214,8 +276,15 @@ def _linearization_errors(
         if not free_axis[k]:
             begin = _fraction_done(tip_at, axis_at, row, tips[k], axes[k], angle)
             end = _fraction_done(tip_at, axis_at, row + 1, tips[k], axes[k], angle)
-        for sample in range(1, _SAMPLES + 1):
-            share = sample / (_SAMPLES + 1.0)
+        turn = 0.0
+        for c in range(5):
+            if is_rotary[c]:
+                turn = max(turn, abs(joints[row + 1, c] - joints[row, c]))
+        samples = _SAMPLES
+        if turn > _HALF_TURN:  # one more than whole turns have steps: none falls on their ends
+            samples = _SAMPLES + int(min(turn, _MOST_TURN) / _STEP)
+        for sample in range(1, samples + 1):
+            share = sample / (samples + 1.0)
             for c in range(5):
                 here[c] = joints[row, c] + share * (joints[row + 1, c] - joints[row, c])
             forward_row(chain, here, tip, axis)

@@ -4,7 +4,7 @@ Units: mm, degrees and minutes.
 """
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -13,16 +13,20 @@ from trunnion.jit import inlined, inner, kernel
 from trunnion.machines import Machine
 from trunnion.model.feed_path import NO_ROTATION
 
+#: Slides that move by less than this, mm, stand still.
+STANDS_STILL: Final = 1e-9
+
 
 class AxisLimits(NamedTuple):
     """Of the five axes: which are rotary, rapid speed (mm/min or deg/min), acceleration (mm/s^2 or deg/s^2).
 
-    Infinite where the machine's definition states none.
+    Infinite where the machine's definition states none. ``placed``: positions of the axis are those of the machine.
     """
 
     rotary: Flags
     rapid: Floats
     acceleration: Floats
+    placed: Flags
 
     @staticmethod
     def of(machine: Machine) -> "AxisLimits":
@@ -31,6 +35,7 @@ class AxisLimits(NamedTuple):
             np.array([axis.is_rotary for axis in axes]),
             np.array([math.inf if axis.rapid is None else axis.rapid for axis in axes]),
             np.array([math.inf if axis.acceleration is None else axis.acceleration for axis in axes]),
+            np.array([machine.is_placed(column) for column in range(len(axes))]),
         )
 
 
@@ -97,7 +102,7 @@ def axis_motion_rows(
     """
     # Arrays are taken out of their tuples once: in the loop that would count references for every row.
     joints, _, axis, half_way, kind, programmed, tcp, machine_frame, angles, feeds, arcs, arc_begin, arc_end = rows
-    rotary, rapid, acceleration = limits
+    rotary, rapid, acceleration, placed = limits
     velocity = carry[1:]
     minutes_before = carry[0]
     steps = np.empty((2, 5))
@@ -108,7 +113,7 @@ def axis_motion_rows(
         names_slides = programmed[at] & 7 != 0 or programmed[at] & 63 == 0
         counts = not machine_frame[at]
         slides_count = counts and (tcp[at] or names_slides)
-        turned = _axis_steps(joints, at, row, rotary, counts, slides_count, extremes, extreme_rows)
+        turned = _axis_steps(joints, at, row, rotary, placed, counts, slides_count, extremes, extreme_rows)
         minutes = feeds[0, at] / feeds[1, at] if feeds[1, at] < math.inf else 0.0
         deviation[at] = 0.0
         at_feed = kind[at] != 0 and not machine_frame[at]
@@ -130,6 +135,7 @@ def _axis_steps(
     at: int,
     row: int,
     rotary: Flags,
+    placed: Flags,
     turns_count: bool,
     slides_count: bool,
     extremes: Floats,
@@ -144,6 +150,8 @@ def _axis_steps(
         value = joints[at + 1, k]
         if rotary[k]:
             turned = max(turned, abs(value - joints[at, k]))
+        elif placed[k] and abs(value - joints[at, k]) <= STANDS_STILL:
+            continue  # where it came to this was counted, or is a position of the machine, such as home
         if turns_count if rotary[k] else slides_count:
             if value < extremes[k, 0]:
                 extremes[k, 0] = value

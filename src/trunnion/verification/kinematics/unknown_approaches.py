@@ -35,14 +35,18 @@ def unknown_approaches(run: Run) -> UnknownApproaches:
 
 
 def _unknown(run: Run) -> Iterator[tuple[int, Wording]]:
-    is_placed = MachinePositions.of(run).known
+    is_placed, machine = MachinePositions.of(run).known, run.machine
+    missing = phrase("left_height_unknown")
+    if machine.workpiece_zero is not None and machine.tool_length is not None:
+        # Only another work offset or tool is without its value, and that makes machine positions unknown.
+        missing = next((why for _, why in rows_without_values(run)), missing)
     frame = run.state.machine_frame.rows_with(True)
     # A retract whose way is known is a motion in machine coordinates.
     retracts = [event.before_row for event in run.events if event.kind == "retract"]
     words = np.array([row for row in retracts if row >= len(run) or not run.state.machine_frame[row]], np.int64)
     for row in approach_rows(run).tolist():
         if not is_placed:
-            yield row, phrase("left_height_unknown")
+            yield row, missing
             continue
         before = int(np.searchsorted(frame, row))
         last = int(frame[before - 1]) if before else -1

@@ -70,3 +70,13 @@ class Matching:
         """How many intermediate motions lead to each of some CL rows, (k,)."""
         leads_to = self.intermediate[1]
         return np.searchsorted(leads_to, cl, "right") - np.searchsorted(leads_to, cl)
+
+    def on_the_way(self, first: int, last: int) -> tuple[Ints, Ints]:
+        """Motions that lead to CL rows ``first`` to ``last`` without going to them, along arcs too, with those rows."""
+        nc, cl = self.intermediate
+        here = slice(*np.searchsorted(cl, (first, last + 1)))
+        arcs = [each for each in self.arc_segments if first <= each.cl <= last]
+        nc = np.concatenate([nc[here], *(each.nc for each in arcs)])
+        cl = np.concatenate([cl[here], *(np.full(len(each.nc), each.cl) for each in arcs)])
+        order = np.argsort(nc, kind="stable")
+        return nc[order], cl[order]

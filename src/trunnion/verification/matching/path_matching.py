@@ -47,6 +47,9 @@ _MAX_PIECES = 1000
 #: Cosine between the axes of a circle and of the one that it is a piece of, at least.
 _SAME_SENSE = 1.0 - 1e-6
 
+#: Smaller rotary motion, degrees, is none.
+_STILL = 1e-9
+
 #: Mismatches that are looked into; beyond them the two sides are taken to be different programs.
 _MAX_MISMATCHES = 2000
 
@@ -316,18 +319,20 @@ class _PathMatcher:
     def _justified(self, rows: Ints, found: FollowedPath, kind: Codes) -> tuple[int, int]:
         """How many motions and points go together up to an intermediate point that nothing asks for.
 
-        The rotary axes must turn by ``least_turn`` on its step, and it must move as its step does. ``kind`` is that of
-        the CL points, led by the one from which the first motion starts.
+        It must move as its step does. The rotary axes must turn by ``least_turn`` on that step, or not at all: then the
+        point is on the straight line. ``kind`` is that of the CL points, led by the one from which the first motion
+        starts.
         """
         if self._least_turn == 0.0:
             return found.motions, found.points
-        for k in np.flatnonzero(~found.arrives).tolist():
-            step = np.flatnonzero(found.cl_point == found.cl_point[k])
+        for point in np.unique(found.cl_point[~found.arrives]).tolist():
+            step = np.flatnonzero(found.cl_point == point)
             each = np.concatenate(([rows[step[0]] - 1], rows[step]))
             turn = np.abs(np.diff(self._run.rotary[np.maximum(each, 0)], axis=0)).sum()
-            same_kind = self._run.kind[rows[k]] == kind[int(found.cl_point[k]) + 1]
-            if turn < self._least_turn or not same_kind:
-                return int(step[0]), int(found.cl_point[k])
+            between = rows[step[~found.arrives[step]]]
+            same_kind = (self._run.kind[between] == kind[point + 1]).all()
+            if _STILL < turn < self._least_turn or not same_kind:
+                return int(step[0]), point
         return found.motions, found.points
 
     def _find_resync(self, i: int, j: int) -> tuple[int, int]:
