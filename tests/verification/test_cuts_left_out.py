@@ -113,7 +113,10 @@ def test_an_operation_with_the_same_tool_begins_from_home(
     sound = verified(tmp_path, machine, cl, lines)
     assert check(sound, "home").passed
     assert sound.cl_line is not None
-    rows = {int(cl_line): int(line) - 1 for cl_line, line in zip(sound.cl_line, sound.run.lines, strict=True)}
+    rows = {
+        int(cl_line): int(line) - 1
+        for cl_line, line in zip(sound.cl_line.tolist(), sound.run.line.tolist(), strict=True)
+    }
     last = rows[1 + CL.splitlines().index("GOTO/30.0,2.5,30.0")]
     first = rows[1 + CL.splitlines().index("GOTO/5.0,40.0,40.0,0.0,0.0,1.0")]
     lost = [line for line in lines[last + 1 : first] if home not in line]

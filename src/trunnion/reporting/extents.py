@@ -14,10 +14,10 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Axis, Machine, slide_positions
 from trunnion.model.arc_extremes import Reach, RunArcs
+from trunnion.model.programmed_words import names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.reporting.text import clean
 from trunnion.results import NOT_DATA, BlockNumber, Figure
-from trunnion.verification.kinematics.positioning_moves import names_no_axis
 from trunnion.verification.kinematics.unknown_approaches import unknown_approaches
 
 

@@ -17,7 +17,7 @@ from trunnion.machines.unmeasured import ValueKind, unmeasured_values
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
-from trunnion.verification.kinematics.unknown_setups import offsets_without_zero, tools_without_length
+from trunnion.model.unknown_setups import offsets_without_zero, tools_without_length
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,11 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from trunnion.arrays import Flags
+from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import RunEvent
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import ComparedContext
 from trunnion.verification.kinematics.machine_positions import MachinePositions
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Place
 from trunnion.wording import position

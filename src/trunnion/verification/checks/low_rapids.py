@@ -7,10 +7,11 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
+from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import ComparedContext, Context
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, approach_rows
+from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import hole_rows, match_holes
 from trunnion.verification.results import Place

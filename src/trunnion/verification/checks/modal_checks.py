@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.approach_faults import approaches_through_part
@@ -13,7 +14,6 @@ from trunnion.verification.checks.low_rapids import low_rapids
 from trunnion.verification.checks.passages import not_in_turn
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import ComparedContext, Context, check_from_places
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds

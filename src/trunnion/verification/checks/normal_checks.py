@@ -10,11 +10,11 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.expected.path import Section
-from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS
 from trunnion.verification.matching.rewind_retracts import find_rewind_retracts
 from trunnion.verification.results import Check
 from trunnion.wording import counted

@@ -10,11 +10,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import RowPositions, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.rotary_moves_at_part import rows_away
 from trunnion.verification.context import ComparedContext, Context
-from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, only_positions_rotary_axes
+from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Place

@@ -14,16 +14,13 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
+from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.verification.context import Context
 from trunnion.verification.kinematics.cut_extent import cut_extent
 from trunnion.verification.kinematics.home_tolerance import home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions
-from trunnion.verification.kinematics.positioning_moves import (
-    ROTARY_WORDS,
-    only_positions_rotary_axes,
-    rotary_positioning_flags,
-)
+from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes, rotary_positioning_flags
 from trunnion.verification.results import Place
 from trunnion.verification.row_ranges import chunk_bounds
 

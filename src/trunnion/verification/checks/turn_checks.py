@@ -11,13 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run, RunEvent
 from trunnion.verification.checks.rotary_moves_at_part import STILL, rotary_moves_at_part, turn_flags
 from trunnion.verification.context import ComparedContext, Context, Faults
-from trunnion.verification.kinematics.positioning_moves import (
-    ROTARY_WORDS,
-    only_positions_rotary_axes,
-)
+from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes
 from trunnion.verification.results import Check, Place
 from trunnion.wording import counted
 

@@ -5,14 +5,11 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import ComparedContext, Context, Faults, check_from_places
-from trunnion.verification.kinematics.positioning_moves import (
-    ROTARY_WORDS,
-    first_workpiece_position,
-    rotary_positioning_flags,
-)
+from trunnion.verification.kinematics.positioning_moves import first_workpiece_position, rotary_positioning_flags
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import CHUNK, RowRanges, chunk_bounds
 

@@ -19,15 +19,12 @@ from trunnion.jit import inner, kernel
 from trunnion.machines import Machine
 from trunnion.machines.forward import KinematicChain, forward, forward_row, kinematic_chain
 from trunnion.model.axis_tolerance import AxisTolerance, allowed_deviation
+from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import Orientation, ProgrammedWord, RowPositions, Run
 from trunnion.model.toolpath import Kind, Phase
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
-from trunnion.verification.kinematics.positioning_moves import (
-    POSITION_WORDS,
-    comes_from_home,
-    rotary_positioning_flags,
-)
+from trunnion.verification.kinematics.positioning_moves import comes_from_home, rotary_positioning_flags
 from trunnion.verification.kinematics.worst_rows import WorstRows
 from trunnion.verification.matching.pairs import Matching
 

@@ -14,9 +14,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Ints
+from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, ROTARY_WORDS, names_no_axis
-from trunnion.verification.kinematics.unknown_setups import rows_without_values
+from trunnion.model.unknown_setups import rows_without_values
 
 #: Rows that are searched at first for the next motion in workpiece coordinates; later ever more.
 _FEW = 64

@@ -9,15 +9,10 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Ints
+from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.row_ranges import CHUNK
-
-#: Words that position the tip or the tool axis.
-POSITION_WORDS = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.VECTOR
-
-#: Words that turn rotary axes.
-ROTARY_WORDS = ProgrammedWord.FIRST | ProgrammedWord.SECOND
 
 #: How far a motion may deviate from the tool axis and still be along it, mm; and how much the axis may change.
 _STRAIGHT = 1e-6
@@ -59,11 +54,6 @@ def only_positions_rotary_axes(run: Run, rows: Ints) -> Flags:
 
 def _turns_only(programmed: Codes) -> Flags:
     return np.asarray(~_positions(programmed) & ((programmed & int(ROTARY_WORDS)) != 0))
-
-
-def names_no_axis(programmed: Codes) -> Flags:
-    """Which rows are of blocks that name no axis and move all the same: circles by their centre, and cycles."""
-    return np.asarray((programmed & int(POSITION_WORDS | ROTARY_WORDS)) == 0)
 
 
 def _positions(programmed: Codes) -> Flags:

@@ -15,9 +15,9 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
+from trunnion.model.unknown_setups import rows_without_values
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import approach_rows
-from trunnion.verification.kinematics.unknown_setups import rows_without_values
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,10 +11,10 @@ that leaves it out cuts at an unknown height.
 import numpy as np
 
 from trunnion.arrays import Ints
+from trunnion.model.programmed_words import POSITION_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.kinematics.machine_positions import MachinePositions
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, names_no_axis
 
 #: Rows that are searched at first for the next Z; later ever more.
 _FEW = 64

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.expected.holes import Hole
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, approach_rows
+from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.verification.matching.hole_matching import MatchedHole
 
 #: A motion is along the tool axis, or across it, when it is off by less than this, mm.

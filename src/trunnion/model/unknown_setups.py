@@ -11,9 +11,9 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.messages import Wording, phrase
+from trunnion.model.programmed_words import ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.run_setups import Setup, known_values
-from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS, names_no_axis
 
 _SLIDE_WORDS: Final = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
 
