@@ -64,7 +64,8 @@ def test_what_is_mangled_is_understood_when_it_is_whole(folder: Path, data: byte
     run = klartext.judge(data, folder, "dmu65")
     assert run is not None
     delta = ["DL adds 0.1 mm to the tool: the path is that without it"] if b"DL+0.1" in data else []
-    assert [finding.text for finding in run.diagnostics] == delta
+    found = [finding.text for finding in run.diagnostics]
+    assert [text for text in found if not text.startswith("ends with a datum")] == delta
 
 
 STOPPED = "(more than [0-9]+ (blocks|motions in cycles and curves)|no condition ends it); does it end"

@@ -67,7 +67,7 @@ def test_a_word_of_the_builder_that_nobody_declares_is_named_once(base: str, tmp
     declared = read(tmp_path, base, lines, *(f'{word} = "no effect: ours"' for word in words))
     assert not [each for each in declared.diagnostics if each.code == "NC225"]
     check = {each.key: each for each in trunnion.verify(declared, machine=declared.machine).checks}["words"]
-    assert check.summary == "every word is known"
+    assert check.summary.split(";")[0] == "every word is known"  # a Fanuc is told of its G43, too
 
 
 def test_post_and_verify_warn_of_words_of_the_builder_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -92,7 +92,7 @@ def test_post_and_verify_warn_of_words_of_the_builder_once(tmp_path: Path, capsy
 
 def test_of_many_words_of_the_builder_the_first_are_told(tmp_path: Path) -> None:
     run = read(tmp_path, "matsuura_mx330", "\n".join(f"M{number}" for number in range(301, 330)))
-    told = program_warnings(run)
+    told = [each for each in program_warnings(run) if each.code != "NC351"]
     assert [each.what.split()[0] for each in told[:20]] == [f"M{number}" for number in range(301, 321)]
     assert [each.what for each in told[20:]] == ["9 more words belong to the machine"]
     assert told[20].line == told[19].line + 1

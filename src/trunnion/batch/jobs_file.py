@@ -25,6 +25,7 @@ from trunnion.jobs.registry import JOBS
 from trunnion.messages import Wording, phrase
 from trunnion.options.kinds import FileOut, Setting
 from trunnion.options.option import Option
+from trunnion.options.words import PROOF_SETTINGS
 
 #: Jobs that a file may have, patterns of one, and settings.
 _MOST_JOBS: Final = 1000
@@ -156,6 +157,11 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         _refuse_keys(table, action, stated)
         of_defaults = {key: value for key, value in default_values.items() if action in _KEYS[key].options}
         of_defaults = _with_settings(defaults, of_defaults, action)
+        if action is Action.VERIFY and "settings" in of_defaults:  # others hold for the posts of the file
+            of_defaults["settings"] = {
+                key: own for key, own in of_defaults["settings"].items() if key in PROOF_SETTINGS
+            }
+            of_defaults = {key: value for key, value in of_defaults.items() if key != "settings" or value}
         stated = _with_settings(table, {key: stated[key] for key in stated if action in _KEYS[key].options}, action)
         values = of_defaults | stated
         if "settings" in values:

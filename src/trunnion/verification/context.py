@@ -96,7 +96,7 @@ class ExpectedValues:
         """Return how a setting of the post is told again, to follow a fault; empty if the control has none of it."""
         if name not in self.has_settings:
             return ""
-        return f"; if the program was posted with {name}={value}, give --set {name}={value}"
+        return f"; if the program was posted with {name}={value}, repeat that setting"
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""

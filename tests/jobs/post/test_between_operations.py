@@ -153,7 +153,7 @@ def test_a_height_that_is_lost_or_too_low_is_a_fault(base: str, path: str, progr
     higher = ("operation_clearance", "12")
     assert "order" in programs.failing(lines, base, path, _CLEARANCE, higher)
     assert "order" in programs.failing(lines, base, path)  # where nothing allows the way
-    assert "give --set same_tool=clearance" in programs.told(lines, base, path)
+    assert "posted with same_tool=clearance, repeat that setting" in programs.told(lines, base, path)
 
 
 @pytest.mark.parametrize("base", MACHINES)

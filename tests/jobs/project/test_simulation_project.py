@@ -118,7 +118,7 @@ def test_a_turn_that_is_no_quarter_says_what_it_costs(folder: Path) -> None:
 def test_a_set_up_has_its_own_work_offset(folder: Path) -> None:
     told = trunnion.simulate(project(folder, PROJECT + 'work_offset = "G55"\n'))
     assert not told.passed
-    assert ["cuts in G54, and the set-up is in G55" in one.what for one in told.remarks if one.line] == [True]
+    assert any("cuts in G54, and the set-up is in G55" in one.what for one in told.remarks if one.line)
     assert trunnion.simulate(project(folder, PROJECT + 'work_offset = "G54"\n')).passed
 
 

@@ -34,7 +34,7 @@ _MOSTLY: Final = 0.5
 class ProgramKind:
     """A kind of files, and the marks of one: the letters of a line that match are shown.
 
-    languages  folders of the readers that read it; empty: none does
+    languages  of the readers that read it, as their folders are called; empty: none does
     """
 
     name: str
@@ -66,7 +66,7 @@ KINDS: Final = (
     _kind(
         "a Heidenhain Klartext program",
         r"^\d* ?(?:BEGIN|END) PGM ", r"^\d+ +TOOL CALL ", r"^\d+ +CYCL (?:DEF|CALL)", r"^\d+ +L +[XYZABC][+-]",
-        r"^\d+ +(?:CC|LBL|FN \d+:|PLANE|FUNCTION|STOP M)\b", languages=("heidenhain",),
+        r"^\d+ +(?:CC|LBL|FN \d+:|PLANE|FUNCTION|STOP M)\b", languages=("Heidenhain",),
     ),
     _kind(
         "a Fagor program",
@@ -102,26 +102,26 @@ KINDS: Final = (
         "a Sinumerik program",
         r"^%_N_\w+_(?:MPF|SPF)", r"\b(?:TRAORI|TRAFOOF|SUPA|ORIWKS|ORIAXES)\b", r"\bCYCLE\d{2,3} ?\(",
         r"^(?:N\d+ )?MSG ?\(\"",
-        r"\bR\d+ ?= ?", r"^;\$PATH=", r"\bD\d+ ?M6\b|\bT ?= ?\"", languages=("sinumerik",),
+        r"\bR\d+ ?= ?", r"^;\$PATH=", r"\bD\d+ ?M6\b|\bT ?= ?\"", languages=("Sinumerik",),
     ),
     _kind(
         "a LinuxCNC program",
         r"\bO ?(?:<\w+>|\d+) (?:sub|endsub|call|if|while|return)\b", r"#<\w+>", r"\bG64 ?P", r"\bG43\.1 ?Z",
         r"\bM6[2-8] ?[PE]\d",
-        languages=("linuxcnc",),
+        languages=("LinuxCNC",),
     ),
     _kind(
         "a program for a Fanuc or Haas",
         r"^:?O\d{1,8}\b", r"\bG5\.1 ?Q|\bG05\.1 ?Q", r"\bG43\.4\b|\bG68\.2\b|\bG234\b|\bG254\b",
         r"\bG154 ?P|\bG54\.1 ?P",
-        languages=("fanuc",),
+        languages=("Fanuc",),
     ),
 )  # fmt: skip
 
 #: A text that is no program.
 TEXT: Final = ProgramKind("a text, and no program", ())
 
-_WORD: Final = re.compile(r"(?:^|[\s(])[GMXYZFSTN] ?(?:[-+]?\.?\d|=)", re.IGNORECASE)
+_WORD: Final = re.compile(r"(?:^|[\s(])[GMXYZFSTNO] ?(?:[-+]?\.?\d|=)", re.IGNORECASE)
 
 
 def recognize(file: Path) -> Recognized | None:
@@ -161,7 +161,7 @@ def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wo
     """
     found = recognize(program)
     reader = language.rsplit(".", 2)[-2]
-    if found and reader not in found.kind.languages and (found.found or is_still or is_certain):
+    if found and reader not in map(str.lower, found.kind.languages) and (found.found or is_still or is_certain):
         said: dict[str, object] = {"kind": found.kind.name}
         for name, (line, letters) in zip(("first", "second"), found.found, strict=False):
             said |= {name: letters, f"{name}_line": line}
@@ -177,7 +177,7 @@ def _lines(file: Path) -> Iterator[tuple[int, str]]:
     except OSError:
         return
     for number, line in enumerate(text.splitlines(), 1):
-        if line.strip():
+        if line.strip(" \t%"):
             yield number, line[:_MOST_LETTERS].rstrip()
 
 

@@ -40,7 +40,8 @@ def test_every_block_is_known_or_named(name: str) -> None:
     assert [f for f in odd if "the cycle" not in f.text] == []
     assert np.isfinite(run.joints).all()
     if name in PLAIN:
-        assert [each for each in run.diagnostics if "TOOL DEF gives" not in each.text] == []
+        told = ("TOOL DEF gives", "ends with a datum of cycles 7")
+        assert [each for each in run.diagnostics if not any(text in each.text for text in told)] == []
 
 
 @pytest.mark.parametrize("name", PLAIN)

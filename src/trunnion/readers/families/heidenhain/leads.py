@@ -15,13 +15,10 @@ from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.contours import ContourError, Element, Lead
 from trunnion.readers.control.row_recorder import within_limits
 from trunnion.readers.families.heidenhain.plane_control import PlaneControl
-from trunnion.readers.program.settings import family_of
+from trunnion.readers.families.heidenhain.settings import approaches_without_side
 
 #: Leads that are on the side of radius compensation.
 _ON_A_SIDE: Final = frozenset({"LN", "CT"})
-
-#: The family whose APPR blocks with R0 approach as those with RR do, for a tool without radius; others stop there.
-_APPROACHES_WITHOUT_SIDE: Final = "heidenhain_itnc530"
 
 
 class LeadWords(NamedTuple):
@@ -124,7 +121,7 @@ class LeadControl(PlaneControl):
         target   (3,) where the departure ends, or where the approach begins
         """
         departs, compensation = lead.word.startswith("DEP"), int(self.modal.compensation.current)
-        side = compensation or (0 if departs or family_of(self.machine) != _APPROACHES_WITHOUT_SIDE else -1)
+        side = compensation or (0 if departs or not approaches_without_side(self.machine) else -1)
         if lead.kind in _ON_A_SIDE and not side:
             raise ContourError(Wording("NC324", "no_side"))
         if lead.rapid and lead.kind in ("CT", "LCT"):

@@ -15,6 +15,12 @@ def variables_of(machine: Machine) -> dict[str, float]:
     """Return the values of parameters that a machine's control has when a program starts; InputError if wrong."""
     table = reading_of(machine)
     variables = read_variables(table, _VARIABLE, "Q1600")
+    table.flag("approach_without_side", False)  # asked for by approaches
     table.report_unread_keys()
     table.raise_problems()
     return variables
+
+
+def approaches_without_side(machine: Machine) -> bool:
+    """Whether APPR with R0 approaches as RR does, for a tool without radius; other controls stop there."""
+    return reading_of(machine).flag("approach_without_side", False)
