@@ -95,7 +95,7 @@ def _found(name: str, path: Path) -> FoundFile:
         return FoundFile(name, path, FileKind.PROGRAM)
     if not found.kind.languages:
         return _other(name, path, found.kind.name)
-    return FoundFile(name, path, FileKind.PROGRAM, found.kind.name, found.kind.languages)
+    return FoundFile(name, path, FileKind.PROGRAM, found.kind.name, found.kind.readers)
 
 
 def _other(name: str, path: Path, looks: str) -> FoundFile:

@@ -34,12 +34,17 @@ _MOSTLY: Final = 0.5
 class ProgramKind:
     """A kind of files, and the marks of one: the letters of a line that match are shown.
 
-    languages  of the readers that read it, as their folders are called; empty: none does
+    languages  in which readers read it; empty: none does
     """
 
     name: str
     marks: tuple[re.Pattern[str], ...]
     languages: tuple[str, ...] = ()
+
+    @property
+    def readers(self) -> tuple[str, ...]:
+        """Folders of the readers of its languages."""
+        return tuple(map(str.lower, self.languages))
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +166,7 @@ def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wo
     """
     found = recognize(program)
     reader = language.rsplit(".", 2)[-2]
-    if found and reader not in map(str.lower, found.kind.languages) and (found.found or is_still or is_certain):
+    if found and reader not in found.kind.readers and (found.found or is_still or is_certain):
         said: dict[str, object] = {"kind": found.kind.name}
         for name, (line, letters) in zip(("first", "second"), found.found, strict=False):
             said |= {name: letters, f"{name}_line": line}

@@ -1,5 +1,7 @@
 """One small program for each thing that a block can say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -167,7 +169,8 @@ def test_ways_of_endless_axes(run: Runner) -> None:
 
 
 def test_an_axis_that_writes_its_turns_takes_the_number(run: Runner) -> None:
-    result = run("TRAORI\nC350\nC725", machine=load_machine("mikron_600u"), family="sinumerik_840d")
+    machine = replace(load_machine("mikron_600u"), control=load_machine("yl569").control)
+    result = run("TRAORI\nC350\nC725", machine=machine)
     assert rotary(result)[:, 1].tolist() == [350.0, 725.0]
 
 
