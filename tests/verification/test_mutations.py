@@ -73,7 +73,7 @@ def test_every_fault_that_changes_the_work_is_reported_at_its_block(name: str, t
             assert not tally.outside, (kind, tally.not_caught)
     caught = sum(tally.outcomes["CAUGHT"] for tally in table.values())
     told = sum(tally.outcomes.total() - tally.outcomes["SAME"] for tally in table.values())
-    assert caught > 0.95 * told
+    assert caught > 0.9 * told  # of a third of the faults; 0.95 of all of them
 
 
 @pytest.mark.parametrize(
