@@ -133,8 +133,9 @@ def check() -> None:
 
 def quick() -> None:
     """Run what a commit needs: the fast tests that the change reaches, or all where nothing can be said of it."""
-    set_up(".[test]")
+    set_up(".[test,docs]")
     check()
+    site()
     command = [str(program_of(HOME, "python")), "-m", "tests.support.reached"]
     environment = {**os.environ, **KEEPING}
     reached = subprocess.run(command, cwd=HERE, check=True, stdout=subprocess.PIPE, encoding="utf-8", env=environment)
