@@ -35,15 +35,15 @@ class Place:
     row              the row of the run, as long as that is known; -1 for none
     number           block number, -1 for none
     value            what was found there, in the unit of the check
-    text             the same in words
+    wording          what is said of it
     cl_file, cl_line place in a CL file; line 0 for none
-    code             that of the message which ``text`` is, see ``trunnion.explanations``; empty: a finding of the check
+    code             that of the message which it is, see ``trunnion.explanations``; empty: a finding of the check
     """
 
     nc_line: int
     number: BlockNumber
     value: Annotated[float, Figure(after="cl_line")]
-    text: Annotated[str, Figure(after="value")]
+    wording: Annotated[Wording, NOT_DATA]
     cl_file: OptionalText = ""
     cl_line: OptionalLine = 0
     nc_file: Annotated[str, Figure(none="", after="nc_line")] = ""
@@ -51,14 +51,30 @@ class Place:
     code: Annotated[str, Figure(none="", after="text")] = ""
 
     @property
-    def told(self) -> str:
-        """``text`` as it is printed: with its code, if it has one."""
-        return f"{self.text} [{self.code}]" if self.code else self.text
+    @Figure(after="value")
+    def text(self) -> str:
+        """What is said of it, in English."""
+        return self.wording.what
 
     @property
-    def block_name(self) -> str:
-        """What a programmer calls the block: ``N120``, or its line where it has no number."""
-        return f"N{self.number}" if self.number >= 0 else f"line {self.nc_line}"
+    def said(self) -> Wording:
+        """``wording`` as it is printed: with its code, if it has one."""
+        return self.wording.within("with_code", code=self.code) if self.code else self.wording
+
+    @property
+    def told(self) -> str:
+        """The same in English."""
+        return self.said.what
+
+    @property
+    def block_name(self) -> Wording:
+        """What a programmer calls the block."""
+        return block_name(self.number, self.nc_line)
+
+
+def block_name(number: int, line: int) -> Wording:
+    """Return what a programmer calls a block: ``N120``, or its line where it has no number (-1)."""
+    return Wording("all", "block", number=number) if number >= 0 else Wording("all", "line", line=line)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +94,7 @@ class Coverage:
         yield phrase("motions_checked", checked=self.checked, motions=self.motions)
         if self.left_out:
             first = self.left_out[0]
-            yield phrase("motions_left_out", block=first.block_name, why=first.told)
+            yield phrase("motions_left_out", block=first.block_name, why=first.said)
 
 
 class State(StrEnum):
@@ -98,9 +114,8 @@ class Check:
     """One question about a program, and its answer.
 
     key       stable name, such as ``tip`` or ``travel``; each has a section in docs/checks.md
-    title     the question in a few words
     passed    nothing wrong was found; False: the program must not run as it is. See ``state``
-    summary   the answer in one line: the worst value, where it is, and what is allowed
+    answer    the answer in one line: the worst value, where it is, and what is allowed; None: there is none
     worst     the worst value in ``unit``, None where the check does not measure
     limit     what is allowed, None where there is no limit
     places    the worst places, worst first
@@ -110,9 +125,8 @@ class Check:
     """
 
     key: str
-    title: str
     passed: Annotated[bool, NOT_DATA]
-    summary: str
+    answer: Annotated[Wording | None, NOT_DATA]
     worst: float | None = None
     limit: float | None = None
     unit: str = ""
@@ -120,6 +134,18 @@ class Check:
     missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
     coverage: Coverage | None = None
     stands_on: Annotated[tuple[str, ...], Figure(after="missing")] = ()
+
+    @property
+    @Figure(after="key")
+    def title(self) -> str:
+        """The question in a few words."""
+        return Wording(self.key, "title").what
+
+    @property
+    @Figure(after="stands_on")
+    def summary(self) -> str:
+        """``answer`` in English; empty if there is none."""
+        return self.answer.what if self.answer else ""
 
     @property
     @Figure(after="title")
@@ -133,7 +159,7 @@ class Check:
     def told(self) -> str:
         """``summary`` as it is printed: behind what is missing."""
         covered = () if self.coverage is None else tuple(self.coverage.wordings())
-        return "; ".join(filter(None, (*_texts(self.missing), self.summary, *_texts(covered))))
+        return "; ".join(filter(None, _texts((*self.missing, *filter(None, (self.answer,)), *covered))))
 
     def __str__(self) -> str:
         """Return the line that the command prints: key, state, summary."""

@@ -7,6 +7,7 @@ Out:    the levels that are on in each other meaning; and checks that fail in on
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.verification.results import Check, Verification
 
@@ -17,7 +18,7 @@ def other_meanings(*runs: Run) -> list[frozenset[int]]:
     return list(dict.fromkeys([_used(*runs), *each])) if each else []
 
 
-def words_of(levels: frozenset[int], *runs: Run) -> str:
+def words_of(levels: frozenset[int], *runs: Run) -> Wording:
     """Name a meaning, and the first block that is skipped in it."""
     lines = [
         event.line
@@ -25,8 +26,9 @@ def words_of(levels: frozenset[int], *runs: Run) -> str:
         for event in run.events
         if event.kind == "block_skip" and isinstance(event.value, int | float) and int(event.value) in levels
     ]
-    which = "" if levels == _used(*runs) else f" of level {', '.join(map(str, sorted(levels)))}"
-    return f"with blocks{which} skipped (/, first in line {min(lines)})"
+    if levels == _used(*runs):
+        return Wording("all", "blocks_skipped", line=min(lines))
+    return Wording("all", "levels_skipped", levels=tuple(map(str, sorted(levels))), line=min(lines))
 
 
 def with_other_meanings(
@@ -40,7 +42,7 @@ def with_other_meanings(
     verify         of a run, and whether it is compared with the CL files without what they let the operator skip
     has_toolpaths  whether the proof has compared the program with CL files
     """
-    used, others = _used(proof.run), list[tuple[str, Sequence[Check]]]()
+    used, others = _used(proof.run), list[tuple[Wording, Sequence[Check]]]()
     as_asked_for = all(check.passed for check in proof.checks if check.key == "stops")
     for each in proof.run.skipped:
         compared = has_toolpaths and as_asked_for and each.levels == used
@@ -48,7 +50,7 @@ def with_other_meanings(
     return replace(proof, checks=tuple(_worse_checks(proof.checks, others))) if others else proof
 
 
-def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[str, Sequence[Check]]]) -> Iterator[Check]:
+def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[Wording, Sequence[Check]]]) -> Iterator[Check]:
     """Yield each check, or what it is in the first other meaning in which it fails; ``others``: words and checks."""
     failed = [(words, {check.key: check for check in found if not check.passed}) for words, found in others]
     for check in checks:
@@ -57,8 +59,12 @@ def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[str, Sequence[
             yield check
             continue
         words, fault = wrong
-        places = tuple(replace(place, row=-1, text=f"{words}: {place.text}") for place in fault.places)
-        yield replace(fault, summary=f"{words}: {fault.summary}", places=places)
+        places = tuple(replace(each, row=-1, wording=_with(words, each.wording)) for each in fault.places)
+        yield replace(fault, answer=fault.answer and _with(words, fault.answer), places=places)
+
+
+def _with(words: Wording, said: Wording) -> Wording:
+    return said.within("with_skips", meaning=words)
 
 
 def _used(*runs: Run) -> frozenset[int]:

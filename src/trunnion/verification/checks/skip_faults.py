@@ -6,6 +6,7 @@ Out:    the blocks without which the program would do something else than the CL
 
 from collections.abc import Iterator
 
+from trunnion.messages import Wording
 from trunnion.model.toolpath import BlockSkip
 from trunnion.verification.context import ComparedContext
 from trunnion.verification.expected.holes import Hole
@@ -30,7 +31,7 @@ def skip_faults(context: ComparedContext) -> Iterator[Place]:
         last = int(cl[pair]) if pair < len(cl) else len(context.expected)
         moves = event.before_row < len(context.run) and int(context.run.lines[event.before_row]) == event.line
         if not any(begin <= last and first + moves < end for begin, end in regions):
-            yield context.place_of_event(event, 0.0, "may be skipped (/), and the CL file has no OPSKIP there")
+            yield context.place_of_event(event, 0.0, Wording("stops", "skip_not_asked"))
 
 
 def _holes(context: ComparedContext) -> Iterator[MatchedHole]:
