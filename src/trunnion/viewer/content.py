@@ -139,7 +139,7 @@ def view_content(
 
 
 def with_phases(content: ViewContent, verification: Verification, toolpaths: Sequence[Toolpath]) -> ViewContent:
-    """Return what a page shows, with the phases of motions as the toolpaths that the program was made from know them."""
+    """Return what a page shows, with the phases of motions as the toolpaths know them that they come from."""
     if not toolpaths:
         return content
     phase = content.rows.column(_phases(verification, toolpaths))
