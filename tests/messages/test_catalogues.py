@@ -169,7 +169,7 @@ def test_readers_say_wordings() -> None:
     assert not texts_of_their_own, "\n".join(texts_of_their_own)
 
 
-def words_in(tree: ast.Module) -> Iterator[ast.expr]:
+def words_in(tree: ast.Module) -> Iterator[ast.Constant]:
     """Texts of a module that are words of a sentence: none of its docstrings, annotations, assertions and kernels."""
     aside: set[ast.AST] = set()
     for node in ast.walk(tree):
@@ -184,9 +184,10 @@ def words_in(tree: ast.Module) -> Iterator[ast.expr]:
         elif isinstance(node, ast.Call) and called(node) == "kernel":
             aside.update(each.value for each in node.keywords)
     for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and node not in aside and isinstance(node.value, str):
-            if re.search(r"[a-z]{2}[,;:]? |[ (][a-z]{2}", node.value) and node.value not in WORDS_OF_DATA:
-                yield node
+        if not isinstance(node, ast.Constant) or node in aside or node.value in WORDS_OF_DATA:
+            continue
+        if isinstance(node.value, str) and re.search(r"[a-z]{2}[,;:]? |[ (][a-z]{2}", node.value):
+            yield node
 
 
 def test_checks_and_comparisons_have_no_words_of_their_own() -> None:

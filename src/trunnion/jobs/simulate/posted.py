@@ -230,7 +230,7 @@ def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:
 def _check(
     found: SimulationResult, key: str, findings: Sequence[SimulationFinding], broken: Sequence[Problem]
 ) -> Check:
-    missing: tuple[Wording, ...] = ()
+    missing = _cuts_missing(found)
     passed = not findings and not broken
     deepest = max((each.depth for each in findings), default=None)
     answer: Wording | None = None
@@ -248,7 +248,7 @@ def _check(
     elif found.pairs:
         answer = Wording("collision", "good", pairs=found.pairs)
         if found.not_checked:
-            answer = Wording("removal", "with_note", answer=answer, note=found.not_checked_line)
+            answer = Wording("removal", "with_note", answer=answer, note=found.collisions_line)
     else:
         missing = (phrase("no_bodies"),)
     places = (*_places(findings), *(Place(each.line, -1, math.nan, each.wording, code=each.code) for each in broken))
@@ -264,7 +264,13 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
     if findings:
         worst = max(findings, key=lambda each: each.depth)
         answer = Wording("gouge", "missing_by", **missing, line=worst.line, count=len(findings))
-    return Check("gouge", passed, answer, largest, found.limit, "mm", tuple(_places(findings)))
+    return Check("gouge", passed, answer, largest, found.limit, "mm", tuple(_places(findings)), _cuts_missing(found))
+
+
+def _cuts_missing(found: SimulationResult) -> tuple[Wording, ...]:
+    """Return that it is not known what is cut under radius compensation; nothing where it is."""
+    why = found.cuts_not_checked
+    return (phrase("cuts_not_checked", why=why),) if why else ()
 
 
 def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:

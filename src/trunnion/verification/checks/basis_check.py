@@ -12,6 +12,6 @@ def check_basis(context: Context) -> list[Check]:
     demands = {*context.settings.demands, *machine.demands}
     if not demands:
         return []
-    if missing := tuple(missing_demands(demands, context.run)):
+    if missing := tuple(missing_demands(demands, context.run, context.settings.register_holds)):
         return [Check("basis", False, Wording("basis", "missing", missing=missing))]
     return [Check("basis", True, Wording("basis", "stated", demands=tuple(sorted(demands))))]

@@ -1,10 +1,11 @@
 """The work offset of a program."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -122,9 +123,10 @@ def _check_changes(context: Context, rows: RowRanges) -> Check:
             codes.append(code)
         last = int(here[-1])
     names = tuple(dict.fromkeys(_name(context, code) for code in codes if code)) or (_name(context, 0),)
-    good = Wording("offset", "chosen", offsets=names)
-    good = Wording("offset", "throughout", offset=names[0]) if len(names) == 1 else good
-    return check_from_places("offset", places, good)
+    if len(names) == 1:
+        return check_from_places("offset", places, Wording("offset", "throughout", offset=names[0]))
+    check = check_from_places("offset", places, Wording("offset", "chosen", offsets=names))
+    return replace(check, missing=(phrase("offsets_chosen", names=tuple(sorted(map(str, names)))),))
 
 
 def _stretches(context: Context) -> Iterator[tuple[RowRanges, int]]:
