@@ -216,6 +216,7 @@ class Verification:
 def durations(verification: Verification) -> tuple[Floats, Flags]:
     """Seconds of each row, (n,) float64, 0 where not known; and whether they are known, (n,) bool."""
     known = np.isfinite(verification.seconds) & (verification.seconds >= 0.0)
+    known &= ~np.isnan(verification.tip_feed)  # as at rapid where an axis has no stated speed: the others tell nothing
     return np.where(known, verification.seconds, 0.0), known
 
 
