@@ -16,7 +16,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
-from trunnion.verification.basis import assumed_modes
+from trunnion.verification.basis import assumed_modes, turns_before_offset
 from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -204,6 +204,7 @@ class Verification:
             warnings=severities.count(Severity.WARNING),
             not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
+            turns_before_offset=turns_before_offset(self.run),
         )
 
     def __repr__(self) -> str:

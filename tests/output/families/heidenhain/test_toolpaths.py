@@ -42,6 +42,7 @@ def test_a_three_axis_program_whole(post: Post) -> None:
         "M137",
         "L Z+560 R0 FMAX M91",
         "L X+0 Y+0 R0 FMAX M91",
+        "CYCL DEF 247 DATUM SETTING ~\n  Q339=+1 ;DATUM NUMBER",
         "L A+0 C+0 R0 FMAX",
         "TOOL CALL 1 Z S4000",
         "CYCL DEF 247 DATUM SETTING ~\n  Q339=+1 ;DATUM NUMBER",
