@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.compensation.stretches import RegisterValue, offsets_of
 from trunnion.machines import Axis, Machine, states_spindle_range
 from trunnion.machines.unmeasured import ValueKind, unmeasured_values
 from trunnion.messages import Wording, phrase
@@ -123,12 +124,13 @@ SPINDLE: Final = Basis("spindle", _no_spindle_speeds)
 START_MODES: Final = Basis("start_modes", _no_start_modes)
 START_OFFSET: Final = Basis("start_offset", _no_start_offset)
 
-#: What ``[proof] require`` and ``--strict`` may demand, with its bases; of ``measured`` each program has its own.
+#: What ``[proof] require`` and ``--strict`` may demand, with its bases; of the last two each program has its own.
 DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "zero": (ZERO,),
     "tool_length": (TOOL_LENGTH,),
     "dynamics": (RAPID, ACCELERATION),
     "start_modes": (START_MODES, START_OFFSET),
+    "radius_register": (),
     "measured": (),
 }
 
@@ -138,11 +140,13 @@ def missing_of(bases: Iterable[Basis], run: Run) -> tuple[Wording, ...]:
     return tuple(found for basis in bases if (found := basis.missing(run)) is not None)
 
 
-def missing_demands(demands: Iterable[str], run: Run) -> Iterator[Wording]:
-    """Yield what is missing of what is demanded for a program, each once."""
+def missing_demands(demands: Iterable[str], run: Run, holds: RegisterValue) -> Iterator[Wording]:
+    """Yield what is missing of what is demanded for a program, each once; ``holds``: what its registers hold."""
     for name in DEMANDS:
         if name in demands:
             yield from missing_of(DEMANDS[name], run)
+    if "radius_register" in demands and any(offset is None for _, offset in offsets_of(run, holds, lambda _: 0.0)):
+        yield phrase("no_radius_register")
     if "measured" in demands:
         kinds = set(ValueKind) - {ValueKind.BODIES, ValueKind.TABLE}
         if names := tuple(map(str, unmeasured_values(run.machine, kinds, joint_samples(run)))):

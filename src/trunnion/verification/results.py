@@ -171,6 +171,7 @@ class Verification:
 
     ``operations`` divide the rows among them; there are none without CL files. ``recorded`` compares the machine as it
     was recorded; None: it was not. ``remarks`` are the warnings that were given on the way.
+    ``skip_levels`` has the levels of block skip (``/``) that each OPSKIP of the CL files has in the program.
     """
 
     program: str
@@ -185,6 +186,7 @@ class Verification:
     waiting: Floats = field(default_factory=lambda: np.zeros(0))
     clamping: Clamping | None = None
     remarks: tuple[Problem, ...] = ()
+    skip_levels: tuple[frozenset[int], ...] = ()
 
     @property
     def passed(self) -> bool:
