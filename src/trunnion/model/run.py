@@ -152,8 +152,8 @@ class Run:
     planes         (k, 3, 4)       tilted planes and rotated frames in which positions are tips: maps from programmed
                                    positions to the workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
-    skipped                        the program with the switches of block skip on: of all levels that it uses, and of
-                                   each alone; none where no block may be skipped. In ``Run`` itself all are off
+    skipped                        the program with the switches of block skip on, in each combination of levels that is
+                                   looked at (``skip_combinations``), all together first; in ``Run`` itself all are off
 
     Computed on first access:
 

@@ -54,7 +54,7 @@ class ExpectedValues:
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
     clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
     in_turn                axes move one group after the other from home to an operation
-    without_skipped        the points that the CL files let the operator skip (OPSKIP) are left out
+    left_out               numbers of the OPSKIP of the CL files whose points are left out, counted through all of them
     stop_between           an optional stop stands between operations
     has_settings           names of the settings that the control has: only those can be told again
     demands                what the proof must stand on besides what the machine's definition demands
@@ -85,7 +85,7 @@ class ExpectedValues:
     feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
     swivel_data: tuple[str, ...] = ()
-    without_skipped: bool = False
+    left_out: frozenset[int] = frozenset()
     stop_between: bool = False
     clearance: float | None = None
     in_turn: bool = False

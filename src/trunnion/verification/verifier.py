@@ -13,6 +13,7 @@ from trunnion.model.run import Run
 from trunnion.model.tool_additions import with_added_lengths
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification.checks.driven_path import driven_path
+from trunnion.verification.checks.skip_faults import stretch_levels
 from trunnion.verification.checks.table import Compared, Measured, all_checks
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.declared_deviations import accept_deviations
@@ -64,7 +65,7 @@ def verify(
     operations = tuple(_operation_rows(context))
     return Verification(
         run.files[0], run.machine, run, all_checks(seen), motion.seconds, motion.tip_feed, cl_line, operations,
-        waiting=motion.waiting,
+        waiting=motion.waiting, skip_levels=stretch_levels(context) if isinstance(context, ComparedContext) else (),
     )  # fmt: skip
 
 
@@ -100,7 +101,7 @@ def _expected_path(
     """Return the path that the CL files ask for, with the splines that the program writes."""
     path = partial(
         ExpectedPath, toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation,
-        skips=settings.without_skipped,
+        left_out=settings.left_out,
     )  # fmt: skip
     expected = path()
     written = written_splines(run, expected)

@@ -1,10 +1,12 @@
 """The work offset of a program."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
+from trunnion.messages import phrase
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -123,8 +125,10 @@ def _check_changes(context: Context, rows: RowRanges) -> Check:
             codes.append(code)
         last = int(here[-1])
     names = list(dict.fromkeys(_name(context, code) for code in codes if code)) or [_name(context, 0)]
-    good = f"{names[0]} throughout" if len(names) == 1 else f"{', then '.join(names)}, each as the program chooses"
-    return check_from_places("offset", _TITLE, places, good)
+    if len(names) == 1:
+        return check_from_places("offset", _TITLE, places, f"{names[0]} throughout")
+    check = check_from_places("offset", _TITLE, places, f"{', then '.join(names)}, each as the program chooses")
+    return replace(check, missing=(phrase("offsets_chosen", names=tuple(sorted(names))),))
 
 
 def _stretches(context: Context) -> Iterator[tuple[RowRanges, int]]:
