@@ -11,9 +11,10 @@ from trunnion.compensation.stretches import RegisterValue
 from trunnion.messages import Wording
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
+from trunnion.verification.block_names import block_name_of
 from trunnion.verification.expected.path import ExpectedPath, OperationSettings
 from trunnion.verification.matching.pairs import Matching
-from trunnion.verification.results import Check, Place, block_name
+from trunnion.verification.results import Check, Place
 
 #: Places that each check names.
 MAX_PLACES = 8
@@ -131,7 +132,7 @@ class Context:
 
     def block_name(self, row: int) -> Wording:
         """Return what a programmer calls the block of a row."""
-        return block_name(self.run.block_numbers[row], self.run.lines[row])
+        return block_name_of(self.run, row)
 
     @property
     def last_line(self) -> int:

@@ -16,7 +16,8 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
-from trunnion.verification.basis import assumed_modes
+from trunnion.verification.basis import assumed_modes, turns_before_offset
+from trunnion.verification.block_names import block_name
 from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -70,11 +71,6 @@ class Place:
     def block_name(self) -> Wording:
         """What a programmer calls the block."""
         return block_name(self.number, self.nc_line)
-
-
-def block_name(number: int, line: int) -> Wording:
-    """Return what a programmer calls a block: ``N120``, or its line where it has no number (-1)."""
-    return Wording("all", "block", number=number) if number >= 0 else Wording("all", "line", line=line)
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,6 +228,7 @@ class Verification:
             warnings=severities.count(Severity.WARNING),
             not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
+            turns_before_offset=str(turns_before_offset(self.run) or ""),
         )
 
     def __repr__(self) -> str:
@@ -244,6 +241,7 @@ class Verification:
 def durations(verification: Verification) -> tuple[Floats, Flags]:
     """Seconds of each row, (n,) float64, 0 where not known; and whether they are known, (n,) bool."""
     known = np.isfinite(verification.seconds) & (verification.seconds >= 0.0)
+    known &= ~np.isnan(verification.tip_feed)  # as at rapid where an axis has no stated speed: the others tell nothing
     return np.where(known, verification.seconds, 0.0), known
 
 

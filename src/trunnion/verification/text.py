@@ -7,7 +7,7 @@ import numpy as np
 
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Kind
-from trunnion.verification.results import Check, Place, State, Verification, moving_seconds
+from trunnion.verification.results import Check, Place, State, Verification, durations, moving_seconds
 from trunnion.wording import format_duration
 
 #: Places that are told of each check.
@@ -66,11 +66,13 @@ def place_line(program: str, place: Place) -> str:
 
 def time_lines(verification: Verification) -> Iterator[str]:
     """Yield the time of the program and of each operation, if times were asked for."""
-    seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
+    seconds, known = durations(verification)
     if len(seconds):
         cuts = moving_seconds(verification)[verification.run.kind != Kind.RAPID]
         whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, cuts))
-        yield Wording("all", "time", time=whole, cuts=cutting).what
+        unknown = int(np.count_nonzero(~known))
+        line = Wording("all", "time", time=whole, cuts=cutting)
+        yield (line.within("without_motions", count=unknown) if unknown else line).what
         for operation in verification.operations:
             own = seconds[operation.first : operation.end]
             took = format_duration(float(own.sum()))
