@@ -279,12 +279,14 @@ class UnknownStatement(Event):
     words  those that are not known; none if all of the statement is not
     what   why, for messages
     acts   it may move the machine, turn an axis, change a tool or switch something: no program is made without it
+    meant  the words that it may be: one that is damaged, or several in one line; none if it looks like no other
     """
 
     text: str
     words: tuple[str, ...] = field(default=(), compare=False)
     what: str = field(default="", compare=False)
     acts: bool = field(default=True, compare=False)
+    meant: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
@@ -194,6 +194,7 @@ class Verification:
     ``operations`` divide the rows among them; there are none without CL files. ``recorded`` compares the machine as it
     was recorded; None: it was not. ``remarks`` are the warnings that were given on the way.
     ``skip_levels`` has the levels of block skip (``/``) that each OPSKIP of the CL files has in the program.
+    ``lost_skips`` are the places, by their numbers, of those of which no block has ``/``.
     """
 
     program: str
@@ -209,6 +210,7 @@ class Verification:
     clamping: Clamping | None = None
     remarks: tuple[Problem, ...] = ()
     skip_levels: tuple[frozenset[int], ...] = ()
+    lost_skips: Mapping[int, Place] = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
