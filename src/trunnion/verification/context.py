@@ -1,5 +1,6 @@
 """What checks are given: the run, the settings, and the expected path with its matching; and how they name places."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import islice
@@ -53,6 +54,7 @@ class ExpectedValues:
     by_operation           tool, work offset and edge of single operations, by their names
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
     clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
+    operation_clearance    how high above all operations the setting same_tool=clearance leads, mm, whether it is given
     in_turn                axes move one group after the other from home to an operation
     left_out               numbers of the OPSKIP of the CL files whose points are left out, counted through all of them
     stop_between           an optional stop stands between operations
@@ -88,15 +90,20 @@ class ExpectedValues:
     left_out: frozenset[int] = frozenset()
     stop_between: bool = False
     clearance: float | None = None
+    operation_clearance: float = math.inf
     in_turn: bool = False
     has_settings: frozenset[str] = frozenset()
     demands: tuple[str, ...] = ()
 
-    def repeat(self, name: str, value: object) -> str:
-        """Return how a setting of the post is told again, to follow a fault; empty if the control has none of it."""
-        if name not in self.has_settings:
+    def repeat(self, name: str, value: object, **others: object) -> str:
+        """Return how settings of the post are told again, to follow a fault; empty if the control has none of them."""
+        given = {name: value, **others}
+        if not given.keys() <= self.has_settings:
             return ""
-        return f"; if the program was posted with {name}={value}, repeat that setting"
+        texts = [f"{key}={each}" for key, each in given.items()]
+        which = "that setting" if len(texts) == 1 else "these settings"
+        options = " ".join(f"--set {text}" for text in texts)
+        return f"; if the program was posted with {' and '.join(texts)}, repeat {which} ({options})"
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""

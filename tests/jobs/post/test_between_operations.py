@@ -8,6 +8,7 @@ import pytest
 
 import trunnion
 from trunnion.options.words import PROOF_SETTINGS
+from trunnion.verification import Check
 
 MACHINES = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt", "linuxcnc_5axis")
 
@@ -68,11 +69,11 @@ class _Programs:
         assert result.passed
         return (result.text or "").splitlines()
 
-    def told(self, lines: list[str], base: str, path: str) -> str:
+    def checks(self, lines: list[str], base: str, path: str) -> dict[str, Check]:
         program = self._folder / "changed.nc"
         program.write_text("\n".join(lines) + "\n", encoding="utf-8")
         found = trunnion.verify(program, machine=base, cl=self._source(path))
-        return next(check.summary for check in found.checks if check.key == "order")
+        return {check.key: check for check in found.checks}
 
     def failing(self, lines: list[str], base: str, path: str, *settings: tuple[str, str]) -> set[str]:
         program = self._folder / "changed.nc"
@@ -153,7 +154,7 @@ def test_a_height_that_is_lost_or_too_low_is_a_fault(base: str, path: str, progr
     higher = ("operation_clearance", "12")
     assert "order" in programs.failing(lines, base, path, _CLEARANCE, higher)
     assert "order" in programs.failing(lines, base, path)  # where nothing allows the way
-    assert "posted with same_tool=clearance, repeat that setting" in programs.told(lines, base, path)
+    assert "posted with same_tool=clearance, repeat that setting" in programs.checks(lines, base, path)["order"].summary
 
 
 @pytest.mark.parametrize("base", MACHINES)
@@ -210,3 +211,29 @@ def test_operations_of_other_tools_and_tilts_go_home(programs: _Programs) -> Non
     stopping = programs.post("yl569", "three", _CLEARANCE, ("stop_between", "on"))
     stop = next(k for k, line in enumerate(stopping) if _plain(line) == "M1")
     assert any(_HOME.search(_plain(line)) for line in stopping[stop - 4 : stop])
+
+
+@pytest.mark.parametrize("height", ["10", "3.5", "25"])
+@pytest.mark.parametrize("base", ["yl569", "dmu65", "xyzac_trt"])
+def test_faults_of_a_way_above_all_operations_name_the_settings_with_which_it_passes(
+    base: str, height: str, programs: _Programs
+) -> None:
+    lines = programs.post(base, "tilted", _CLEARANCE, ("operation_clearance", height))
+    told = programs.checks(lines, base, "tilted")
+    assert {key for key, check in told.items() if check.state == "FAIL"} == {"order", "home"}
+    for key in ("order", "home"):
+        (options,) = re.findall(r"repeat (?:that|these) settings? \((.*)\)", told[key].summary)
+        assert options.startswith("--set same_tool=clearance")
+        assert ("operation_clearance=3.5" in options) == (height == "3.5")
+        settings = dict(option.split("=") for option in re.findall(r"--set (\S+)", options))
+        assert programs.failing(lines, base, "tilted", *settings.items()) == set()
+
+
+def test_a_way_below_the_points_of_other_operations_names_no_setting(programs: _Programs) -> None:
+    lines = programs.post("yl569", "three", _CLEARANCE)
+    up, across = _heights(lines)
+    low = [re.sub(r"Z40\.", "Z30.5", line) if k in (up, across) else line for k, line in enumerate(lines)]
+    assert low != lines
+    told = programs.checks(low, "yl569", "three")
+    assert "without a retract" in told["home"].summary
+    assert "repeat" not in told["home"].summary + told["order"].summary

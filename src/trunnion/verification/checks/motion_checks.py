@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.cuts_left_out import cuts_left_out
-from trunnion.verification.checks.passages import passage_rows, rows_of_clearance
+from trunnion.verification.checks.passages import passage_rows, settings_to_repeat
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -49,9 +49,8 @@ def check_order(context: ComparedContext) -> Check:
     still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
     places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]
-    above = rows_of_clearance(context) if extra else set()
-    repeat = context.settings.repeat("same_tool", "clearance")
-    texts = [f"{_NO_POINT}{repeat if row in above else ''}" for row in extra[:MAX_PLACES]]
+    to_repeat = settings_to_repeat(context) if extra else {}
+    texts = [f"{_NO_POINT}{to_repeat.get(row, '')}" for row in extra[:MAX_PLACES]]
     places += [context.place(row, 0.0, text) for row, text in zip(extra[:MAX_PLACES], texts, strict=True)]
     left_out = list(cuts_left_out(context, set(extra)))
     places += left_out[:MAX_PLACES]
