@@ -108,24 +108,37 @@ class Passages:
 
     def height(self, axis: Floats) -> float:
         """Return the height above all operations along a tool axis (3,), from the program's zero, mm."""
-        clearance = float(self._program.effective_setting("operation_clearance") or 0.0)
+        return self.highest(axis) + float(self._program.effective_setting("operation_clearance") or 0.0)
+
+    def highest(self, axis: Floats) -> float:
+        """Return how high the operations come along a tool axis (3,), from the program's zero, mm."""
         key = axis.tobytes()
         if key not in self._heights:
             self._heights[key] = highest_point(self._program.motions, axis)
-        return self._heights[key] + clearance
+        return self._heights[key]
 
     def first_leg(self, motion: Motion) -> Floats | None:
         """Return where the first leg of an approach under TCP ends, (3,) mm, straight above its first point along the
         tool, where axes move one group after the other: with that along the spindle at home, or above all operations.
+
+        None where they need not, or cannot: so high the linear axes do not reach.
         """
         if motion.mode is not MachiningMode.TCP or not self.in_turn(motion):
             return None
-        tip, axis = motion.operation.moves.tip[0], motion.operation.moves.axis[0]
-        home = height_at_home(self._program.machine, tip, motion.rotary[0])
-        return self.above(motion, self.height(axis) if home is None else home)
+        machine, tip, axis = (
+            self._program.machine_of(motion),
+            motion.operation.moves.tip[0],
+            motion.operation.moves.axis[0],
+        )
+        home = height_at_home(machine, tip, motion.rotary[0])
+        place = self.above(motion, self.height(axis) if home is None else home)
+        if not _beyond_travel(machine, place[None], motion.rotary):
+            return place
+        lowest = self.above(motion, self.highest(axis))
+        return None if _beyond_travel(machine, lowest[None], motion.rotary) else lowest
 
     def in_turn(self, motion: Motion) -> bool:
-        """Whether the axes move one group after the other in the first approach of an operation."""
+        """Whether the axes move one group after the other from home to an operation, and behind turns within it."""
         return self._program.effective_setting("first_approach", motion.operation) == "in_turn"
 
     def above(self, motion: Motion, height: float | None = None) -> Floats:

@@ -243,7 +243,7 @@ class _ProgramWriter:
         else:
             self._templates.write_place("between_planes", values, motion)
         from_plane = self._continues_from_plane(motion)
-        must_retract = from_plane and not self._may_turn_here(motion)
+        must_retract = from_plane and (self._passages.in_turn(motion) or not self._may_turn_here(motion))
         retracted = must_retract or not from_plane
         continues = motion.starts_operation and self._way.passage is Passage.CLEARANCE
         in_force = self._blocks.writer.modal_state() if continues else {}
@@ -274,12 +274,10 @@ class _ProgramWriter:
             self._templates.write(end, end_values, motion)
 
     def _first_leg(self, motion: Motion, planned: Motion, *, continues: bool) -> Floats | None:
-        """Return where the first leg to an operation ends, (3,) mm in coordinates of its blocks; None: the control's.
+        """Return where the first leg from home ends, (3,) mm in coordinates of the blocks; None: the control's.
 
-        planned  the motion in coordinates of the workpiece
+        planned  the motion in coordinates of the workpiece: an operation, or what follows behind a turn within one
         """
-        if not motion.starts_operation:
-            return None
         if self._passages.in_turn(motion) and motion.mode is not MachiningMode.TCP:
             self._blocks.xy_before_z = True
         leg = self._passages.above(planned) if continues else self._passages.first_leg(planned)

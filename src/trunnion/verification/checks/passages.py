@@ -24,10 +24,6 @@ from trunnion.verification.results import Place
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
 
-#: Rotary motion of less than this is none, degrees; so far may a tool leave its axis by rounding, mm.
-_TURNS = 1e-3
-_ASIDE = 2e-3
-
 #: No setting leads lower above all operations, mm.
 _LEAST_CLEARANCE = 1.0
 
@@ -116,37 +112,6 @@ def without_retract(context: Context) -> Iterator[Place]:
         if not (between and all(row in lawful for row in between)):
             told = to_repeat.get(between[0], "") if between and all(row in to_repeat for row in between) else ""
             yield context.place(first, 0.0, f"goes on to the operation {operation} without a retract{told}")
-
-
-def not_in_turn(context: Context) -> Iterator[Place]:
-    """Yield the first row of each operation that moves axes together on the way from home, where the settings want one
-    group after the other: the rotary axes, those across the tool, the one along it.
-    """
-    away = rows_away(context) if isinstance(context, ComparedContext) and context.settings.in_turn else None
-    if away is None or not isinstance(context, ComparedContext):
-        return
-    run, last = context.run, -1
-    for section in context.expected.sections:
-        begin, end = context.matching.pair_range(section.first, section.end)
-        if begin == end:
-            continue
-        row, before, last = context.matching.nc[begin], last, context.matching.nc[end - 1]
-        first_row = context.matching.cl[begin] == section.first and section.kept is None
-        from_home = bool(((away > before) & (away <= row)).any())
-        if first_row and from_home and run.kind[row] == Kind.RAPID and row > 0 and not _moves_along_tool(run, row):
-            text = "moves axes together on the way from home: one group after the other is wanted (first_approach)"
-            yield context.place(row, 0.0, text)
-
-
-def _moves_along_tool(run: Run, row: int) -> bool:
-    """Whether a row moves the tool along its axis alone, or one linear axis alone."""
-    positions = run.positions(np.array([row - 1, row]))
-    step, axis = positions.tip[1] - positions.tip[0], positions.axis[1]
-    joints = np.abs(positions.joints[1] - positions.joints[0])
-    if joints[list(run.machine.rotary)].max() > _TURNS:
-        return False
-    aside = float(np.linalg.norm(step - float(step @ axis) * axis))
-    return aside <= _ASIDE or int((joints[list(run.machine.linear)] > _ASIDE).sum()) <= 1
 
 
 def _bounds(context: ComparedContext) -> Iterator[tuple[int, int, str]]:
