@@ -20,6 +20,7 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_r
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike, set_up_machine
 from trunnion.jobs.result_output import check_output_name
 from trunnion.messages import Wording, phrase
+from trunnion.model.one_frame import frame_of_offset
 from trunnion.model.run import Run
 from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run
@@ -158,6 +159,7 @@ def twin_program(
         raise RefusedError([Problem(each.file, each.line, each.wording.within("stops_twin")) for each in run.errors])
     if not len(run):
         raise InputError(Problem(run.files[0], 0, Wording("TWN111", "nothing_moves")))
+    (run,) = frame_of_offset([run], None).runs([run])
     return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])
 
 

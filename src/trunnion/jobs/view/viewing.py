@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, Unpack
 
@@ -18,7 +19,9 @@ from trunnion.jobs.project.file import is_project
 from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import view_simulation, with_stock
+from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import fixture_body, part_body
 from trunnion.simulation.meshes import load_mesh
@@ -77,15 +80,23 @@ def _prepared(
     if any(given[name] for name in ("stock", "part", "fixtures")):
         observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
     fixtures = check_paths("fixtures", given["fixtures"])
-    run, machine = viewed.verification.run, viewed.verification.machine
+    run = viewed.verification.run
+    machine = _with_zero_of(frame_of_offset([run], None), viewed.verification.machine)
     around = [fixture_body(load_mesh(mesh, name=f"fixture {k}"), machine) for k, mesh in enumerate(fixtures, 1)]
     part = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     clamped = around if part is None else [part_body(part, machine), *around]
     bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
-    content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, clamped, viewed.toolpaths)
+    content = view_content(
+        replace(viewed.verification, machine=machine), viewed.texts, viewed.cl_texts, bodies, clamped, viewed.toolpaths
+    )
     if simulated is not None:
         content = with_stock(content, simulated, viewed.verification, viewed.toolpaths, observer)
     return content, run
+
+
+def _with_zero_of(frame: WorkpieceFrame, machine: Machine) -> Machine:
+    """Return the machine with the zero about which stock and part are shown."""
+    return machine if frame.zero is None else replace(machine, workpiece_zero=frame.zero)
 
 
 def write_view(
