@@ -16,7 +16,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
-from trunnion.verification.basis import assumed_modes
+from trunnion.verification.basis import assumed_modes, turns_before_offset
 from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -206,6 +206,7 @@ class Verification:
             warnings=severities.count(Severity.WARNING),
             not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
+            turns_before_offset=turns_before_offset(self.run),
         )
 
     def __repr__(self) -> str:
@@ -218,6 +219,7 @@ class Verification:
 def durations(verification: Verification) -> tuple[Floats, Flags]:
     """Seconds of each row, (n,) float64, 0 where not known; and whether they are known, (n,) bool."""
     known = np.isfinite(verification.seconds) & (verification.seconds >= 0.0)
+    known &= ~np.isnan(verification.tip_feed)  # as at rapid where an axis has no stated speed: the others tell nothing
     return np.where(known, verification.seconds, 0.0), known
 
 

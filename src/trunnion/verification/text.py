@@ -7,8 +7,8 @@ import numpy as np
 
 from trunnion.messages import phrase
 from trunnion.model.toolpath import Kind
-from trunnion.verification.results import Check, Place, State, Verification, moving_seconds
-from trunnion.wording import format_duration
+from trunnion.verification.results import Check, Place, State, Verification, durations, moving_seconds
+from trunnion.wording import counted, format_duration
 
 #: Places that are told of each check.
 _MOST_PLACES: Final = 5
@@ -66,11 +66,13 @@ def place_line(program: str, place: Place) -> str:
 
 def time_lines(verification: Verification) -> Iterator[str]:
     """Yield the time of the program and of each operation, if times were asked for."""
-    seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
+    seconds, known = durations(verification)
     if len(seconds):
         cuts = moving_seconds(verification)[verification.run.kind != Kind.RAPID]
         whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, cuts))
-        yield f"time: {whole}, {cutting} of it in cuts"
+        unknown = int(np.count_nonzero(~known))
+        left_out = f", without {counted(unknown, 'motion')} whose time is not known" if unknown else ""
+        yield f"time: {whole}, {cutting} of it in cuts{left_out}"
         for operation in verification.operations:
             own = seconds[operation.first : operation.end]
             yield f"time: {format_duration(float(own.sum()))} for {operation.name}"

@@ -63,6 +63,7 @@ def _joined(one: SimulationResult, other: SimulationResult, words: str) -> Simul
         findings=(*one.findings, *_new(one, one.findings, other.findings, words)),
         near=(*one.near, *_new(one, one.near, other.near, words)),
         gouge=max(gouges, key=lambda each: each.largest, default=None),
+        cuts_not_checked=tuple(dict.fromkeys((*one.cuts_not_checked, *other.cuts_not_checked))),
     )
     return _with_remarks(result, other.remarks, words)
 

@@ -234,7 +234,7 @@ def _check(
     findings: Sequence[SimulationFinding],
     broken: Sequence[Problem],
 ) -> Check:
-    missing: tuple[Wording, ...] = ()
+    missing = _cuts_missing(found)
     passed = not findings and not broken
     deepest = max((each.depth for each in findings), default=None)
     if findings:
@@ -249,7 +249,7 @@ def _check(
         summary += f"; {found.meanings_line}" if found.meanings else ""
     elif found.pairs:
         summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
-        summary += f"; {found.not_checked_line}" if found.not_checked else ""
+        summary += f"; {found.collisions_line}" if found.not_checked else ""
     else:
         summary, missing = "", (phrase("no_bodies"),)
     places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))
@@ -266,8 +266,14 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
     if findings:
         worst = max(findings, key=lambda each: each.depth)
         summary += f", by line {worst.line}; {counted(len(findings), 'gouge')}"
-    places = tuple(_places(findings))
-    return Check("gouge", "the design against the stock", passed, summary, largest, found.limit, "mm", places)
+    places, missing = tuple(_places(findings)), _cuts_missing(found)
+    return Check("gouge", "the design against the stock", passed, summary, largest, found.limit, "mm", places, missing)
+
+
+def _cuts_missing(found: SimulationResult) -> tuple[Wording, ...]:
+    """Return that it is not known what is cut under radius compensation; nothing where it is."""
+    why = found.cuts_not_checked
+    return (phrase("cuts_not_checked", why=why),) if why else ()
 
 
 def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:

@@ -14,6 +14,6 @@ def check_basis(context: Context) -> list[Check]:
     demands = {*context.settings.demands, *machine.demands}
     if not demands:
         return []
-    if missing := list(missing_demands(demands, context.run)):
+    if missing := list(missing_demands(demands, context.run, context.settings.register_holds)):
         return [Check(_KEY, _TITLE, False, "; ".join(wording.what for wording in missing))]
     return [Check(_KEY, _TITLE, True, f"stated: {', '.join(sorted(demands))}")]
