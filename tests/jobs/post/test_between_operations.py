@@ -2,6 +2,7 @@
 
 import functools
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -154,7 +155,10 @@ def test_a_height_that_is_lost_or_too_low_is_a_fault(base: str, path: str, progr
     higher = ("operation_clearance", "12")
     assert "order" in programs.failing(lines, base, path, _CLEARANCE, higher)
     assert "order" in programs.failing(lines, base, path)  # where nothing allows the way
-    assert "posted with same_tool=clearance, repeat that setting" in programs.checks(lines, base, path)["order"].summary
+    assert (
+        "posted with same_tool=clearance, repeat that (--set same_tool=clearance)"
+        in programs.checks(lines, base, path)["order"].summary
+    )
 
 
 @pytest.mark.parametrize("base", MACHINES)
@@ -222,7 +226,7 @@ def test_faults_of_a_way_above_all_operations_name_the_settings_with_which_it_pa
     told = programs.checks(lines, base, "tilted")
     assert {key for key, check in told.items() if check.state == "FAIL"} == {"order", "home"}
     for key in ("order", "home"):
-        (options,) = re.findall(r"repeat (?:that|these) settings? \((.*)\)", told[key].summary)
+        (options,) = re.findall(r"repeat that \((.*)\)", told[key].summary)
         assert options.startswith("--set same_tool=clearance")
         assert ("operation_clearance=3.5" in options) == (height == "3.5")
         settings = dict(option.split("=") for option in re.findall(r"--set (\S+)", options))
@@ -273,10 +277,12 @@ def _modal_places(lines: list[str], base: str, way: tuple[tuple[str, str], ...],
     """The lines of motions that the proof finds to move axes together."""
     program = programs._folder / "behind.nc"
     program.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    stated = {key: value for key, value in way if key in ("zero", "tool_length")}
-    found = trunnion.verify(program, machine=base, cl=programs._source("holes"), settings=dict([_IN_TURN]), **stated)
+    machine = trunnion.load_machine(base)
+    if ("tcp", "off") in way:
+        machine = replace(machine, workpiece_zero=(0.0, 0.0, -100.0), tool_length=50.0)
+    found = trunnion.verify(program, machine=machine, cl=programs._source("holes"), settings=dict([_IN_TURN]))
     modal = next(check for check in found.checks if check.key == "modal")
-    return [place.nc_line for place in modal.places if "together" in place.text]
+    return [place.nc_line for place in modal.places if "together" in place.wording.what]
 
 
 @pytest.mark.parametrize(("base", "way"), _BEHIND_TURNS)

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
@@ -46,8 +47,7 @@ def not_in_turn(context: Context) -> Iterator[Place]:
         by_cycle = at_hole < at_point and not by_first[at_hole].by_motion
         row = _row_of_fault(context, first, min(at_point, at_hole), by_cycle=by_cycle)
         if row is not None:
-            text = "moves axes together on the way from home: one group after the other is wanted (first_approach)"
-            yield context.place(row, 0.0, text)
+            yield context.place(row, 0.0, Wording("modal", "together"))
 
 
 def _row_of_fault(context: ComparedContext, first: int, arrival: int, *, by_cycle: bool) -> int | None:

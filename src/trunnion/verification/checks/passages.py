@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import RowPositions, Run
 from trunnion.model.toolpath import Kind
@@ -40,19 +41,17 @@ def passage_rows(context: ComparedContext) -> set[int]:
     return {row for rows, margin in _passages(context) if margin >= wanted for row in rows}
 
 
-def settings_to_repeat(context: ComparedContext) -> dict[int, str]:
-    """Return how the settings are told again with which motions without a CL point would be lawful, to follow a fault:
-    by these motions.
+def settings_to_repeat(context: ComparedContext) -> dict[int, dict[str, str]]:
+    """Return motions without a CL point that would be lawful if the tool might go on above all operations, each with
+    the settings that say so.
     """
-    settings, found = context.settings, {}
+    found: dict[int, dict[str, str]] = {}
     for rows, margin in _passages(context):
-        if margin >= settings.operation_clearance - _near(context):
-            told = settings.repeat("same_tool", "clearance")
-        elif margin >= _LEAST_CLEARANCE:
-            height = f"{math.floor((margin + _near(context)) * 1e3) / 1e3:g}"
-            told = settings.repeat("same_tool", "clearance", operation_clearance=height)
-        else:
+        told = {"name": "same_tool", "value": "clearance"}
+        if margin < _LEAST_CLEARANCE:
             continue
+        if margin < context.settings.operation_clearance - _near(context):
+            told["operation_clearance"] = f"{math.floor((margin + _near(context)) * 1e3) / 1e3:g}"
         found.update(dict.fromkeys(rows, told))
     return found
 
@@ -110,8 +109,10 @@ def without_retract(context: Context) -> Iterator[Place]:
         if end > begin or (stated and any(last < change <= first for change in changes)):
             continue
         if not (between and all(row in lawful for row in between)):
-            told = to_repeat.get(between[0], "") if between and all(row in to_repeat for row in between) else ""
-            yield context.place(first, 0.0, f"goes on to the operation {operation} without a retract{told}")
+            fault = Wording("home", "goes_on", operation=operation)
+            if between and all(row in to_repeat for row in between):
+                fault = context.settings.repeated(fault, **to_repeat[between[0]])
+            yield context.place(first, 0.0, fault)
 
 
 def _bounds(context: ComparedContext) -> Iterator[tuple[int, int, str]]:
