@@ -98,7 +98,8 @@ async def answer(begun: bytes, listening: socket.socket) -> bytes:
     reader, writer = await asyncio.open_connection(*listening.getsockname()[:2])
     writer.write(begun)
     with suppress(ConnectionResetError):
-        return await asyncio.wait_for(reader.read(1), 120)
+        async with asyncio.timeout(120):
+            return await reader.read(1)
     return b""
 
 

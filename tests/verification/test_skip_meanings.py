@@ -127,3 +127,106 @@ def test_a_block_of_klartext_is_skipped_with_the_lines_that_go_on(tmp_path: Path
     trunnion.post(cl, machine="dmu65", output=program)
     run = trunnion.read_program(program, machine="dmu65")
     assert [len(each.run.errors) for each in run.skipped] == [0]
+
+
+LEVELS = (
+    "TOOL PATH/ONE,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\n"
+    "RAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,500\nGOTO/0,0,5\nRAPID\nGOTO/0,0,30\n"
+    "OPSKIP/ON\nGOTO/5,0,6\nSTOP\nSPINDL/RPM,1000,CLW\nGOTO/5,7,6\nRAPID\nGOTO/5,7,25\nOPSKIP/OFF\n"
+    "OPSKIP/ON\nRAPID\nGOTO/6,9,25\nGOTO/6,9,6\nGOTO/8,9,6\nOPSKIP/OFF\n"
+    "OPSKIP/ON\nGOTO/9,9,6\nSTOP\nSPINDL/RPM,1000,CLW\nGOTO/9,8,6\nRAPID\nGOTO/9,8,30\nOPSKIP/OFF\n"
+    "RAPID\nGOTO/10,7,30\nGOTO/10,7,6\nGOTO/30,0,6\nRAPID\nGOTO/30,0,50\nEND-OF-PATH\n"
+)
+
+#: Controls with several levels of block skip: Klartext has one.
+WITH_LEVELS = ["yl569", "matsuura_mx330", "haas_umc750", "xyzac_trt", "hs664rt"]
+
+#: Where the points of each OPSKIP end in X.
+ENDS = [5.0, 8.0]
+
+
+def with_levels(machine: str, folder: Path) -> tuple[Path, list[str]]:
+    """A CL file, and the lines of its program, in which each OPSKIP has a level of its own."""
+    cl, program = folder / "p.cls", folder / "p.nc"
+    cl.write_text(LEVELS, encoding="utf-8")
+    trunnion.post(cl, machine=machine, output=program)
+    lines = program.read_text(encoding="utf-8").splitlines()
+    run = trunnion.read_program(program, machine=machine)
+    for event in (each for each in run.events if each.kind == "block_skip"):
+        level = 1 + sum(run.tip[event.before_row, 0] > end + 1e-6 for end in ENDS)
+        lines[event.line - 1] = f"/{level} {lines[event.line - 1].removeprefix('/')}"
+    return cl, lines
+
+
+def checked(folder: Path, lines: list[str], machine: str, cl: Path) -> trunnion.Verification:
+    program = folder / "levels.nc"
+    program.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    return trunnion.verify(program, machine=machine, cl=cl)
+
+
+@pytest.mark.parametrize("machine", WITH_LEVELS)
+def test_each_level_is_compared_with_the_cl_file_without_its_opskip(machine: str, tmp_path: Path) -> None:
+    """What each block states again is needed while the blocks before it are skipped, and only then."""
+    cl, lines = with_levels(machine, tmp_path)
+    sound = checked(tmp_path, lines, machine, cl)
+    assert sound.passed
+    assert sound.skip_levels == (frozenset({1}), frozenset({2}), frozenset({3}))
+    assert next(check.state for check in sound.checks if check.key == "stops") == "ok"
+    mutants = [(1, r" X6\.", r" Z25\S*"), (2, r" X9\.", r" G1\b"), (2, r" X9\.", r" Y9\S*"), (2, r" X9\.", r" Z6\S*")]
+    for level, block, word in mutants:
+        if (machine, word) == ("hs664rt", r" G1\b"):
+            continue  # a Fidia's rapids are lines as well
+        at = next(k for k, line in enumerate(lines) if re.search(block, line))
+        other = re.sub(word, "", lines[at])
+        assert other != lines[at]
+        wrong = checked(tmp_path, [*lines[:at], other, *lines[at + 1 :]], machine, cl)
+        failed = [each.summary for each in wrong.checks if not each.passed]
+        assert failed, other
+        assert all(each.startswith(f"with blocks of level {level} skipped (/, first in line ") for each in failed), (
+            other
+        )
+
+
+@pytest.mark.parametrize("machine", WITH_LEVELS)
+def test_a_block_that_is_lost_from_any_level_fails(machine: str, tmp_path: Path) -> None:
+    cl, lines = with_levels(machine, tmp_path)
+    passed = []
+    for at, line in enumerate(lines):
+        if not line.startswith("/") or ";" in line or "(" in line:
+            continue
+        others = [lines[:at] + lines[at + 1 :]]
+        for word in (r" M3\b", r" Z30\S*", *([] if machine == "hs664rt" else [r" G1\b"])):
+            if re.search(word, line):
+                others.append([*lines[:at], re.sub(word, "", line), *lines[at + 1 :]])
+        passed += [f"{line} -> {other[at]}" for other in others if checked(tmp_path, other, machine, cl).passed]
+    assert not passed
+
+
+def test_an_opskip_that_is_skipped_in_part_is_not_checked_with_its_levels(tmp_path: Path) -> None:
+    cl, lines = with_levels("yl569", tmp_path)
+    at = next(k for k, line in enumerate(lines) if line.startswith("/2"))
+    mixed = checked(tmp_path, [*lines[:at], "/1" + lines[at][2:], *lines[at + 1 :]], "yl569", cl)
+    stops = next(check for check in mixed.checks if check.key == "stops")
+    assert stops.state == "not checked"
+    told = [str(each) for each in stops.missing]
+    assert told[0].startswith("with blocks of level 1 skipped (/, first in line ")
+    assert told[0].endswith("not compared with the CL file, for an OPSKIP is skipped only in part")
+    assert [each.split(" skipped")[0] for each in told] == [
+        f"with blocks of {which}" for which in ("level 1", "level 2", "levels 1 and 3", "levels 2 and 3")
+    ]  # with levels 1 and 2 on it is skipped whole
+
+
+def test_all_combinations_of_three_levels_are_judged_and_not_those_of_four(tmp_path: Path) -> None:
+    cl, lines = with_levels("yl569", tmp_path)
+    program = tmp_path / "levels.nc"
+    checked(tmp_path, lines, "yl569", cl)
+    run = trunnion.read_program(program, machine="yl569")
+    assert [sorted(each.levels) for each in run.skipped] == [[1, 2, 3], [1], [2], [3], [1, 2], [1, 3], [2, 3]]
+    at = max(k for k, line in enumerate(lines) if line.startswith("/3"))
+    four = checked(tmp_path, [*lines[:at], "/4" + lines[at][2:], *lines[at + 1 :]], "yl569", cl)
+    assert [sorted(each.levels) for each in four.run.skipped] == [[1, 2, 3, 4], [1], [2], [3], [4]]
+    stops = next(check for check in four.checks if check.key == "stops")
+    assert (
+        str(stops.missing[-1])
+        == "block skip: compared with all 4 levels on and each alone, not with other combinations"
+    )

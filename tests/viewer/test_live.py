@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from collections.abc import AsyncIterator, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +20,11 @@ from tests.support.locations import ROOT
 from tests.support.twins import BLADE_FINISH, served
 from trunnion import load_machine
 from trunnion.cli import main
+from trunnion.jobs.view.live import machine_content
 from trunnion.machines import forward
 from trunnion.viewer.live import LivePose, LiveView
+from trunnion.viewer.server import view_application
+from trunnion.viewer.serving import Access
 
 
 def events(count: int, poses: list[LivePose | None]) -> list[object]:
@@ -52,6 +56,22 @@ def test_a_page_is_sent_each_pose_and_that_the_connection_is_broken() -> None:
         {"values": None}, {"values": [1.0, 2.0, 3.0, 4.0, 5.0], "line": 7, "file": 1}, {"values": None},
         {"values": [1.0, 2.0, 3.0, 4.0, 5.0], "line": 7, "file": 1},
     ]  # fmt: skip
+
+
+def test_a_machine_that_misses_that_it_is_to_end_is_asked_again() -> None:
+    class Deaf:
+        async def poses(self) -> AsyncIterator[LivePose | None]:
+            with suppress(asyncio.CancelledError):
+                await asyncio.sleep(3600.0)
+            yield None
+            await asyncio.sleep(3600.0)
+
+    async def run() -> None:
+        application = view_application(machine_content("yl569", "yl569"), Access(("127.0.0.1",)), LiveView(Deaf()))
+        async with application.router.lifespan_context(application):
+            await asyncio.sleep(0.1)
+
+    asyncio.run(run())
 
 
 @pytest.fixture(scope="module")

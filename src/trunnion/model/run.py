@@ -152,8 +152,8 @@ class Run:
     planes         (k, 3, 4)       tilted planes and rotated frames in which positions are tips: maps from programmed
                                    positions to the workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
-    skipped                        the program with the switches of block skip on: of all levels that it uses, and of
-                                   each alone; none where no block may be skipped. In ``Run`` itself all are off
+    skipped                        the program with the switches of block skip on, in each combination of levels that is
+                                   looked at (``skip_combinations``), all together first; in ``Run`` itself all are off
 
     Computed on first access:
 
@@ -245,6 +245,10 @@ class Run:
     def machine_at(self, row: int) -> Machine:
         """Return the machine with the tool and the work offset of a row; -1: those of the first."""
         return self.machine if self.setups is None else self.setups.at(row).machine
+
+    def length_of(self, tool: str) -> float | None:
+        """Return the length of a tool as the machine is set up, mm; None: nobody has stated it."""
+        return self.machine.tool_length if self.setups is None else self.setups.length_of(tool)
 
     def by_machine(self, rows: Ints) -> Iterator[tuple[Machine, Ints]]:
         """Yield the machines that rows run on, each with the indices of its rows."""

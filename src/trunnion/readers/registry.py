@@ -11,10 +11,11 @@ from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run, SkippedRun
+from trunnion.model.skip_switches import skip_combinations
 from trunnion.readers.control.setup_recorder import lengths_of_other_tools
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
-from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions, skip_meanings
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.settings import UNKNOWN, encoding_of, family_of, reading_of
 
 
@@ -61,11 +62,17 @@ def run_program(
         )
 
     run = read(options)
-    meanings = [] if options.skip else skip_meanings(event.value for event in run.events if event.kind == "block_skip")
+    meanings = [] if options.skip else skip_combinations(_skip_levels(run))
     if meanings and write_progress is not None:
         write_progress.wait_until_finished()
     skipped = tuple(SkippedRun(levels, read(replace(options, skip=levels))) for levels in meanings)
     return replace(run, skipped=skipped) if skipped else run
+
+
+def _skip_levels(run: Run) -> set[int]:
+    """Return the levels of the blocks that may be skipped."""
+    values = (event.value for event in run.events if event.kind == "block_skip")
+    return {int(value) for value in values if isinstance(value, int | float)}
 
 
 @lru_cache(maxsize=8)

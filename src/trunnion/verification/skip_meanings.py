@@ -7,48 +7,71 @@ Out:    the levels that are on in each other meaning; and checks that fail in on
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
+from trunnion.model.skip_switches import has_every_combination, skip_combinations
 from trunnion.verification.results import Check, Verification
 
 
 def other_meanings(*runs: Run) -> list[frozenset[int]]:
-    """Return the levels that are on: all that the programs use, and each alone; none where no block may be skipped."""
-    each = [skipped.levels for run in runs for skipped in run.skipped]
-    return list(dict.fromkeys([_used(*runs), *each])) if each else []
+    """Return the levels that are on in each other meaning of the programs; none where no block may be skipped."""
+    return skip_combinations(_used(*runs))
 
 
-def words_of(levels: frozenset[int], *runs: Run) -> str:
+def words_of(levels: frozenset[int], *runs: Run) -> Wording:
     """Name a meaning, and the first block that is skipped in it."""
-    lines = [
-        event.line
-        for run in runs
-        for event in run.events
-        if event.kind == "block_skip" and isinstance(event.value, int | float) and int(event.value) in levels
-    ]
-    which = "" if levels == _used(*runs) else f" of level {', '.join(map(str, sorted(levels)))}"
-    return f"with blocks{which} skipped (/, first in line {min(lines)})"
+    line = _first_line(levels, *runs)
+    if levels == _used(*runs):
+        return Wording("all", "blocks_skipped", line=line)
+    return Wording("all", "levels_skipped", **_which(levels), line=line)
 
 
 def with_other_meanings(
-    proof: Verification, verify: Callable[[Run, bool], Verification], *, has_toolpaths: bool
+    proof: Verification, verify: Callable[[Run, frozenset[int] | None], Verification], *, has_toolpaths: bool
 ) -> Verification:
     """Return a proof that fails where the program fails with blocks skipped.
 
-    Without all blocks that may be skipped it is compared with the CL files without all that they let the operator skip.
-    What a single level is no CL file says, nor what else a program lets him skip: it is judged by itself there.
+    It is compared with the CL files without those of their OPSKIP whose blocks are left out in the program. Where an
+    OPSKIP is left out only in part, and where blocks without an OPSKIP may be skipped, it is judged by itself.
 
-    verify         of a run, and whether it is compared with the CL files without what they let the operator skip
+    verify         of a run, and the numbers of the OPSKIP that are left out; None: it is not compared
     has_toolpaths  whether the proof has compared the program with CL files
     """
-    used, others = _used(proof.run), list[tuple[str, Sequence[Check]]]()
+    used, others = _used(proof.run), list[tuple[Wording, Sequence[Check]]]()
     as_asked_for = all(check.passed for check in proof.checks if check.key == "stops")
+    alone = list[Wording]()
     for each in proof.run.skipped:
-        compared = has_toolpaths and as_asked_for and each.levels == used
-        others.append((words_of(each.levels, proof.run), verify(each.run, compared).checks))
-    return replace(proof, checks=tuple(_worse_checks(proof.checks, others))) if others else proof
+        left_out = None
+        if has_toolpaths and as_asked_for:
+            left_out = _left_out(proof.skip_levels, each.levels, used)
+            if left_out is None:
+                line = _first_line(each.levels, proof.run)
+                alone.append(phrase("skipped_in_part", **_which(each.levels), line=line))
+        others.append((words_of(each.levels, proof.run), verify(each.run, left_out).checks))
+    if has_toolpaths and not has_every_combination(used):
+        alone.append(phrase("other_combinations", count=len(used)))
+    checks = _worse_checks(proof.checks, others) if others else iter(proof.checks)
+    return replace(proof, checks=tuple(_with_missing(checks, alone)))
 
 
-def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[str, Sequence[Check]]]) -> Iterator[Check]:
+def _left_out(
+    skip_levels: Sequence[frozenset[int]], levels: frozenset[int], used: frozenset[int]
+) -> frozenset[int] | None:
+    """Return the numbers of the OPSKIP that are left out while some levels are on; None: one of them only in part."""
+    if levels == used:
+        return frozenset(range(len(skip_levels)))
+    if any(each & levels and not each <= levels for each in skip_levels):
+        return None
+    return frozenset(number for number, each in enumerate(skip_levels) if each and each <= levels)
+
+
+def _with_missing(checks: Iterator[Check], missing: Sequence[Wording]) -> Iterator[Check]:
+    """Yield the checks; that of block skip with what was not compared."""
+    for check in checks:
+        yield replace(check, missing=(*check.missing, *missing)) if check.key == "stops" else check
+
+
+def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[Wording, Sequence[Check]]]) -> Iterator[Check]:
     """Yield each check, or what it is in the first other meaning in which it fails; ``others``: words and checks."""
     failed = [(words, {check.key: check for check in found if not check.passed}) for words, found in others]
     for check in checks:
@@ -57,8 +80,27 @@ def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[str, Sequence[
             yield check
             continue
         words, fault = wrong
-        places = tuple(replace(place, row=-1, text=f"{words}: {place.text}") for place in fault.places)
-        yield replace(fault, summary=f"{words}: {fault.summary}", places=places)
+        places = tuple(replace(each, row=-1, wording=_with(words, each.wording)) for each in fault.places)
+        yield replace(fault, answer=fault.answer and _with(words, fault.answer), places=places)
+
+
+def _with(words: Wording, said: Wording) -> Wording:
+    return said.within("with_skips", meaning=words)
+
+
+def _which(levels: frozenset[int]) -> dict[str, object]:
+    """Return which blocks are skipped: how many levels, and which."""
+    return {"count": len(levels), "levels": tuple(map(str, sorted(levels)))}
+
+
+def _first_line(levels: frozenset[int], *runs: Run) -> int:
+    """Return the line of the first block that is skipped while some levels are on."""
+    return min(
+        event.line
+        for run in runs
+        for event in run.events
+        if event.kind == "block_skip" and isinstance(event.value, int | float) and int(event.value) in levels
+    )
 
 
 def _used(*runs: Run) -> frozenset[int]:

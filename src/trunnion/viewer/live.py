@@ -60,8 +60,8 @@ class LiveView:
         while True:
             if sent == self._count:
                 try:
-                    async with self._changed:
-                        await asyncio.wait_for(self._changed.wait(), _SIGN_OF_LIFE)
+                    async with asyncio.timeout(_SIGN_OF_LIFE), self._changed:
+                        await self._changed.wait()
                 except TimeoutError:
                     yield b": nothing has changed\n\n"
                     continue

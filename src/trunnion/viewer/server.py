@@ -24,6 +24,9 @@ from trunnion.viewer.serving import HEADERS, Access, application_of
 _BYTES: Final = "application/octet-stream"
 _NEW_LINE: Final = 10
 
+#: How long a machine that is listened to has to leave, seconds.
+_PATIENCE: Final = 1.0
+
 #: Rows, in an address.
 _NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
 
@@ -85,8 +88,9 @@ def view_application(content: ViewContent, access: Access, live: LiveView | None
         listening = None if live is None else asyncio.create_task(live.listen())
         yield
         if listening is not None:
-            listening.cancel()
-            await asyncio.gather(listening, return_exceptions=True)
+            while not listening.done():  # a library on the way may lose a cancellation
+                listening.cancel()
+                await asyncio.wait((listening,), timeout=_PATIENCE)
         if content.stock is not None:
             content.stock.leave()
 

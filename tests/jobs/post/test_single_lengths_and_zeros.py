@@ -101,6 +101,30 @@ def test_the_travel_in_a_work_offset_is_that_with_its_own_zero(two_tools: Path, 
     assert unknown.coverage.checked < unknown.coverage.motions
 
 
+@pytest.mark.parametrize("machine", MACHINES)
+def test_work_offsets_that_are_swapped_fail_with_the_cl_file_and_are_not_checked_without(
+    two_tools: Path, tmp_path: Path, machine: str
+) -> None:
+    one, two = offsets(machine)
+    right, swapped = tmp_path / "right.nc", tmp_path / "swapped.nc"
+    asked = f"{one},FINISH:{two}"
+    posted(two_tools, machine, right, work_offset=asked)
+    posted(two_tools, machine, swapped, work_offset=f"{two},FINISH:{one}")
+    assert right.read_text() != swapped.read_text()
+    zero = {one: (0.0, 0.0, 60.0), two: (5.0, 0.0, 60.0)}
+    for program, state in ((right, "ok"), (swapped, "FAIL")):
+        with_cl = trunnion.verify(program, machine=machine, cl=two_tools, work_offset=asked, zero=zero)
+        alone = trunnion.verify(program, machine=machine, zero=zero)
+        assert [each.state for each in with_cl.checks if each.key == "offset"] == [state]
+        offset = next(each for each in alone.checks if each.key == "offset")
+        assert offset.state == "not checked"
+        names = [reader_of(load_machine(machine)).work_offsets.name(_value(machine, each)) for each in (one, two)]
+        assert [str(each) for each in offset.missing] == [
+            f"no CL file says which of {', '.join(names)} a cut is to be in"
+        ]
+    assert not trunnion.verify(swapped, machine=machine, cl=two_tools, zero=zero).passed  # one offset is the default
+
+
 def _value(machine: str, offset: str) -> int:
     value = reader_of(load_machine(machine)).work_offsets.value_of(offset)
     assert value is not None

@@ -53,10 +53,10 @@ def _prove_run(
     return _simulate(posting, run, found)
 
 
-def _skipping(posting: Posting, expected: Expectation, run: Run, compared: bool) -> Verification:
-    """Return the proof of the program with its blocks skipped."""
-    settings = replace(expected.settings, without_skipped=compared)
-    toolpaths, limits = (posting.toolpaths, expected.tolerances) if compared else ((), None)
+def _skipping(posting: Posting, expected: Expectation, run: Run, left_out: frozenset[int] | None) -> Verification:
+    """Return the proof of the program with blocks skipped, and the OPSKIP with these numbers; None: by itself."""
+    settings = replace(expected.settings, left_out=left_out or frozenset())
+    toolpaths, limits = ((), None) if left_out is None else (posting.toolpaths, expected.tolerances)
     return verify(run, toolpaths, tolerances=limits, settings=settings, columns=False)
 
 

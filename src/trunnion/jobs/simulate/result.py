@@ -55,6 +55,7 @@ class SimulationResult:
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
     not_checked  why collisions with the machine were not checked, in words; empty: they were
+    cuts_not_checked  why it is not known what is cut under radius compensation, in words; empty: it is
     not_measured  values of the definition that the distances of bodies stand on, though nobody has measured them
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     meanings   which blocks were skipped (``/``) in further runs, in words: what these found is among the findings; none
@@ -90,6 +91,7 @@ class SimulationResult:
     seconds: float
     simulation: Annotated[Simulation, NOT_DATA]
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
+    cuts_not_checked: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     meanings: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
@@ -114,14 +116,24 @@ class SimulationResult:
         return "; ".join(filter(None, (found, self.meanings_line, self.not_checked_line)))
 
     @property
+    def cuts_line(self) -> str:
+        """That it is not known what is cut under radius compensation, and why; empty: it is."""
+        return str(phrase("cuts_not_checked", why=self.cuts_not_checked)) if self.cuts_not_checked else ""
+
+    @property
     def meanings_line(self) -> str:
         """In which meanings of blocks that may be skipped it was simulated; empty: there are none."""
         return f"simulated with no block skipped and {', '.join(self.meanings)}" if self.meanings else ""
 
     @property
-    def not_checked_line(self) -> str:
+    def collisions_line(self) -> str:
         """That collisions with the machine were not checked, and why; empty: they were."""
         return str(phrase("collisions_not_checked", why=self.not_checked)) if self.not_checked else ""
+
+    @property
+    def not_checked_line(self) -> str:
+        """What was not checked, and why; empty: all was."""
+        return "; ".join(filter(None, (self.cuts_line, self.collisions_line)))
 
     @property
     @Figure("remarks", after="operations")
@@ -166,6 +178,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
         simulation=found,
         setup=cut.setup.name,
         not_measured=_not_measured(cut),
+        cuts_not_checked=tuple(map(str, cut.setup.missing())),
         tools=cut.setup.tools,
     )
 
@@ -208,6 +221,7 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         setups=tuple(results),
         pairs=sum(each.pairs for each in results),
         not_measured=tuple(dict.fromkeys(value for each in results for value in each.not_measured)),
+        cuts_not_checked=tuple(dict.fromkeys(why for each in results for why in each.cuts_not_checked)),
     )
 
 

@@ -149,11 +149,13 @@ def verify(
     return verification.with_recording(proof, recording, found["recorded_tolerance"])
 
 
-def _skipping(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments, run: Run, compared: bool) -> Verification:
-    """Return the proof of the program with its blocks skipped."""
-    read = replace(read, run=run, toolpaths=read.toolpaths if compared else [])
-    settings = replace(expected(on, read, given), without_skipped=compared)
-    limits = tolerances(on, read, given) if compared else None
+def _skipping(
+    on: VerifiedMachine, read: ReadProgram, given: VerifyArguments, run: Run, left_out: frozenset[int] | None
+) -> Verification:
+    """Return the proof of the program with blocks skipped, and the OPSKIP with these numbers; None: by itself."""
+    read = replace(read, run=run, toolpaths=[] if left_out is None else read.toolpaths)
+    settings = replace(expected(on, read, given), left_out=left_out or frozenset())
+    limits = None if left_out is None else tolerances(on, read, given)
     return verification.verify(run, read.toolpaths, settings=settings, tolerances=limits, columns=False)
 
 

@@ -1,6 +1,6 @@
 """How a program is run."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -31,13 +31,6 @@ class RunOptions:
     def skips(self, level: int) -> bool:
         """Whether blocks of a level of block skip are left out."""
         return self.skip if isinstance(self.skip, bool) else level in self.skip
-
-
-def skip_meanings(levels: Iterable[object]) -> list[frozenset[int]]:
-    """Return the switches that are on in each other meaning of a program: all that its blocks use, and each alone."""
-    used = sorted({int(level) for level in levels if isinstance(level, int | float)})
-    every = [frozenset(used)] if used else []
-    return every + [frozenset({level}) for level in used] if len(used) > 1 else every
 
 
 #: Without subprograms, as the control does it.

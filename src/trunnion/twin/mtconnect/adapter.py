@@ -132,7 +132,8 @@ class MTConnectAdapter(Observations):
         """Answer questions; an agent that has asked once must go on asking."""
         patience = None
         while True:
-            asked = await asyncio.wait_for(agent.reader.readline(), patience)
+            async with asyncio.timeout(patience):
+                asked = await agent.reader.readline()
             if not asked:
                 return
             if asked.strip().upper() == b"* PING":

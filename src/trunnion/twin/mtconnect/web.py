@@ -75,7 +75,8 @@ class WebServer:
         try:
             await self._answer(reader, writer)
             writer.close()
-            await asyncio.wait_for(writer.wait_closed(), _PATIENCE)
+            async with asyncio.timeout(_PATIENCE):
+                await writer.wait_closed()
         except (OSError, TimeoutError, asyncio.IncompleteReadError, asyncio.CancelledError):  # gone, silent, or ended
             pass
         finally:
@@ -113,7 +114,8 @@ async def _request(reader: asyncio.StreamReader) -> tuple[str, str]:
     Raises ``RequestError`` if it is none that is answered.
     """
     try:
-        head = await asyncio.wait_for(reader.readuntil(b"\r\n\r\n"), _PATIENCE)
+        async with asyncio.timeout(_PATIENCE):
+            head = await reader.readuntil(b"\r\n\r\n")
     except asyncio.LimitOverrunError:
         text = f"the head of a request has at most {_LONGEST_HEAD} bytes"
         raise RequestError("INVALID_REQUEST", text, HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE) from None
@@ -139,16 +141,21 @@ async def _read_out(reader: asyncio.StreamReader) -> None:
             pass
 
 
+async def _drain(writer: asyncio.StreamWriter) -> None:
+    async with asyncio.timeout(_PATIENCE):
+        await writer.drain()
+
+
 async def _send_all(writer: asyncio.StreamWriter, documents: AsyncIterator[bytes]) -> None:
     """Send documents one after the other, each as a chunk."""
     async for part in documents:
         head = f"--{_BOUNDARY}\r\nContent-type: text/xml\r\nContent-length: {len(part)}\r\n\r\n"
         data = head.encode() + part + b"\r\n"
         writer.write(f"{len(data):x}\r\n".encode() + data + b"\r\n")
-        await asyncio.wait_for(writer.drain(), _PATIENCE)
+        await _drain(writer)
     end = f"--{_BOUNDARY}--\r\n".encode()
     writer.write(f"{len(end):x}\r\n".encode() + end + b"\r\n0\r\n\r\n")
-    await asyncio.wait_for(writer.drain(), _PATIENCE)
+    await _drain(writer)
 
 
 async def _send(writer: asyncio.StreamWriter, status: HTTPStatus, document: bytes, *, only_head: bool) -> None:
@@ -156,7 +163,7 @@ async def _send(writer: asyncio.StreamWriter, status: HTTPStatus, document: byte
     _begin(writer, status, "text/xml", f"Content-Length: {len(document)}", *further)
     if not only_head:
         writer.write(document)
-    await asyncio.wait_for(writer.drain(), _PATIENCE)
+    await _drain(writer)
 
 
 def _begin(writer: asyncio.StreamWriter, status: HTTPStatus, kind: str, *further: str) -> None:

@@ -135,8 +135,9 @@ class Connection:
         ConnectionError
             If the connection is broken.
         """
-        with suppress(TimeoutError, asyncio.TimeoutError):
-            return await asyncio.wait_for(self._messages.get(), patience)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(patience):  # Python 3.11: wait_for loses a cancellation that meets a message
+                return await self._messages.get()
         silent = time.monotonic() - self._heard > _SILENCE
         if self._ended or silent or self._client.state is not UaClientState.CONNECTED:
             raise ConnectionError
@@ -151,10 +152,12 @@ class Connection:
         """End the connection; one that is broken is dropped."""
         with suppress(Exception):
             if self._client.state is UaClientState.CONNECTED:
-                await asyncio.wait_for(self._client.disconnect(), 2.0)
+                async with asyncio.timeout(2.0):
+                    await self._client.disconnect()
                 return
         with suppress(Exception):
-            await asyncio.wait_for(self._client.close_session(), 1.0)
+            async with asyncio.timeout(1.0):
+                await self._client.close_session()
         with suppress(Exception):
             self._client.disconnect_socket()
 

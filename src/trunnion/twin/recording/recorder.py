@@ -74,7 +74,8 @@ class _Recording:
             while until is None or time.monotonic() < until:
                 left = None if until is None else until - time.monotonic()
                 try:
-                    found = await asyncio.wait_for(anext(rows), left)
+                    async with asyncio.timeout(left):
+                        found = await anext(rows)
                 except TimeoutError:
                     break
                 self.gaps += sum(Mark.GAP in row.marks for row in found)

@@ -1,36 +1,89 @@
-"""Blocks that the operator may skip (``/``), where the CL file has no OPSKIP.
+"""Blocks that the operator may skip (``/``), and the OPSKIP of the CL file in which they stand.
 
 In:     the run, of which every such block is an event, and the CL file.
-Out:    the blocks without which the program would do something else than the CL file says.
+Out:    the blocks without which the program would do something else than the CL file says; and the levels of block skip
+        that each OPSKIP has in the program.
 """
 
-from collections.abc import Iterator
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
 
-from trunnion.model.toolpath import BlockSkip
+from trunnion.messages import Wording
+from trunnion.model.run import RunEvent
 from trunnion.verification.context import ComparedContext
-from trunnion.verification.expected.holes import Hole
-from trunnion.verification.expected.skipped import skipped_stretches
+from trunnion.verification.expected.skipped import SkippedStretch, skipped_stretches
 from trunnion.verification.matching.hole_matching import MatchedHole, match_holes
 from trunnion.verification.results import Place
 
 
 def skip_faults(context: ComparedContext) -> Iterator[Place]:
     """Yield the blocks with ``/`` that stand neither at nor between points or holes of an OPSKIP."""
+    for event, stretches in _skipped_blocks(context):
+        if not stretches:
+            yield context.place_of_event(event, 0.0, Wording("stops", "skip_not_asked"))
+
+
+def stretch_levels(context: ComparedContext) -> tuple[frozenset[int], ...]:
+    """Return the levels of the blocks that stand in each OPSKIP, counted through all operations.
+
+    A block without a motion between two of them belongs to the one that has its level, and else to both.
+    """
+    blocks = [
+        (int(event.value), stretches)
+        for event, stretches in _skipped_blocks(context)
+        if isinstance(event.value, int | float)
+    ]
+    count = sum(len(list(skipped_stretches(section.operation))) for section in context.expected.sections)
+    levels = [{level for level, stretches in blocks if stretches == [k]} for k in range(count)]
+    for level, stretches in blocks:
+        if not any(level in levels[k] for k in stretches):
+            for k in stretches:
+                levels[k].add(level)
+    return tuple(map(frozenset, levels))
+
+
+def _skipped_blocks(context: ComparedContext) -> Iterator[tuple[RunEvent, list[int]]]:
+    """Yield the blocks with ``/``, each with the numbers of the OPSKIP at, or between, whose points or holes it is."""
     events = [event for event in context.run.events if event.kind == "block_skip"]
     if not events:
         return
-    regions, cl = list(_regions(context)), context.matching.cl
-    holes = [(each, context.expected.holes[each.index]) for each in _holes(context)]
+    of_sections = _numbered(context)
+    regions, cl = _regions(context, of_sections), context.matching.cl
+    holes = list(_holes(context))
     for event in events:
-        drilled = next((hole for rows, hole in holes if rows.first <= event.before_row < rows.end), None)
-        if drilled is not None and _may_be_skipped(context, drilled):
+        drilled = next((hole for hole in holes if hole.first <= event.before_row < hole.end), None)
+        if drilled is not None and (found := _stretch_of_hole(context, of_sections, drilled.index)):
+            yield event, found
             continue
         pair = context.matching.nc.count_before(event.before_row)
         first = int(cl[pair - 1]) if pair else 0
         last = int(cl[pair]) if pair < len(cl) else len(context.expected)
         moves = event.before_row < len(context.run) and int(context.run.lines[event.before_row]) == event.line
-        if not any(begin <= last and first + moves < end for begin, end in regions):
-            yield context.place_of_event(event, 0.0, "may be skipped (/), and the CL file has no OPSKIP there")
+        if moves and pair < len(cl) and (own := [k for k, (begin, end) in regions.items() if begin <= last < end]):
+            yield event, own
+            continue
+        yield event, [k for k, (begin, end) in regions.items() if begin <= last and first + moves < end]
+
+
+def _numbered(context: ComparedContext) -> list[list[tuple[int, SkippedStretch]]]:
+    """Return the OPSKIP of each operation with their numbers, which go through all operations."""
+    found, number = [], 0
+    for section in context.expected.sections:
+        stretches = list(skipped_stretches(section.operation))
+        found.append(list(enumerate(stretches, number)))
+        number += len(stretches)
+    return found
+
+
+def _regions(
+    context: ComparedContext, of_sections: Sequence[Sequence[tuple[int, SkippedStretch]]]
+) -> dict[int, tuple[int, int]]:
+    """Return the points of the CL file that may be skipped, by OPSKIP: the first, and the one after the last."""
+    return {
+        number: (section.first + stretch.begin, section.first + stretch.end)
+        for section, stretches in zip(context.expected.sections, of_sections, strict=True)
+        for number, stretch in stretches
+    }
 
 
 def _holes(context: ComparedContext) -> Iterator[MatchedHole]:
@@ -38,19 +91,10 @@ def _holes(context: ComparedContext) -> Iterator[MatchedHole]:
     return (each for each in match_holes(context.run, context.expected) if each.index < len(context.expected.holes))
 
 
-def _may_be_skipped(context: ComparedContext, hole: Hole) -> bool:
-    """Whether the statement of a hole stands behind an OPSKIP/ON, and before the next OPSKIP/OFF: holes are no rows."""
-    behind = [
-        (event.line, event.on)
-        for section in context.expected.sections
-        for event in section.operation.events
-        if isinstance(event, BlockSkip) and section.file == hole.file and event.line < hole.line
-    ]
-    return bool(behind) and max(behind)[1]
-
-
-def _regions(context: ComparedContext) -> Iterator[tuple[int, int]]:
-    """Yield the points of the CL file that may be skipped: the first, and the one after the last."""
-    for section in context.expected.sections:
-        for begin, end in skipped_stretches(section.operation):
-            yield section.first + begin, section.first + end
+def _stretch_of_hole(
+    context: ComparedContext, of_sections: Sequence[Sequence[tuple[int, SkippedStretch]]], index: int
+) -> list[int]:
+    """Return the OPSKIP in which the statement of a hole stands, none where it is in none: holes are no rows."""
+    line = context.expected.holes[index].line
+    section = bisect_right(context.expected.hole_ends, index)
+    return [number for number, each in of_sections[section] if each.first_line < line < each.end_line]

@@ -30,7 +30,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.verification.expected.frames import transform_to_frame
 from trunnion.verification.expected.holes import Hole, HoleSource, holes_of_operation, without_holes, without_rows
-from trunnion.verification.expected.skipped import without_skipped
+from trunnion.verification.expected.skipped import skipped_stretches, without_stretches
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedSpindles, ExpectedTool
 from trunnion.verification.expected.tolerances import Tolerances
 
@@ -106,8 +106,9 @@ class ExpectedPath:
     """All operations of a program end to end: rows are counted through them, and holes are kept apart.
 
     ``hole_ends`` has, for each section, how many holes there are up to its end. ``written_splines`` are those that the
-    program writes as such: each has one row here, that of its end, as an arc has. With ``skips`` the path is that of an
-    operator who has switched block skip on: rows and events within OPSKIP are not there.
+    program writes as such: each has one row here, that of its end, as an arc has. The path is that of an operator who
+    has switched block skip on: rows and events of the OPSKIP with the numbers ``left_out`` are not there. They count
+    through all operations.
 
     The columns of an operation are not copied; ``tip``, ``axis`` and the like gather some rows of them.
     """
@@ -120,7 +121,7 @@ class ExpectedPath:
         settings_of: Callable[[str], OperationSettings] = lambda name: OperationSettings(),
         written_splines: Sequence[WrittenSpline] = (),
         *,
-        skips: bool = False,
+        left_out: frozenset[int] = frozenset(),
     ) -> None:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
@@ -131,14 +132,15 @@ class ExpectedPath:
         sections: list[Section] = []
         found: list[Hole] = []
         hole_ends: list[int] = []
-        first = 0
+        first = stretch = 0
         spindle: ExpectedSpindle | None = None
         tool = ExpectedTool(None)
         for (path, whole), limit_of in zip(moving, limits, strict=True):
             placed = transform_to_frame(frame, whole)
             limit = limit_of(placed)
-            if skips:
-                placed, skipped = without_skipped(placed)
+            if left_out:
+                own = range(stretch, stretch := stretch + len(list(skipped_stretches(placed))))
+                placed, skipped = without_stretches(placed, {k - own.start for k in own if k in left_out})
                 limit = _without_rows(limit, skipped)
             if whole.frame != frame:  # points of another coordinate system have the noise of turning
                 limit = replace(limit, tip=limit.tip + TURNING_NOISE)

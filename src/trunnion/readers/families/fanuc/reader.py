@@ -35,5 +35,6 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     offsets_of=offsets_of,
     words_of=lambda machine: TABLE.without_path_by(settings_of(machine).words),
+    compensation_style=lambda machine: settings_of(machine).compensation_style,
     check_reading=settings_of,
 )
