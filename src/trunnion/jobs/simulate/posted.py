@@ -249,7 +249,7 @@ def _check(
         summary += f"; {found.meanings_line}" if found.meanings else ""
     elif found.pairs:
         summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
-        summary += f"; {found.not_checked_line}" if found.not_checked else ""
+        missing = (phrase("collisions_not_checked", why=found.not_checked),) if found.not_checked else ()
     else:
         summary, missing = "", (phrase("no_bodies"),)
     places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))
@@ -263,6 +263,8 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
     largest = found.gouge.largest
     passed = not findings and largest <= found.limit
     summary = f"missing from the part: {largest:.3f} mm at most, {found.gouge.volume:.2f} mm³"
+    if found.left is not None and found.left.largest > found.limit:
+        summary += f"; {phrase('left_not_judged', largest=found.left.largest)}"
     if findings:
         worst = max(findings, key=lambda each: each.depth)
         summary += f", by line {worst.line}; {counted(len(findings), 'gouge')}"

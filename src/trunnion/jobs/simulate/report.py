@@ -75,7 +75,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
     )
     return SimulationContent(
         title=clean(", ".join(dict.fromkeys(Path(program).name for program in found.programs))),
-        passed=found.passed,
+        verdict=found.outcome,
         facts=tuple((name, clean(value)) for name, value in facts if value),
         findings=tuple(sorted(found.findings, key=lambda finding: -finding.depth)),
         near=found.near,
@@ -83,7 +83,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         states=tuple(_state(each) for each in found.setups or (found,)),
         remarks=(*map(str, remark_groups(found.remarks)), *not_measured_lines(found)),
         data=_cleaned(to_data(found)),
-        not_checked=found.not_checked_line,
+        not_checked=found.open_line,
     )
 
 

@@ -159,11 +159,12 @@ def _check_shares(
     top = max(range(len(axes)), key=lambda k: shares[k].value)
     worst = shares[top]
     if worst.row < 0:
-        return Check(key, title, True, none, 0.0, 1.0, f"of {quantity}")
+        return Check(key, title, True, none, 0.0, None, f"of {quantity}")
     count = sum(each.count for each in shares)
     summary = (
         f"{axes[top].name} at most {100.0 * worst.value:.0f} % of its {quantity}, in {context.block_name(worst.row)}"
     )
     if count:
         summary += f"; in {counted(count, 'place')} the control slows down"
-    return Check(key, title, True, summary, worst.value, 1.0, f"of {quantity}", tuple(places[:MAX_PLACES]))
+    # No limit: more than all of it is no fault of the program, the control slows down.
+    return Check(key, title, True, summary, worst.value, None, f"of {quantity}", tuple(places[:MAX_PLACES]))
