@@ -4,8 +4,12 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
+from tests.support.posting import FOOT, HEAD
+from trunnion.controls import load_control
 from trunnion.errors import InputError
 from trunnion.jobs.describe.controls import describe_control
+from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import load_machine
 
@@ -86,3 +90,52 @@ def test_a_setting_that_a_definition_gives_a_default_is_listed_once(tmp_path: Pa
     (units,) = [each for each in (*control.settings, *control.run_settings) if each.name == "units"]
     assert (units.default, units.allowed) == ("inch", "mm or inch")
     assert units.meaning
+
+
+def own_control(folder: Path, *lines: str) -> list[str]:
+    """What is wrong with the settings of a definition; each line of it is one."""
+    file = folder / "ours.toml"
+    file.write_text("\n".join(['extends = "yl569"', "[control.settings]", *lines]) + "\n", encoding="utf-8")
+    try:
+        load_machine(str(file))
+        load_control(load_machine(str(file)).control)
+    except InputError as error:
+        return [f"{found.line}: {found.what}: {found.cure}" for found in error.problems]
+    return []
+
+
+def test_a_definition_states_a_setting_as_text_or_as_what_it_is(tmp_path: Path) -> None:
+    lines = ("operation_clearance = 25", "tolerance = 1e-3", "edge = 2", "stop_between = true", "date = 2026-05-04")
+    assert own_control(tmp_path, *lines) == []
+    settings = load_control(load_machine(str(tmp_path / "ours.toml")).control).settings
+    assert [settings[line.split()[0]] for line in lines] == ["25", "0.001", "2", "on", "2026-05-04"]
+    assert settings["safe_start"] == "own"
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("edge = [2]", "is [2]: write a text in quotes, or a number"),
+        ("operation_clearance = inf", "is inf: write a text in quotes, or a number"),
+        ("operation_clearance = true", "is true: write a text in quotes, or a number"),
+        ("same_tool = true", 'is true: write one of "home", "retract", "clearance"'),
+        ("operation_clearance = 2500", "is '2500': write a number in mm of at least 1 and of at most 1000"),
+        ("swivel_retract = 3", "is '3': write 0 or 1 or 2 or 4 or 5"),
+    ],
+)
+def test_a_setting_that_is_wrong_is_told_once(line: str, told: str, tmp_path: Path) -> None:
+    assert own_control(tmp_path, line) == [f"3: control.settings.{line.split()[0]} {told}"]
+
+
+def test_a_switch_of_a_setting_without_one_is_told_with_its_words() -> None:
+    with pytest.raises(InputError, match="same_tool is True") as found:
+        as_texts({"same_tool": True})
+    assert "write same_tool=home or same_tool=retract" in found.value.problems[0].cure
+
+
+def test_what_a_definition_sets_can_be_left_out_again(tmp_path: Path) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text(HEAD + "RAPID\nGOTO/0,0,50\nFEDRAT/MMPM,200\nGOTO/0,0,5\n" + FOOT, encoding="utf-8")
+    texts = [trunnion.post(cl, machine="yl569", settings=given).text or "" for given in ({}, {"method": ""})]
+    assert ['MSG("' in text for text in texts] == [True, False]
+    assert ["TECHNOLOGY" in text for text in texts] == [True, False]

@@ -23,7 +23,7 @@ def told(folder: Path, capsys: pytest.CaptureFixture[str], text: str, code: int 
 def test_mistakes_of_axes_and_of_the_control_come_together(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (
         f'{AXES_OF_CONTROL}[[axis]]\nname = "W"\nkind = "linear"\n[control.known]\nM30 = "no effect"\nM80 = 5\n'
-        '[control.statements]\nGOTO = "M1"\n[control.settings]\nedge = 2\n'
+        '[control.statements]\nGOTO = "M1"\n[control.settings]\nedge = [2]\n'
     )
     lines = told(tmp_path, capsys, text)
     assert [line.split(";")[0] for line in lines] == [
@@ -34,9 +34,9 @@ def test_mistakes_of_axes_and_of_the_control_come_together(tmp_path: Path, capsy
         "the declaration would hide it",
         ":8: error: control.known.M80 is 5",
         ":10: error: control.statements.GOTO is a statement that is read: the entry would never count",
-        ":12: error: control.settings.edge is 2",
+        ":12: error: control.settings.edge is [2]",
     ]
-    assert lines[-1].endswith('write a text in quotes: edge = "2" [DEF330]')
+    assert lines[-1].endswith("write a text in quotes, or a number [DEF330]")
 
 
 @pytest.mark.parametrize(

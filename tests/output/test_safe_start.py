@@ -83,9 +83,10 @@ def test_a_fidia_switches_tcp_off_at_every_operation(
     operations: str, settings: dict[str, str], off: list[str], tmp_path: Path
 ) -> None:
     lines = posted(tmp_path, "hs664rt", operations, **settings)
-    begins = [k for k, line in enumerate(lines) if line == "M242" and lines[k + 1].startswith("G01 A0. C0.")]
+    begins = [k for k, line in enumerate(lines) if line == "M242" and "G01 A0. C0. F3000" in lines[k + 1 : k + 3]]
     assert begins
     for begin in begins:
+        assert (lines[begin + 1] == "G55 O1") == (settings.get("safe_start") == "all")
         assert [line for line in lines[begin - 2 : begin] if line in ("G197", "G69")] == off
 
 

@@ -63,6 +63,7 @@ def test_limits_are_those_of_the_page() -> None:
     plain = PAGE.replace(" 000", "000")
     assert str(options.DEFAULT_OPTIONS.step_limit) in plain
     assert f"After {limits.MAX_DIAGNOSTICS} diagnostics" in plain
+    assert f"After {limits.MAX_ERRORS} errors" in plain
     assert f"at most {MAX_NESTING} inside" in plain
     assert f"At most {limits.MAX_CALL_DEPTH} programs" in plain
     assert f"calls at most {limits.MAX_SUBPROGRAMS} files" in plain

@@ -59,3 +59,28 @@ def test_g23_that_is_left_on_is_reported(tmp_path: Path) -> None:
     cut = "G0 X0. Y0. Z0.\nG1 X9. F90.\n"
     assert _said("matsuura_mx330", f"{head}G23\n{cut}M30\n%\n", tmp_path) == ["NC351"]
     assert _said("matsuura_mx330", f"{head}G23\n{cut}G22\nM30\n%\n", tmp_path) == []
+
+
+_ENDS = {
+    "yl569": _SINUMERIK + "M30\n",
+    "matsuura_mx330": "%\nO0001\nG21 G90 G17 G54\nG0 X0. Y0. Z0.\nM30\n%\n",
+    "haas_umc750": "%\nO00001\nG21 G90 G17 G54\nG0 X0. Y0. Z0.\nM30\n%\n",
+    "xyzac_trt": "G17 G90 G21\nG0 X10 Y0 Z0\nM2\n",
+    "dmu65": "BEGIN PGM P MM\nTOOL CALL 1 Z S9\nL X+10 Y+0 Z+0 R0 FMAX\nM30\nEND PGM P MM\n",
+    "hs664rt": "G71\nG90\nG1 X0. Y0. Z5. F3000\nM02\n",
+}
+
+
+@pytest.mark.parametrize("machine", _ENDS)
+@pytest.mark.parametrize("end", ["\x1a", "\x1a\x1a\r\n", "\n \x1a"])
+def test_ctrl_z_at_the_end_is_passed_over_and_said(machine: str, end: str, tmp_path: Path) -> None:
+    sound = _said(machine, _ENDS[machine], tmp_path)
+    assert _said(machine, _ENDS[machine] + end, tmp_path) == [*sound, "NC169"]
+
+
+@pytest.mark.parametrize("machine", _ENDS)
+def test_ctrl_z_before_another_block_is_an_error(machine: str, tmp_path: Path) -> None:
+    head, _, rest = _ENDS[machine].rpartition("M")
+    found = _said(machine, f"{head}\x1a\nM{rest}", tmp_path)
+    assert "NC169" not in found
+    assert {"NC210", "NC211", "NC160"} & set(found)

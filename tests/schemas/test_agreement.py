@@ -212,7 +212,7 @@ EXTENDS = 'extends = "yl569"\nname = "Ours"\n'
         (EXTENDS + '[[body]]\nname = "head"\nremove = "yes"\n', False),
         (EXTENDS + '[[axis]]\nname = "C"\nkind = "rotary"\nlimits_mm = [0, 1]\n', False),
         (EXTENDS + '[control.settings]\nwork_offset = "G55"\n', True),
-        (EXTENDS + "[control.settings]\nwork_offset = 55\n", False),
+        (EXTENDS + "[control.settings]\nwork_offset = [55]\n", False),
         (EXTENDS + '[[control.format]]\nname = "coordinate"\ndecimals = 4\n', True),
         (EXTENDS + '[[control.format]]\nname = "coordinate"\ndecimals = 14\n', False),
         (EXTENDS + "[control.coolant]\nON = \"none\"\nAIR = 17\n", True),

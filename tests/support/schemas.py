@@ -350,6 +350,8 @@ def _value(
     match form:
         case Form.TEXT:
             return _text(asked)
+        case Form.SETTING:
+            return {"type": ["string", "number", "boolean"]}
         case Form.NUMBER:
             bounds = _bounds(asked)
             return {

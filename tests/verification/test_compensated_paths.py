@@ -98,7 +98,7 @@ def test_heads_say_radius_or_diameter_as_the_control_takes_it(programs: dict[str
 
     assert "enter the diameter minus 12 mm in the tool table" in entered("linuxcnc_5axis")
     assert "ENTER THE RADIUS MINUS 6 MM IN D1, TWICE THAT IF SETTING 40 IS DIAMETER" in entered("haas_umc750")
-    assert "ENTER THE RADIUS MINUS 6 MM IN D1 " in entered("matsuura_mx330")
+    assert "ENTER THE RADIUS MINUS 6 MM IN D1, TWICE THAT IF BIT 2 OF PARAMETER 5004 IS 1" in entered("matsuura_mx330")
 
 
 @pytest.mark.parametrize("machine", MACHINES)

@@ -53,7 +53,8 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
         if each.left is not None and each.simulation is found.simulation:
             yield _of_setup(each.setup) + _excess_line("left on the part", each.left)
         if each.gouge is not None:
-            yield _of_setup(each.setup) + _excess_line("missing from the part", each.gouge)
+            doubt = "; not checked under radius compensation" if each.cuts_not_checked else ""
+            yield f"{_of_setup(each.setup)}{_excess_line('missing from the part', each.gouge)}{doubt}"
     for each in found.setups or (found,):
         if Clamping(each.turn, each.tilt).is_turned:
             tilted = f"tilted {number(each.tilt)} degrees about X, then " if each.tilt else ""

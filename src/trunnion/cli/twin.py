@@ -5,6 +5,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from trunnion.cli.printing import print_result
+from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml
@@ -31,7 +32,7 @@ def run(given: Given) -> int:
     settings = given.arguments()
     if given.no_mtconnect:
         settings |= {"adapter_port": None, "agent_port": None}
-    serve_twin(**settings, ready=lambda addresses: _announce(addresses, given))
+    serve_twin(**settings, observer=Terminal(), ready=lambda addresses: _announce(addresses, given))
     return 0
 
 

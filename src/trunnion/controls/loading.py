@@ -12,7 +12,13 @@ from typing import Final
 from trunnion.controls.consistency import check_formats, check_setting_names, check_templates
 from trunnion.controls.definition import MM_PER_INCH, ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
 from trunnion.controls.family_writer import FamilyWriter
-from trunnion.controls.setting_rules import SettingKind, SettingRule, read_setting_rules
+from trunnion.controls.settings_reading import (
+    check_settings,
+    read_method_defaults,
+    read_rules,
+    read_setting_meanings,
+    read_settings,
+)
 from trunnion.controls.template_reading import read_templates
 from trunnion.controls.vocabulary import (
     AXIS_WORDS,
@@ -88,10 +94,10 @@ def load_control(own: Table) -> Control:
         coolant=_read_coolant(table.table("coolant"), codes),
         initial_modal_state=_read_integers(table.table("in_force"), words, complete=False),
         statements=_read_statements(table.table("statements")),
-        settings=_read_settings(settings, family),
-        setting_rules=_read_setting_rules(table.table("setting_rules"), settings, family),
-        setting_meanings=_read_setting_meanings(table.table("setting_meanings"), settings, family),
-        method_defaults=_read_method_defaults(table.tables("by_method"), settings),
+        setting_rules=(rules := read_rules(table.table("setting_rules"), settings, family)),
+        settings=read_settings(settings, rules, family),
+        setting_meanings=read_setting_meanings(table.table("setting_meanings"), settings, family),
+        method_defaults=read_method_defaults(table.tables("by_method"), settings, rules),
         tool_types=_read_texts(table.table("tool_types"), TOOL_TYPES),
         phases=_read_texts(table.table("phases"), PHASES),
         arcs=_read_arc_rules(table.table("arcs"), words),
@@ -121,7 +127,7 @@ def load_control(own: Table) -> Control:
     check_templates(templates, control)
     check_formats(table.tables("format"), control)
     check_setting_names(settings, control)
-    _check_settings(settings, table.tables("by_method"), control)
+    check_settings(settings, table.tables("by_method"), control)
     units.report_unread_keys()
     table.report_unread_keys()
     table.raise_problems()
@@ -273,14 +279,6 @@ def _read_texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
     return found
 
 
-def _read_settings(table: Table, family: FamilyWriter) -> dict[str, str]:
-    found = {name: table.text(name) for name in table.names()}
-    for name, choices in family.SETTING_CHOICES.items():
-        found.setdefault(name, choices[0])
-    table.report_unread_keys()
-    return found
-
-
 def _read_statements(table: Table) -> dict[str, str]:
     """Return what becomes of CL statements; each is a line of the program, or nothing."""
     found = {statement: table.text(statement) for statement in table.names()}
@@ -289,50 +287,6 @@ def _read_statements(table: Table) -> dict[str, str]:
             table.add_problem(statement, Wording("DEF550", "line_break_control"))
     report_duplicates(table, statement_form)
     table.report_unread_keys()
-    return found
-
-
-def _read_setting_rules(table: Table, settings: Table, family: FamilyWriter) -> dict[str, SettingRule]:
-    choices = {
-        name: SettingRule(SettingKind.CHOICE, one_of=words, optional=False)
-        for name, words in family.SETTING_CHOICES.items()
-    }
-    return choices | read_setting_rules(table, settings)
-
-
-def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) -> dict[str, str]:
-    """Return what each setting changes; the family explains its own."""
-    own = {name: table.text(name) for name in table.names()}
-    for name in own:
-        if name not in settings and name not in family.SETTING_CHOICES:
-            table.add_problem(name, Wording("DEF520", "explains_no_setting"))
-    table.report_unread_keys()
-    return {**family.SETTING_MEANINGS, **own}
-
-
-def _check_settings(table: Table, by_method: Sequence[Table], control: Control) -> None:
-    """Report defaults that their own rules do not allow."""
-    for name, value in control.settings.items():
-        if name == "preselect" and value == "on" and not control.family.tool_preselection("1"):
-            table.add_problem(name, Wording("DEF520", "not_known_how"))
-        allowed = control.allowed_instead(name, value)
-        if allowed is not None and name in table:
-            table.add_problem(name, Wording("DEF520", "not_allowed", value=repr(value), allowed=allowed))
-    for name, allowed in control.family.validate_settings(control.settings):
-        table.add_problem(name, Wording("DEF520", "not_allowed", value=repr(control.settings[name]), allowed=allowed))
-    for entry in by_method:
-        value = entry.text("value")
-        allowed = control.allowed_instead(entry.text("setting"), value)
-        if allowed is not None:
-            entry.add_problem("value", Wording("DEF520", "not_allowed", value=repr(value), allowed=allowed))
-
-
-def _read_method_defaults(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tuple[str, str], ...]]:
-    found: dict[str, tuple[tuple[str, str], ...]] = {}
-    for entry in entries:
-        name = entry.text("setting", one_of=settings.keys())
-        found[name] = (*found.get(name, ()), (entry.text("method"), entry.text("value")))
-        entry.report_unread_keys()
     return found
 
 

@@ -164,7 +164,7 @@ def read_setting_rules(table: Table, settings: Table) -> dict[str, SettingRule]:
 
     A rule with ``one_of`` is a choice. A setting whose default is empty may be empty, and others if their rule says so.
     """
-    rules = {}
+    rules, stated = {}, settings.to_dict()
     for name in table.names():
         entry = table.table(name)
         if name not in settings:
@@ -180,7 +180,7 @@ def read_setting_rules(table: Table, settings: Table) -> dict[str, SettingRule]:
             entry.number("at_least", None) if is_number else None,
             entry.number("at_most", None) if is_number or kind is SettingKind.TOOL else None,
             words,
-            entry.flag("optional", not settings.text(name, "")),
+            entry.flag("optional", stated.get(name, "") == ""),
         )
         entry.report_unread_keys()
     table.report_unread_keys()

@@ -271,6 +271,9 @@ SAFE_START_SETTING: Final = "safe_start"
 ALL_LEFT_ON: Final = "all"
 SAFE_START_CHOICES: Final = ("own", ALL_LEFT_ON)
 
+#: The template field for the work offset where rotary axes turn before the program needs it.
+OFFSET_BEFORE_TURN: Final = "offset_before_turn"
+
 #: Among the settings that a family gets for its templates: an operation of the program is in a tilted plane, under TCP;
 #: its operations have different work offsets.
 PLANES_USED: Final = "planes_used"

@@ -9,9 +9,13 @@ GREATEST: Final = 1e9
 
 
 class Form(StrEnum):
-    """The form of a value; with ``ANY_KEY`` the table itself is meant, whose keys the definition chooses."""
+    """The form of a value; a ``SETTING`` is a text, a number or a flag.
+
+    With ``ANY_KEY`` the table itself is meant, whose keys the definition chooses.
+    """
 
     TEXT = "text"
+    SETTING = "setting"
     NUMBER = "number"
     WHOLE = "whole"
     FLAG = "flag"

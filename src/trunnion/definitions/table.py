@@ -11,6 +11,7 @@ from trunnion.definitions.account import TableAccount
 from trunnion.definitions.expected import GREATEST, Expected, Form
 from trunnion.definitions.messages import a_number, a_whole_number, as_written, in_quotes, meant_word, unquoted
 from trunnion.definitions.numbers import finite, finite_numbers, has_decimal_commas, is_too_large, within
+from trunnion.definitions.setting_text import setting_text
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of
 from trunnion.messages import Wording, phrase
@@ -138,6 +139,17 @@ class Table(TableAccount):
             self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed()))
             return fallback
         return value
+
+    def setting(self, key: str, words: Sequence[str] = ()) -> str | None:
+        """Return the text of a setting, which may be stated as a number too, or as true or false where ``words`` have a
+        word for it; None where it is neither.
+        """
+        value = self._get(key, Expected(Form.SETTING, required=True), lambda: phrase("text_or_number"))
+        text = setting_text(value, words)
+        if text is None and value is not None:
+            allowed = _a_text(words, "") if words else phrase("text_or_number")
+            self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed))
+        return text
 
     @overload
     def number(self, key: str, default: float | Required = ..., **limits: Unpack[Bounds]) -> float: ...

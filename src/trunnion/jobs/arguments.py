@@ -213,6 +213,7 @@ class ViewArguments(ReadingArguments, BodyArguments, CuttingArguments, SetUpArgu
     against_machine: MachineLike | None
     setup: str | None
     settings: Settings | None
+    radius_register: Literal["unknown", "difference", "radius"] | None
     cl: ToolpathLike | Iterable[ToolpathLike]
     subprograms: Sequence[FilePath]
 

@@ -204,7 +204,7 @@ class Machine:
     spindle_point_is_stated  the definition states the gauge point; else it is assumed to be in the machine's zero
     unmeasured          values that the definition marks as still to be measured or entered, with their places
     assumed             values that it marks as assumptions, with their places
-    demands             what a proof must stand on: ``zero``, ``tool_length``, ``dynamics``, ``measured``
+    demands             what a proof must stand on: names of ``loading.DEMANDS``
     home_at             linear axes that must be at home before a ``tool_change`` and the ``end``; silent: all
     """
 

@@ -33,6 +33,9 @@ EXTENTS: Final = "extents"
 TIME_TOKEN_LETTERS: Final = 7
 TIME_TOKEN_DIGITS: Final = 7
 
+#: What follows a time on a machine whose definition does not state how fast all its axes go at rapid.
+_RAPIDS_LEFT_OUT: Final = " + rapids"
+
 _NO_POSITION: Final = (None, None, None)
 
 
@@ -167,11 +170,13 @@ class TemplateValues:
 
     def _time_text(self, number: int) -> PrintedText:
         """Return the machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
+        is_left_out = any(axis.rapid is None for axis in self._program.machine.axes)
+        left_out = self._family.escape_comment(_RAPIDS_LEFT_OUT) if is_left_out else ""
         if self._program.time_token:
-            return PrintedText(self._program.time_token + str(number).zfill(TIME_TOKEN_DIGITS))
+            return PrintedText(self._program.time_token + str(number).zfill(TIME_TOKEN_DIGITS) + left_out)
         self._seconds = self._seconds or estimated_seconds(self._program)
         seconds = self._seconds[number - 1] if number else sum(self._seconds)
-        return PrintedText(format_duration(seconds, colons=self._family.escape_comment(":") == ":"))
+        return PrintedText(format_duration(seconds, colons=self._family.escape_comment(":") == ":") + left_out)
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """Return the origin of a tilted plane, and which of the two rotary positions the machine takes there.

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.compensation.contour_tools import ContourTools
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.machines import Machine
@@ -16,7 +17,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.simulator import SimulatedProgram
 from trunnion.simulation.stock.turning import Pose
-from trunnion.simulation.tool_deltas import as_the_tool_goes
+from trunnion.simulation.tool_deltas import ToolPath, as_the_tool_goes
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.turned_parts import run_of_drawn_part
 
@@ -31,6 +32,7 @@ class PreparedSetup:
     pose       where the last set-up's workpiece frame lies in this one's
     register_holds  what the registers of the radius hold
     until      N number of the block of the last program before which the simulation ends; None: at its end
+    strict     what nobody has stated of radius compensation is an error
     until_line  the line of that block instead, which may be skipped; 0: none
     """
 
@@ -46,6 +48,7 @@ class PreparedSetup:
     until: str | int | None = None
     register_holds: RegisterValue = RegisterValue.UNKNOWN
     until_line: int = 0
+    strict: bool = False
 
     @property
     def turn(self) -> Floats | None:
@@ -54,15 +57,22 @@ class PreparedSetup:
 
     def clamped_runs(self) -> list[Run]:
         """Return the runs on the machine, where the part is as it is clamped."""
-        return [run for run, _ in self._real_runs]
+        return [path.run for path in self._tool_paths]
 
     def problems(self) -> list[Problem]:
         """Return what of the runs cannot be simulated."""
-        return [problem for _, found in self._real_runs for problem in found]
+        return [problem for path in self._tool_paths for problem in path.problems]
+
+    def missing(self) -> tuple[Wording, ...]:
+        """Return why what the tools cut is not known."""
+        return tuple(dict.fromkeys(wording for path in self._tool_paths for wording in path.missing))
 
     @cached_property
-    def _real_runs(self) -> list[tuple[Run, list[Problem]]]:
-        return [as_the_tool_goes(run, self.tools, self.register_holds) for run in self.runs]
+    def _tool_paths(self) -> list[ToolPath]:
+        contours = ContourTools.of(self.toolpaths)
+        return [
+            as_the_tool_goes(run, self.tools, self.register_holds, contours, strict=self.strict) for run in self.runs
+        ]
 
     def programs(self) -> list[SimulatedProgram]:
         """Return the programs as far as they are simulated, about the part as it is drawn.

@@ -12,12 +12,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
+from trunnion.compensation.stretches import RegisterValue, offsets_of
 from trunnion.machines import Axis, Machine, states_spindle_range
 from trunnion.machines.unmeasured import ValueKind, unmeasured_values
 from trunnion.messages import Wording, phrase
+from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
 from trunnion.model.unknown_setups import offsets_without_zero, tools_without_length
+from trunnion.verification.block_names import block_name_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +84,33 @@ def _no_start_modes(run: Run) -> Wording | None:
     return phrase("assumed_modes", words=words) if words else None
 
 
+def turns_before_offset(run: Run) -> Wording | None:
+    """Return the first block that positions rotary axes before the program selects a work offset; None: none does.
+
+    The rotary axes of a work offset count too: which one an earlier program has left in force is not known there.
+    """
+    runs = (run, *(each.run for each in run.skipped))
+    return next((block for each in runs if (block := _turn_before_offset(each))), None)
+
+
+def _turn_before_offset(run: Run) -> Wording | None:
+    selected = np.flatnonzero(run.state.work_offset.part(0, len(run)) != 0)[:1]
+    if not len(selected):
+        return None  # it works in none, which the check "offset" tells
+    rows = int(selected[0])
+    turns = (run.programmed[:rows] & int(ROTARY_WORDS)) != 0
+    before = run.start[None, list(run.machine.rotary)]
+    turns |= (np.diff(run.rotary[:rows], axis=0, prepend=before) != 0.0).any(axis=1)  # by a plane or a vector
+    turns &= ~run.state.machine_frame.part(0, rows)
+    found = np.flatnonzero(turns)[:1].tolist()
+    return block_name_of(run, found[0]) if found else None
+
+
+def _no_start_offset(run: Run) -> Wording | None:
+    block = turns_before_offset(run)
+    return phrase("assumed_offset", block=block) if block else None
+
+
 ZERO: Final = Basis("zero", _no_zero)
 TOOL_LENGTH: Final = Basis("tool_length", _no_tool_length)
 TRAVEL: Final = Basis("travel", _no_travel)
@@ -86,13 +118,15 @@ RAPID: Final = Basis("rapid", _no_rapid)
 ACCELERATION: Final = Basis("acceleration", _no_acceleration)
 SPINDLE: Final = Basis("spindle", _no_spindle_speeds)
 START_MODES: Final = Basis("start_modes", _no_start_modes)
+START_OFFSET: Final = Basis("start_offset", _no_start_offset)
 
-#: What ``[proof] require`` and ``--strict`` may demand, with its bases; of ``measured`` each program has its own.
+#: What ``[proof] require`` and ``--strict`` may demand, with its bases; of the last two each program has its own.
 DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "zero": (ZERO,),
     "tool_length": (TOOL_LENGTH,),
     "dynamics": (RAPID, ACCELERATION),
-    "start_modes": (START_MODES,),
+    "start_modes": (START_MODES, START_OFFSET),
+    "radius_register": (),
     "measured": (),
 }
 
@@ -102,11 +136,13 @@ def missing_of(bases: Iterable[Basis], run: Run) -> tuple[Wording, ...]:
     return tuple(found for basis in bases if (found := basis.missing(run)) is not None)
 
 
-def missing_demands(demands: Iterable[str], run: Run) -> Iterator[Wording]:
-    """Yield what is missing of what is demanded for a program, each once."""
+def missing_demands(demands: Iterable[str], run: Run, holds: RegisterValue) -> Iterator[Wording]:
+    """Yield what is missing of what is demanded for a program, each once; ``holds``: what its registers hold."""
     for name in DEMANDS:
         if name in demands:
             yield from missing_of(DEMANDS[name], run)
+    if "radius_register" in demands and any(offset is None for _, offset in offsets_of(run, holds, lambda _: 0.0)):
+        yield phrase("no_radius_register")
     if "measured" in demands:
         kinds = set(ValueKind) - {ValueKind.BODIES, ValueKind.TABLE}
         if names := tuple(map(str, unmeasured_values(run.machine, kinds, joint_samples(run)))):

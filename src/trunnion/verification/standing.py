@@ -37,6 +37,7 @@ class Standing:
     warnings      that were given
     not_measured  values that answers of checks stand on although nobody has measured them
     assumed       modes that the control is taken to start with: neither the program nor the definition states them
+    turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force
     """
 
     passed: bool
@@ -46,6 +47,7 @@ class Standing:
     warnings: int = 0
     not_measured: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
+    turns_before_offset: str = ""
 
     @property
     @Figure(after="passed")
@@ -78,6 +80,8 @@ class Standing:
             yield phrase("standing_not_measured", count=len(self.not_measured))
         if self.assumed:
             yield phrase("assumed_modes", words=self.assumed)
+        if self.turns_before_offset:
+            yield phrase("assumed_offset", block=self.turns_before_offset)
 
     def said(self, words: Words = LIBRARY, language: str = "en") -> str:
         """Return what is said behind the verdict."""

@@ -26,6 +26,7 @@ from trunnion.verification.comparison import Alignment
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
 from trunnion.viewer.shown import Mark, checks_data
+from trunnion.viewer.shown_rows import ShownRows
 from trunnion.viewer.stock import StockView
 
 Column = NDArray[np.float32] | NDArray[np.int32]
@@ -56,12 +57,14 @@ class ViewContent:
     columns  by name, (k,) float32 or int32
     texts    UTF-8, of the program and its subprograms in the order of ``scene["files"]``, then of its CL files in that
              of ``scene["clFiles"]``
+    rows     the rows that it shows of the program
     stock    as it is cut, where that was simulated
     """
 
     scene: Mapping[str, Any]
     columns: Mapping[str, Column]
     texts: tuple[bytes, ...]
+    rows: ShownRows
     stock: StockView | None = None
 
 
@@ -71,7 +74,7 @@ def view_content(
     cl_texts: Mapping[str, str],
     tools: Mapping[str, ToolShape],
     clamped: Sequence[Body] = (),
-    toolpaths: Sequence[Toolpath] = (),
+    rows: ShownRows | None = None,
 ) -> ViewContent:
     """Put together what a page shows.
 
@@ -80,13 +83,15 @@ def view_content(
     cl_texts        of its CL files, by the names that its operations have for them
     tools           bodies of tools by their names in the program; others are drawn as needles
     clamped         part and fixtures
-    toolpaths       that the program was made from: they know the phases of its motions
+    rows            that are shown of it: those of the tool's centre; None: those of its blocks
 
     Raises ``InputError`` if a mesh of the machine cannot be used.
     """
-    run, machine = verification.run, verification.machine
+    machine = verification.machine
+    rows = rows or ShownRows(verification.run, np.arange(len(verification.run)))
+    run = rows.run
     cl_files = {name: k for k, name in enumerate(cl_texts)}
-    seconds = durations(verification)[0] if len(verification.seconds) else np.zeros(0)
+    seconds = rows.seconds(durations(verification)[0] if len(verification.seconds) else np.zeros(0))
     lengths = {k: _length(tools.get(name), machine) for k, name in enumerate(run.tools)}
     motion = motion_columns(run, seconds, lengths)
     bodies = [*machine_bodies(machine), *clamped]
@@ -101,11 +106,9 @@ def view_content(
         "file": run.file.astype(np.int32),
         "kind": run.kind.astype(np.int32),
         "tool": run.state.tool.column().astype(np.int32),
-        "feed": _tip_feeds(verification),
-        "cl": verification.cl_line.astype(np.int32),
+        "feed": rows.column(_tip_feeds(verification)),
+        "cl": rows.column(verification.cl_line.astype(np.int32)),
     }
-    if toolpaths:
-        columns["phase"] = _phases(verification, toolpaths)
     for k in range(5):
         columns[f"axis-{k}"] = motion.joints[:, k].astype(np.uint32).view(np.int32)
     for k, body in enumerate(bodies):
@@ -124,14 +127,23 @@ def view_content(
         "clText": len(texts),
         "operations": [
             {"name": one.name, "first": one.first, "end": one.end, "cl": cl_files.get(one.cl_file, -1)}
-            for one in verification.operations
+            for one in rows.operations(verification.operations)
         ],
         "events": to_data([*_events(run), *_rewinds(run)]),
-        "findings": to_data([*_findings(verification.checks, run), *_diagnostics(run)]),
+        "findings": to_data([*_findings(verification.checks, rows), *_diagnostics(run)]),
         "timed": bool(len(seconds)),
+        "remarks": [],
         **proof_scene(verification),
     }
-    return ViewContent(scene, columns, tuple(text.encode() for text in (*texts, *cl_texts.values())))
+    return ViewContent(scene, columns, tuple(text.encode() for text in (*texts, *cl_texts.values())), rows)
+
+
+def with_phases(content: ViewContent, verification: Verification, toolpaths: Sequence[Toolpath]) -> ViewContent:
+    """Return what a page shows, with the phases of motions as the toolpaths know them that they come from."""
+    if not toolpaths:
+        return content
+    phase = content.rows.column(_phases(verification, toolpaths))
+    return replace(content, columns={**content.columns, "phase": phase})
 
 
 def proof_scene(verification: Verification) -> dict[str, Any]:
@@ -151,13 +163,18 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
     alignment      of their runs. Columns of the second begin with ``b-``; ``pair-one`` and ``pair-two`` are rows that
                    go together
     """
-    differences = [Mark("difference", each.one, *_place(first, each.one), each.text) for each in alignment.differences]
+    differences = [
+        Mark("difference", row, *_place(first, row), each.text)
+        for each in alignment.differences
+        for row in (first.rows.row(each.one),)
+    ]
+    one, two = (each.rows.row_of[alignment.pairs[:, k]] for k, each in enumerate((first, second)))
     columns = {f"b-{name}": column for name, column in second.columns.items()}
-    columns |= {"pair-one": alignment.pairs[:, 0].astype(np.int32), "pair-two": alignment.pairs[:, 1].astype(np.int32)}
+    columns |= {"pair-one": one.astype(np.int32), "pair-two": two.astype(np.int32)}
     against = {
         **second.scene,
         "firstText": len(first.texts),
-        "differing": [each.two for each in alignment.differences],
+        "differing": [second.rows.row(each.two) for each in alignment.differences],
         "pairs": len(alignment.pairs),
     }
     scene = {
@@ -269,13 +286,14 @@ def _rewinds(run: Run) -> list[Mark]:
     return [Mark.at(run, "rewind", row) for row in rows.tolist()]
 
 
-def _findings(checks: Sequence[Check], run: Run) -> Iterator[Mark]:
+def _findings(checks: Sequence[Check], rows: ShownRows) -> Iterator[Mark]:
     """Yield the places of the checks that have not passed, as rows."""
+    run = rows.run
     numbers = {name: k for k, name in enumerate(run.files)}
     for check in checks:
         for place in () if check.passed else check.places[:_MOST_PLACES]:
             file = numbers.get(place.nc_file, 0)
-            row = place.row if place.row >= 0 else _row_of(run, file, place.nc_line)
+            row = rows.row(place.row) if place.row >= 0 else _row_of(run, file, place.nc_line)
             yield Mark(check.key, row, place.nc_line, file, place.told)
 
 

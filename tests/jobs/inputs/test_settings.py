@@ -58,7 +58,7 @@ def test_a_run_keeps_the_setup_with_which_it_was_read() -> None:
 REFUSED: dict[str, dict[str, list[str | float]]] = {
     "yl569": {
         "tolerance": ["-1", "0", "x", "nan", "inf", "11", "1e-2", "0.000001", -1, float("nan")],
-        "three_axis_tolerance": ["-1", "", "0"],
+        "three_axis_tolerance": ["-1", "0"],
         "fallback_tolerance": ["-1", "abc"],
         "edge": ["99", "0", "-1", "1.5", "x", "", "\u00b2"],
         "stock": ["thick", "1e5"],

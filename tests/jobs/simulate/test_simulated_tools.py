@@ -6,6 +6,7 @@ import pytest
 
 import trunnion
 from tests.support.simulating import SLOT, TOOL, simulate
+from trunnion.compensation.contour_tools import ContourTools
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.simulation.tool_deltas import as_the_tool_goes
 
@@ -60,8 +61,9 @@ def test_a_length_goes_along_the_tool_and_not_into_machine_positions(tmp_path: P
     nc = tmp_path / "part.mpf"
     nc.write_text(program)
     run = trunnion.read_program(nc, machine="yl569")
-    longer, problems = as_the_tool_goes(run, {}, RegisterValue.UNKNOWN)
-    assert not problems
+    path = as_the_tool_goes(run, {}, RegisterValue.UNKNOWN, ContourTools())
+    longer = path.run
+    assert not path.problems
     moved = longer.tip - run.tip
     assert moved[-1] == pytest.approx(2.0 * run.axis[-1])
     assert abs(run.axis[-1][2]) < 0.9

@@ -134,6 +134,8 @@ def _stated_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) ->
     if isinstance(zero_at, str):
         parts = [part.partition("=") for part in zero_at.split(",")]
         given: Mapping[str, object] = {name.strip(): value for name, _, value in parts}
+        if len(given) < len(parts):
+            raise wrong_argument("zero_at", zero_at, phrase("give_each_axis_once", example=example))
     elif isinstance(zero_at, Mapping):
         given = zero_at
     else:

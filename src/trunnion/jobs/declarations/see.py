@@ -12,6 +12,7 @@ from trunnion.options.groups import (
     LIVE,
     MACHINE,
     OUTPUT,
+    RADIUS_REGISTER,
     RATE,
     READING,
     READING_AS_SETTINGS,
@@ -19,6 +20,9 @@ from trunnion.options.groups import (
     SETTINGS,
     SETUP,
     SUBPROGRAMS,
+    TOOL_LIBRARIES,
+    TOOL_UNIT,
+    TOOLS,
 )
 from trunnion.options.kinds import Choice, FileIn, FileOut, Number, Switch, Text, seconds, whole
 from trunnion.options.limits import FASTEST, SLOWEST
@@ -61,6 +65,7 @@ _VIEW: Final = job(
     SUBPROGRAMS,
     BODIES,
     CUTTING,
+    RADIUS_REGISTER,
     SETUP,
     OUTPUT.but(
         kind=FileOut("FILE.html", (".html",), phrase("view_is_page")),
@@ -85,6 +90,10 @@ _TWIN: Final = job(
     MACHINE.but(help="machine that runs it"),
     SUBPROGRAMS,
     SETUP,
+    RADIUS_REGISTER,
+    TOOLS.but(help="a tool, for its radius under radius compensation, such as 1=flat:12,length=75,flutes=30"),
+    TOOL_LIBRARIES,
+    TOOL_UNIT,
     Option(
         "speed", "--speed",
         Number(

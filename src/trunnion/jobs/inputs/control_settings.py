@@ -6,6 +6,7 @@ from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.errors import InputError
+from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.machines import Machine
 
 
@@ -32,6 +33,12 @@ def rapid_feed_of(machine: Machine) -> float | None:
     """Return the feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
     feed = default_settings(written_control(machine)).get("rapid_feed")
     return float(feed) if feed else None
+
+
+def register_value(stated: str | None, settings: Settings | None, machine: Machine) -> RegisterValue:
+    """Return what the registers of the radius hold: as is stated, as settings of a post say, or by the definition."""
+    given = stated or as_texts(settings).get(RADIUS_REGISTER_SETTING)
+    return RegisterValue(given) if given else register_value_of(machine)
 
 
 def register_value_of(machine: Machine) -> RegisterValue:

@@ -18,6 +18,7 @@ from trunnion.controls import Control
 from trunnion.controls.setting_rules import is_one_line
 from trunnion.controls.vocabulary import TCP_SETTINGS
 from trunnion.definitions.messages import meant_word
+from trunnion.definitions.setting_text import setting_text
 from trunnion.errors import InputError, Problem, argument_problem, setting_problem
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.machines import Machine
@@ -33,9 +34,6 @@ Settings: TypeAlias = Mapping[str, SettingValue]
 
 #: Settings that may have a value for each tool, or for each work offset.
 SINGLE_VALUES: Final = ("zero", "tool_length")
-
-#: What True and False mean, as far as a setting has such a word.
-_SWITCHES: Final = {True: ("on", "yes"), False: ("off", "no")}
 
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6
@@ -57,11 +55,7 @@ def as_texts(settings: Settings | None) -> dict[str, str]:
     ]
     texts = {key: _as_text(key, value) for key, value in settings.items() if value is not None}
     wrong = [key for key, text in texts.items() if text is None]
-    problems += [
-        setting_problem(key, Wording("ARG220", "neither_text_nor_number", value=repr(settings[key])))
-        for key in wrong
-        if isinstance(key, str)
-    ]
+    problems += [setting_problem(key, _of_no_type(key, settings[key])) for key in wrong if isinstance(key, str)]
     if problems:
         raise InputError(problems)
     return {key: text for key, text in texts.items() if text is not None}
@@ -69,13 +63,9 @@ def as_texts(settings: Settings | None) -> dict[str, str]:
 
 def _as_text(key: str, value: object) -> str | None:
     """Return a setting as text; None if it is of a type that settings do not have."""
-    if isinstance(value, bool | np.bool_):
-        words = RUN_SETTINGS[key].choices if key in RUN_SETTINGS else ()
-        return next((word for word in _SWITCHES[bool(value)] if word in words), None)
-    if isinstance(value, str | int | np.integer | datetime.date):
-        return str(value)
-    if isinstance(value, float | np.floating):
-        return np.format_float_positional(value, trim="-") if np.isfinite(value) else None
+    text = setting_text(value, RUN_SETTINGS[key].choices if key in RUN_SETTINGS else ())
+    if text is not None or isinstance(value, bool | np.bool_ | float | np.floating):
+        return text
     if isinstance(value, Mapping) and key in SINGLE_VALUES:
         texts = {name: _as_text(key, part) for name, part in value.items()}
         known = all(isinstance(name, str | int) and text is not None for name, text in texts.items())
@@ -87,6 +77,14 @@ def _as_text(key: str, value: object) -> str | None:
     parts = list(value)
     numbers = [part for part in parts if isinstance(part, int | float | np.number) and not isinstance(part, bool)]
     return ",".join(str(float(part)) for part in numbers) if len(numbers) == len(parts) else None
+
+
+def _of_no_type(key: str, value: object) -> Wording:
+    """Return the message about a value of a type that a setting does not have."""
+    setting = RUN_SETTINGS.get(key)
+    if setting is not None and setting.choices:
+        return setting.fault(key, value)
+    return Wording("ARG220", "neither_text_nor_number", value=repr(value))
 
 
 def check_settings(settings: Mapping[str, str], control: Control, machine: Machine) -> None:

@@ -6,9 +6,9 @@ Out:    the machine as it is set up.
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, TypeVar
 
 from trunnion import readers
 from trunnion.errors import InputError, setting_problem
@@ -24,6 +24,8 @@ ZeroLike: TypeAlias = str | Iterable[float] | Mapping[str, Iterable[float]]
 #: A length: of all tools, or by their numbers or names.
 LengthLike: TypeAlias = str | float | Mapping[str, float]
 
+Key = TypeVar("Key", bound=Hashable)
+
 #: The farthest that the workpiece zero may be from the origin of the machine, mm.
 _FARTHEST_ZERO: Final = 1e5
 
@@ -35,11 +37,13 @@ def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
     """Return the machine with the workpiece zeros and the tool lengths of the settings."""
     if "zero" in settings:
         every, single = _divided(settings["zero"])
-        zeros = {_work_offset(name, machine, settings["zero"]): _point(text, settings) for name, text in single}
+        named = [(_work_offset(name, machine, settings["zero"]), name, text) for name, text in single]
+        zeros = {offset: _point(text, settings) for offset, text in _each_once("zero", named)}
         machine = replace(machine, zeros=zeros, workpiece_zero=_point(every, settings) if every else None)
     if "tool_length" in settings:
         every, single = _divided(settings["tool_length"])
-        lengths = {tool_key(name): _length(text, settings) for name, text in single}
+        tools = [(tool_key(name), name, text) for name, text in single]
+        lengths = {tool: _length(text, settings) for tool, text in _each_once("tool_length", tools)}
         machine = replace(machine, tool_lengths=lengths, tool_length=_length(every, settings) if every else None)
     return machine
 
@@ -78,6 +82,20 @@ def _divided(text: str) -> tuple[str, list[tuple[str, str]]]:
     return parts[0].strip(), [
         (name.strip(), value.strip()) for name, value in zip(parts[1::2], parts[2::2], strict=True)
     ]
+
+
+def _each_once(setting: str, named: Iterable[tuple[Key, str, str]]) -> Iterator[tuple[Key, str]]:
+    """Yield each tool or work offset with its text; raises ``InputError`` for one that is named twice.
+
+    named   the tool or the work offset, the name that was written for it, and the text
+    """
+    written: dict[Key, str] = {}
+    for key, name, text in named:
+        if key in written:
+            names = dict.fromkeys((written[key], name))
+            raise InputError(setting_problem(setting, Wording("ARG220", "named_twice", names=tuple(names))))
+        written[key] = name
+        yield key, text
 
 
 def _work_offset(name: str, machine: Machine, text: str) -> int:

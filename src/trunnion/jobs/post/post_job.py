@@ -277,9 +277,12 @@ def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str,
     ``auto,SIDES:tcp``.
     """
     known = {word: mode for word, mode in _MODES.items() if tcp or mode is not MachiningMode.TCP}
-    every, own = "auto", dict[str, MachiningMode | None]()
+    every, own, named = "auto", dict[str, MachiningMode | None](), set[str]()
     for entry in text.split(","):
         name, _, word = entry.rpartition(":")
+        if name in named:
+            raise InputError(setting_problem("mode", Wording("ARG220", "mode_twice", value=repr(text))))
+        named.add(name)
         if word not in known:
             raise InputError(
                 setting_problem(

@@ -35,7 +35,7 @@ def in_other_meanings(
     """
     runs = [run for _, own in setups for run in own.runs]
     for levels in other_meanings(*runs):
-        words, told = words_of(levels, *runs), [list[Problem]() for _ in setups]
+        words, told = words_of(levels, *runs).what, [list[Problem]() for _ in setups]
         wrong, found = tuple[Problem, ...](), list[SimulationResult]()
         try:
             others = [
@@ -63,6 +63,7 @@ def _joined(one: SimulationResult, other: SimulationResult, words: str) -> Simul
         findings=(*one.findings, *_new(one, one.findings, other.findings, words)),
         near=(*one.near, *_new(one, one.near, other.near, words)),
         gouge=max(gouges, key=lambda each: each.largest, default=None),
+        cuts_not_checked=tuple(dict.fromkeys((*one.cuts_not_checked, *other.cuts_not_checked))),
     )
     return _with_remarks(result, other.remarks, words)
 

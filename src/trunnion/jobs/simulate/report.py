@@ -83,7 +83,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         states=tuple(_state(each) for each in found.setups or (found,)),
         remarks=(*map(str, remark_groups(found.remarks)), *not_measured_lines(found)),
         data=_cleaned(to_data(found)),
-        not_checked=found.open_line,
+        not_checked=found.not_checked_line,
     )
 
 

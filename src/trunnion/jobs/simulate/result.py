@@ -59,6 +59,7 @@ class SimulationResult:
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
     not_checked  why collisions with the machine were not checked, in words; empty: they were
+    cuts_not_checked  why it is not known what is cut under radius compensation, in words; empty: it is
     not_measured  values of the definition that the distances of bodies stand on, though nobody has measured them
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     meanings   which blocks were skipped (``/``) in further runs, in words: what these found is among the findings; none
@@ -94,6 +95,7 @@ class SimulationResult:
     seconds: float
     simulation: Annotated[Simulation, NOT_DATA]
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
+    cuts_not_checked: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     meanings: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
@@ -111,7 +113,7 @@ class SimulationResult:
         """``PASSED`` only where all that can be judged was."""
         if not self.passed:
             return Verdict.FAILED
-        return Verdict.IN_PART if self.open_line else Verdict.PASSED
+        return Verdict.IN_PART if self.not_checked_line else Verdict.PASSED
 
     @property
     def told(self) -> str:
@@ -127,7 +129,12 @@ class SimulationResult:
             errors = sum(remark.severity is Severity.ERROR for remark in self.remarks)
             parts = [counted(len(self.findings), "finding"), *([counted(errors, "error")] if errors else [])]
             found = f"{' and '.join(parts)}: the program must not run"
-        return "; ".join(filter(None, (found, self.meanings_line, self.open_line)))
+        return "; ".join(filter(None, (found, self.meanings_line, self.not_checked_line)))
+
+    @property
+    def cuts_line(self) -> str:
+        """That it is not known what is cut under radius compensation, and why; empty: it is."""
+        return str(phrase("cuts_not_checked", why=self.cuts_not_checked)) if self.cuts_not_checked else ""
 
     @property
     def meanings_line(self) -> str:
@@ -135,18 +142,18 @@ class SimulationResult:
         return f"simulated with no block skipped and {', '.join(self.meanings)}" if self.meanings else ""
 
     @property
-    def not_checked_line(self) -> str:
+    def collisions_line(self) -> str:
         """That collisions with the machine were not checked, and why; empty: they were."""
         return str(phrase("collisions_not_checked", why=self.not_checked)) if self.not_checked else ""
 
     @property
-    def open_line(self) -> str:
-        """What was not judged, and why; empty: all was."""
+    def not_checked_line(self) -> str:
+        """What was not checked, and why; empty: all was."""
         codes = dict.fromkeys(each.code for each in self.remarks if each.code in _NOT_JUDGED)
         if self.not_checked:
             codes.pop("SIM310", None)
         not_judged = str(phrase("not_all_judged", codes=tuple(codes))) if codes else ""
-        return "; ".join(filter(None, (self.not_checked_line, not_judged)))
+        return "; ".join(filter(None, (self.cuts_line, self.collisions_line, not_judged)))
 
     @property
     @Figure("remarks", after="operations")
@@ -191,6 +198,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
         simulation=found,
         setup=cut.setup.name,
         not_measured=_not_measured(cut),
+        cuts_not_checked=tuple(map(str, cut.setup.missing())),
         tools=cut.setup.tools,
     )
 
@@ -233,6 +241,7 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         setups=tuple(results),
         pairs=sum(each.pairs for each in results),
         not_measured=tuple(dict.fromkeys(value for each in results for value in each.not_measured)),
+        cuts_not_checked=tuple(dict.fromkeys(why for each in results for why in each.cuts_not_checked)),
     )
 
 

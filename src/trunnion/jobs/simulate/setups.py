@@ -78,7 +78,7 @@ def prepare_setup(
         remarks += _other_offsets(runs, given.work_offset, machine)
     return PreparedSetup(
         machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
-        given.until, RegisterValue(given.radius_register or register_value_of(machine)),
+        given.until, RegisterValue(given.radius_register or register_value_of(machine)), strict=given.strict,
     )  # fmt: skip
 
 

@@ -2,22 +2,26 @@
 
 import ipaddress
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Literal, Unpack
 
 from trunnion.cl import is_cl_file
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.encoding import decode
-from trunnion.errors import InputError, Problem, RefusedError
+from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.extras import import_extra
 from trunnion.files import atomic_file
 from trunnion.jobs.arguments import SetUpArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths, wrong_argument
-from trunnion.jobs.inputs.control_settings import rapid_feed_of
+from trunnion.jobs.inputs.bodies import known_tools
+from trunnion.jobs.inputs.control_settings import rapid_feed_of, register_value_of
+from trunnion.jobs.inputs.driven_paths import driven_by_tools
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike, set_up_machine
+from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.result_output import check_output_name
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
@@ -31,6 +35,7 @@ from trunnion.user_cache import user_data
 from trunnion.verification import restore_rapids
 
 if TYPE_CHECKING:
+    from trunnion.simulation.tools.profile import ToolShape
     from trunnion.twin.opcua.server import Security
     from trunnion.twin.serving import TwinAddresses
 
@@ -39,10 +44,19 @@ def _ignore(_addresses: object) -> None:
     """Nobody asked where it is served."""
 
 
-class TwinArguments(SetUpArguments, total=False):
-    """Arguments of ``serve_twin``."""
+class TwinProgramArguments(SetUpArguments, total=False):
+    """Arguments of ``twin_program``."""
 
     subprograms: Sequence[FilePath]
+    radius_register: Literal["unknown", "difference", "radius"] | None
+    tools: "str | ToolShape | Iterable[str | ToolShape]"
+    tool_libraries: Sequence[FilePath]
+    unit: Literal["mm", "inch"] | None
+
+
+class TwinArguments(TwinProgramArguments, total=False):
+    """Arguments of ``serve_twin``."""
+
     speed: float | None
     loop: bool
     rate: float
@@ -55,7 +69,9 @@ class TwinArguments(SetUpArguments, total=False):
     ready: "Callable[[TwinAddresses], None] | None"
 
 
-def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[TwinArguments]) -> None:
+def serve_twin(
+    nc: FilePath | Run, *, machine: MachineLike, observer: Observer = SILENT, **given: Unpack[TwinArguments]
+) -> None:
     """Serve an NC program as the machine that runs it, by OPC UA and MTConnect, until Ctrl-C.
 
     nc                  the program, or its run
@@ -63,6 +79,9 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
     subprograms         files of the subprograms that it calls. No others are opened
     zero, tool_length   as for ``verify``. Without them slides count from the workpiece zero, and no travel of theirs is
                         watched
+    radius_register     as for ``verify``: the tool's centre goes beside the path under radius compensation. Where
+                        nobody has stated it, or the tool's radius is not known, the twin goes along the programmed path
+    tools, tool_libraries, unit   as for ``simulate``: their radii
     speed               times real time, 0.1 to 1000; None: as fast as clients can follow
     loop                the program starts anew when it has ended
     rate                milliseconds between two samples, 5 to 60000; every end of a block is told besides
@@ -73,6 +92,7 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
     agent_port          port of an MTConnect agent; 0: a free one. None: there is none
     users               file of users; None: that in the user's folder
     ready               is called with the addresses when clients can connect
+    observer            receives warnings
 
     Raises ``InputError`` when a file or an argument cannot be used, a port is taken, or the extra ``twin`` is not
     installed.
@@ -98,9 +118,12 @@ def serve_twin(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Twin
         agent, agent_port = None, found["agent_port"]
         if agent_port is not None:
             agent = closing.enter_context(listen("MTConnect", "127.0.0.1", agent_port, "agent_port"))
-        program = twin_program(
-            nc, machine=machine, subprograms=found["subprograms"], zero=found["zero"], tool_length=found["tool_length"]
-        )
+        own: TwinProgramArguments = {
+            "subprograms": found["subprograms"], "zero": found["zero"], "tool_length": found["tool_length"],
+            "radius_register": found["radius_register"], "tools": found["tools"],
+            "tool_libraries": found["tool_libraries"], "unit": found["unit"],
+        }  # fmt: skip
+        program = twin_program(nc, machine=machine, observer=observer, **own)
         playback = Playback(program.timed, speed=speed, loop=found["loop"])
         ports = Ports(host, served, adapter, agent)
         ready = found["ready"] or _ignore
@@ -137,20 +160,16 @@ def write_device_xml(
 
 
 def twin_program(
-    nc: FilePath | Run,
-    *,
-    machine: MachineLike,
-    subprograms: Sequence[FilePath] = (),
-    zero: ZeroLike | None = None,
-    tool_length: LengthLike | None = None,
+    nc: FilePath | Run, *, machine: MachineLike, observer: Observer = SILENT, **given: Unpack[TwinProgramArguments]
 ) -> TwinProgram:
     """Read a program, run it, and give it its times; arguments as for ``serve_twin``.
 
     Raises ``InputError`` when a file or an argument cannot be used.
 
-    Raises ``RefusedError`` when the program has errors.
+    Raises ``RefusedError`` when the program has errors, or the control cannot compensate the radius of its tools.
     """
-    placed = set_up_machine(as_machine(machine), zero, tool_length)
+    subprograms = given.get("subprograms", ())
+    placed = set_up_machine(as_machine(machine), given.get("zero"), given.get("tool_length"))
     if not isinstance(nc, Run) and is_cl_file(path := check_path("nc", nc)):
         raise InputError(Problem(str(path), 0, Wording("TWN110", "cl_file_served")))
     run = restore_rapids(as_run(nc, placed, check_paths("subprograms", subprograms)), rapid_feed_of(placed))
@@ -158,6 +177,12 @@ def twin_program(
         raise RefusedError([Problem(each.file, each.line, each.wording.within("stops_twin")) for each in run.errors])
     if not len(run):
         raise InputError(Problem(run.files[0], 0, Wording("TWN111", "nothing_moves")))
+    known = known_tools(given.get("tools", ()), given.get("tool_libraries", ()), given.get("unit"), ())
+    holds = RegisterValue(given.get("radius_register") or register_value_of(placed))
+    run, notices = driven_by_tools(run, known, holds)
+    if alarms := [each for each in notices if each.severity is Severity.ERROR]:
+        raise RefusedError(alarms)
+    observer.problems(notices)
     return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])
 
 

@@ -13,6 +13,7 @@ from typing import Any, Final
 from trunnion.cl import is_cl_file
 from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, warning
 from trunnion.jobs.arguments import PostArguments
@@ -81,7 +82,8 @@ def view_program(
             other = files[are_cl.index(False)]
             raise InputError(Problem(str(other), 0, Wording("PAG112", "no_cl_file_as_others")))
         stated: PostArguments = {
-            "settings": settings, "subprograms": subprograms, "hooks": hooks, "strict": given["strict"],
+            "settings": _with_register(settings, given["radius_register"]),
+            "subprograms": subprograms, "hooks": hooks, "strict": given["strict"],
         }  # fmt: skip
         return _posted(files, machine, stated, observer)
     cl, texts_of_settings = given["cl"], as_texts(settings)
@@ -94,9 +96,16 @@ def view_program(
         raise InputError(Problem(str(unused[0]), 0, Wording("PAG113", "never_called", program=files[0].name)))
     read = as_toolpaths(cl, observer, cl_reading(texts_of_settings, given["strict"]))
     toolpaths = hooked_toolpaths(read, machine, hooks)
-    verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
+    verification = verify(
+        run, machine=machine, cl=toolpaths, radius_register=given["radius_register"], observer=observer
+    )
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
+
+
+def _with_register(settings: Settings | None, radius_register: str | None) -> Settings | None:
+    """Return the settings of a post, with what its registers of the radius hold where that is stated."""
+    return {**as_texts(settings), RADIUS_REGISTER_SETTING: radius_register} if radius_register else settings
 
 
 def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Problem]:

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.observer import Observer
@@ -37,13 +38,13 @@ _OF_STOCK: Final = ("near", "cell", "accuracy")
 _MOST: Final = 200
 
 
-def view_simulation(machine: Machine, **given: Any) -> SimulationInput | None:
+def view_simulation(machine: Machine, holds: RegisterValue, **given: Any) -> SimulationInput | None:
     """Return what is to be simulated, before any work; None without stock.
 
     Raises ``InputError`` if an argument needs stock and there is none, or says nothing.
     """
     if given["stock"] is not None:
-        return simulation_input(given, machine)
+        return simulation_input(given, machine, holds)
     alone = [name for name in _OF_STOCK if given[name] is not None]
     if alone:
         raise InputError([argument_problem(name, Wording("PAG111", "of_a_simulation")) for name in alone])
@@ -62,12 +63,14 @@ def with_stock(
     Raises ``InputError`` if a file cannot be used, nothing says the form of a tool, or the stock is too large for a
     picture.
     """
-    run = verification.run
-    found = simulate_posted(given, named_run(run, run.files[0]), toolpaths, observer)
+    run = content.rows.run
+    read = verification.run
+    found = simulate_posted(given, named_run(read, read.files[0]), toolpaths, observer)
     (job,) = found.simulation.programs
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))
-    warnings = [_short(each) for each in found.remarks if each.severity is not Severity.ERROR]
+    warnings = [short_name(each) for each in found.remarks if each.severity is not Severity.ERROR]
+    warnings = [each for each in warnings if each not in content.scene["remarks"]]
     if found.not_checked_line:
         warnings.insert(0, f"{found.not_checked_line}.")
     warnings += [f"{kind}: {_MOST} of {count} are shown" for kind, count in _counts(found) if count > _MOST]
@@ -98,7 +101,7 @@ def _findings(found: SimulationResult, run: Run) -> Iterator[Mark]:
     for each in found.remarks:
         if each.severity is Severity.ERROR:
             here = np.flatnonzero((run.line >= each.line) & (run.file == files.get(Path(each.file).name, -1)))
-            yield Mark.at(run, "simulation", int(here[0]) if len(here) else 0, _short(each))
+            yield Mark.at(run, "simulation", int(here[0]) if len(here) else 0, short_name(each))
     shown = Counter[str]()
     for one in sorted(found.findings, key=lambda finding: -finding.depth):
         shown[one.kind] += 1
@@ -108,6 +111,6 @@ def _findings(found: SimulationResult, run: Run) -> Iterator[Mark]:
         yield Mark.at(run, "near", miss.row, str(miss), miss.place)
 
 
-def _short(problem: Problem) -> str:
+def short_name(problem: Problem) -> str:
     """Return a problem without the folder of its file."""
     return str(replace(problem, file=Path(problem.file).name))

@@ -2,14 +2,19 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, Unpack
 
-from trunnion.errors import InputError, argument_problem
+from trunnion.compensation.contour_tools import ContourTools
+from trunnion.compensation.driven_runs import driven_run
+from trunnion.compensation.notices import compensation_notices
+from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.files import atomic_file
 from trunnion.jobs.arguments import ViewArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.bodies import KnownTools, known_tools
+from trunnion.jobs.inputs.control_settings import register_value
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.stated_setup import set_up_machine
@@ -17,16 +22,18 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
 from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
-from trunnion.jobs.view.stock import view_simulation, with_stock
+from trunnion.jobs.view.stock import short_name, view_simulation, with_stock
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import fixture_body, part_body
 from trunnion.simulation.meshes import load_mesh
+from trunnion.simulation.tool_deltas import radius_of
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification.comparison import align
-from trunnion.viewer.content import ViewContent, side_by_side, view_content
+from trunnion.viewer.content import ViewContent, side_by_side, view_content, with_phases
 from trunnion.viewer.page import render_view
+from trunnion.viewer.shown_rows import ShownRows
 
 #: Arguments that a project does not state: the second program, and what the first is made with.
 _OF_VIEW: Final = ("against", "against_machine", "setup", "settings")
@@ -72,7 +79,8 @@ def _prepared(
         raise InputError(argument_problem("machine", Wording("PAG110", "missing_machine")))
     placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
     of_stock = ("stock", "part", "fixtures", "tools", "tool_libraries", "unit", "near", "cell", "accuracy")
-    simulated = view_simulation(placed, **{name: given[name] for name in of_stock})
+    holds = register_value(given["radius_register"], settings, placed)
+    simulated = view_simulation(placed, holds, **{name: given[name] for name in of_stock})
     viewed = view_program(files, placed, given=given, settings=settings, observer=observer)
     if any(given[name] for name in ("stock", "part", "fixtures")):
         observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
@@ -82,7 +90,15 @@ def _prepared(
     part = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     clamped = around if part is None else [part_body(part, machine), *around]
     bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
-    content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, clamped, viewed.toolpaths)
+    driven = driven_run(run, holds, lambda row: radius_of(run, bodies, row), ContourTools.of(viewed.toolpaths))
+    content = view_content(
+        viewed.verification, viewed.texts, viewed.cl_texts, bodies, clamped,
+        ShownRows(driven.centre.run, driven.centre.row_of),
+    )  # fmt: skip
+    content = with_phases(content, viewed.verification, viewed.toolpaths)
+    if notices := [replace(each, severity=Severity.WARNING) for each in compensation_notices(run, driven)]:
+        observer.problems(notices)
+        content = replace(content, scene={**content.scene, "remarks": list(map(short_name, notices))})
     if simulated is not None:
         content = with_stock(content, simulated, viewed.verification, viewed.toolpaths, observer)
     return content, run
@@ -124,6 +140,9 @@ def write_view(
         what the simulation finds. Without ``stock`` nothing is simulated.
     part, fixtures
         Meshes in the workpiece frame.
+    radius_register
+        As for ``verify``: the tool's centre goes beside the path under radius compensation. Where nobody has stated it,
+        or the tool's radius is not known, the page shows the programmed path, and says so.
     tools, tool_libraries, unit
         Tools as ``simulate`` has them. Without ``stock``, one whose form nothing states is drawn as a needle.
     zero, tool_length

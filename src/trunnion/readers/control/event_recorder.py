@@ -19,12 +19,18 @@ _LONG_DWELL: Final = 60.0
 #: become an axis stands until the program starts it again.
 SPINDLE_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0, "oriented": 0, "axis": 0}
 
+#: What a control does with a word that stands while radius compensation is on: variants of the message NC343.
+_VERDICTS: Final = ("refused", "suspends", "unconfirmed")
+
 #: Reports a diagnostic at the block that is being executed.
 Note = Callable[[Wording, Severity], None]
 
 
 class EventRecorder:
     """Records the events of a run; ``line`` is that of the block that is being executed."""
+
+    #: The word that ends radius compensation.
+    compensation_off = "G40"
 
     def __init__(self, note: Note) -> None:
         self.note = note
@@ -86,6 +92,12 @@ class EventRecorder:
         if word not in self._told_words:
             self._told_words.add(word)
             self.note(Wording("NC225", "word_of_machine", word=word), Severity.WARNING)
+
+    def judge_within_compensation(self, word: str, verdict: str = "refused") -> None:
+        """Note a word that stands while radius compensation is on; ``verdict``: what the control does with it."""
+        assert verdict in _VERDICTS
+        if self.modal.compensation.current:
+            self.note(Wording("NC343", verdict, word=word, off=self.compensation_off), Severity.ERROR)
 
     # Tools
 

@@ -6,6 +6,7 @@ loaded as soon as a jump, a loop or a subprogram needs it.
 
 import re
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Generic, TypeVar
@@ -20,6 +21,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Comment, Diagnostic, Run
 from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import VirtualControl
+from trunnion.readers.program.error_tally import ErrorTally
 from trunnion.readers.program.known_words import KnownWords
 from trunnion.readers.program.limits import (
     CHARACTERS_PER_STEP,
@@ -91,6 +93,7 @@ class Interpreter(ABC, Generic[A]):
         self._counter = StepCounter(options.step_limit, self._open_sources, self._limit_error, self._positions_from)
         self._diagnostics: list[Diagnostic] = []
         self._unlisted = 0
+        self._errors = ErrorTally()
         self._comments: list[Comment] = []
         self._sources: dict[Path, tuple[SourceText, int]] = {}
         self._files = [str(path)]
@@ -146,11 +149,18 @@ class Interpreter(ABC, Generic[A]):
                 source.close()
         self.control.end_contour()
         self.control.resolve_rows()
-        diagnostics = list(self._diagnostics)
+        diagnostics = [*self._diagnostics, *self._ends_of_dos(main)]
         if self._unlisted:
             more = Wording("NC150", "more", count=self._unlisted)
             diagnostics.append(Diagnostic(0, more, Severity.ERROR, self._files[0]))
         return self.control.finish(self._files, self._comments, diagnostics)
+
+    def _ends_of_dos(self, main: SourceText) -> Iterator[Diagnostic]:
+        """Yield a warning for each file that Ctrl-Z ends."""
+        for source in (main, *(source for source, _ in self._sources.values())):
+            if source.ctrl_z:
+                wording = Wording("NC169", "ends_with_ctrl_z")
+                yield Diagnostic(source.ctrl_z, wording, Severity.WARNING, str(source.path))
 
     def _check_rest(self, main: SourceText) -> None:
         """Report text behind the end of the main program that no jump and no call can reach."""
@@ -168,10 +178,12 @@ class Interpreter(ABC, Generic[A]):
         """Whether a line has anything but comments, marks of the transfer and its number."""
 
     def _note(self, wording: Wording, severity: Severity) -> None:
+        file = self._files[self.control.modal.file.current]
+        if severity is Severity.ERROR:
+            self._errors.add(file, self.control.line, wording)
         if len(self._diagnostics) >= MAX_DIAGNOSTICS:
             self._unlisted += 1
             return
-        file = self._files[self.control.modal.file.current]
         self._diagnostics.append(Diagnostic(self.control.line, wording, severity, file))
 
     # The loop

@@ -14,6 +14,9 @@ from trunnion.readers.program.source_text import SourceText
 #: Diagnostics that are listed; further ones are counted.
 MAX_DIAGNOSTICS: Final = 10_000
 
+#: A program with so many errors is none for the control: the rest of it is not read.
+MAX_ERRORS: Final = 10_000
+
 #: Longer blocks and texts count once more for every so many characters; real ones are shorter.
 CHARACTERS_PER_STEP: Final = 128
 

@@ -6,7 +6,9 @@ Lines count from 1. Buffers always hold whole lines: the last one ends in a line
 import codecs
 import os
 import re
+from collections.abc import Iterator
 from copy import copy
+from itertools import pairwise
 from pathlib import Path
 from typing import Final, Self
 
@@ -33,6 +35,10 @@ _PROBED: Final = 4096
 #: Bytes in which the end of a line is looked for first.
 _LINE_WINDOW: Final = 256
 
+#: Ends a text in DOS, and what may fill up the file behind it.
+_CTRL_Z: Final = 0x1A
+_FILLING: Final = b"\x1a\0 \t\r\n"
+
 #: The largest file that may jump or be a subprogram, and so is loaded as a whole.
 MAX_LOADED_SIZE: Final = 256 << 20
 
@@ -46,6 +52,7 @@ class SourceText:
     whole      the buffer is the whole file
     first_row  row of the run before which the text began
     jumps_back jumps back without a choice since the last condition with a variable in it
+    ctrl_z     the line in which Ctrl-Z ends the text, 0 for none
 
     ``encoding`` is that of its texts; empty: what is likeliest for each line.
     """
@@ -67,6 +74,8 @@ class SourceText:
         self._size = os.fstat(self._file.fileno()).st_size
         self.first_row = 0
         self.jumps_back = 0
+        self.ctrl_z = 0
+        self._content = -1
         self._ended = False
         # A chunk, preceded by the beginning of its first line from the chunk before.
         self._chunk = bytearray(0 if whole else MAX_LINE_LENGTH + CHUNK + 1)
@@ -145,9 +154,27 @@ class SourceText:
             if size > MAX_LINE_LENGTH:
                 raise self.problem(self.line, Wording("NC110", "long_line", most=MAX_LINE_LENGTH))
             size *= 8
-        self.position += length + 1
+        if _CTRL_Z in window[:length]:
+            length = self._length_before_ctrl_z(window[:length])
+        self.position += window.find(b"\n", length) + 1
         self.line += 1
         return self.text_of(window[:length])
+
+    def _length_before_ctrl_z(self, line: bytes) -> int:
+        """Return how much of the next line stands before a Ctrl-Z that ends the text; all of it, if more follows."""
+        self.load()
+        if self._content < 0:
+            self._content = len(self.buffer.tobytes().rstrip(_FILLING))
+        length = line.index(_CTRL_Z)
+        if self.position + length < self._content:
+            return len(line)
+        self.ctrl_z = self.ctrl_z or self.line
+        return length
+
+    def lines_before(self, line: int) -> Iterator[str]:
+        """Yield the lines before one; loads the program."""
+        for first, end in pairwise(self.starts[:line].tolist()):
+            yield self.text_of(self.buffer[first:end].tobytes().rstrip(b"\r\n"))
 
     def _read(self) -> None:
         """Read the next chunk behind the incomplete last line of the chunk before."""

@@ -67,6 +67,7 @@ class WordInterpreter(Rs274Interpreter[A]):
     def _execute_words(self, block: Block) -> None:
         """Execute a block: units and feed modes, F and S, T, M codes, G codes, the motion, and M codes behind it."""
         g, m = self.table.words("G", block.g), self.table.words("M", block.m)
+        self._judge_within_compensation((*g, *m), block)
         self._scale_words(block)
         self._feed_and_speed(block)
         self._call_tool(block)
@@ -82,6 +83,30 @@ class WordInterpreter(Rs274Interpreter[A]):
         self._close_block(block)
         for word in late:
             self._execute_word(word, block)
+
+    def _judge_within_compensation(self, codes: Sequence[Word], block: Block) -> None:
+        """Report words that the control does not take while radius compensation is on, unless their block ends it."""
+        if not self.control.modal.compensation.current or any(word.text == "G40" for word in codes):
+            return
+        for word in codes:
+            verdict = self.table.within_compensation(word)
+            if verdict and self._changes_something(word, block):
+                self.control.judge_within_compensation(word.text, verdict)
+
+    def _changes_something(self, word: Word, block: Block) -> bool:
+        """Whether a word sets another plane or mode than the one in force."""
+        control = self.control
+        match word.act:
+            case "plane":
+                return bool(control.plane_axis != word.sets)
+            case "cancel_rotation" | "end_plane":
+                return control.tilted
+            case "compensation" | "compensation_in_space":
+                return bool(word.sets)
+            case "tcp":
+                return bool(word.sets) or control.tcp
+            case _:
+                return True
 
     def _scale_words(self, block: Block) -> None:
         """Execute the G codes before F and S, which they may scale."""

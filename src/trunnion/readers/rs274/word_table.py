@@ -112,13 +112,18 @@ class WordTable:
     """The words of a control; of two records of one word the later one counts.
 
     modes     when G codes act whose records do not say it, and those that the control does not have
+    within_compensation  what becomes of words while radius compensation is on, by group, method or text: a variant of
+              the message NC343
     rows      the records, as written
     groups    the codes of each group, by letter
     meanings  the codes of words that only some controls of the family have: letter -> meaning -> code
     """
 
-    def __init__(self, *rows: Word, modes: When = When.BEFORE_MOTION) -> None:
+    def __init__(
+        self, *rows: Word, modes: When = When.BEFORE_MOTION, within_compensation: Mapping[str, str] | None = None
+    ) -> None:
         self.rows = rows
+        self._within_compensation = within_compensation or {}
         self._modes = modes
         self.meanings: dict[str, dict[str, int]] = {"G": {}, "M": {}}
         self._words: dict[tuple[str, int], Word] = {}
@@ -175,6 +180,11 @@ class WordTable:
         if letter == "M":
             return Word(f"M{code}", code=code, effect=Effect.UNKNOWN)
         return Word(g_code_text(code), code=code, effect=Effect.UNKNOWN, when=self._modes)
+
+    def within_compensation(self, word: Word) -> str:
+        """Return what becomes of a word while radius compensation is on, a variant of NC343; empty: it acts."""
+        names = (word.text, word.act, word.group)
+        return next((self._within_compensation[name] for name in names if name in self._within_compensation), "")
 
     def code(self, text: str) -> int:
         """Return the code of a word, of G in tenths, or of a meaning that has no word, ``G: …``."""

@@ -29,7 +29,7 @@ function remarksOf(scene) {
   if (!scene.machine.zero) found.unshift(say("zero"));
   if (!scene.timed) found.push(say("untimed"));
   if (scene.against?.pairs === 0) found.push(say("apart"));
-  return [...found, ...(scene.stock?.remarks ?? [])];
+  return [...found, ...scene.remarks, ...(scene.stock?.remarks ?? [])];
 }
 
 /**

@@ -494,3 +494,4 @@ def test_a_sheet_has_the_lengths_and_numbers_of_its_tools_and_the_zeros_that_are
     data = json.loads(sheet.read_text(encoding="utf-8"))
     assert [(tool["set_length"], tool["register"]) for tool in data["tools"]] == [(110.0, 1), (85.0, 2)]
     assert any("proven for it, and not for G55" in task for task in data["to_check"])
+    assert any(task.startswith("Check that work offsets G54 and G55 are set to") for task in data["to_check"])

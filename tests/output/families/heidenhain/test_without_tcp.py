@@ -122,7 +122,7 @@ def test_a_head_has_no_m116(post: Post) -> None:
     given = [text for one in ("tcp=off", "zero=0,0,0", "tool_length=80", "rotary_feed=tip") for text in ("--set", one)]
     code, out, err = post.all(SIMULTANEOUS, *given, machine=str(machine))
     assert (code, out) == (2, "")
-    assert "B turns in the head" in err
+    assert "leaves out the turns of B in the head" in err
 
 
 @settings(max_examples=examples(8), phases=[Phase.generate])

@@ -42,7 +42,7 @@ def test_a_contour_that_hardly_turns_has_no_corner(tmp_path: Path) -> None:
         ("X40. ,R5.\nG0 Y90.\n", ",R: an element is at rapid"),
         ("X40. ,R5.\nZ9.\n", ",R: an element leaves the working plane"),
         ("X40. ,R5. ,C1.\nY90.\n", ",R and ,C in one block"),
-        ("X40. ,C0\nY90.\n", ",C needs a size above zero"),
+        ("X40. ,R-1.\nY90.\n", ",R needs a size above zero"),
         ("X40. ,C1.\nG3 X30. Y10. R10.\n", ",C: a chamfer stands between two straight lines"),
         ("X40. ,R5.\nY90. F50.\n", ",R between F100 and F50"),
         ("X40. ,A5.\n", "','"),
@@ -58,3 +58,10 @@ def test_linuxcnc_has_no_such_words(tmp_path: Path) -> None:
     program = tmp_path / "part.ngc"
     program.write_text("G21 G90 G17\nG0 X0 Y0 Z0\nG1 X40. ,R10. F100\nY40\nM2\n", encoding="utf-8")
     assert trunnion.read_program(program, machine="linuxcnc_5axis").errors
+
+
+def test_a_corner_of_size_zero_stays_sharp_and_is_said(tmp_path: Path) -> None:
+    for word in (",R", ",C"):
+        run = _run(tmp_path, f"X40. {word}0.\nY90.\n")
+        assert not run.errors
+        assert f"{word}0 makes no corner: it stays sharp" in [each.text for each in run.diagnostics]

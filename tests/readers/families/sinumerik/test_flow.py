@@ -212,7 +212,7 @@ def test_a_file_that_cannot_be_read_is_an_input_error(tmp_path: Path, yl569: Mac
 
 
 def test_findings_are_counted_when_they_are_too_many(run: Runner) -> None:
-    result = run("Q1\n" * 10_050)
+    result = run("G4 F99\n" * 10_050)
     assert len(result.diagnostics) == 10_001
     assert "50 findings more" in result.diagnostics[-1].text
 

@@ -116,6 +116,13 @@ def _offsets(run: Run) -> tuple[str, ...]:
     return tuple(clean(run.work_offset_name(value)) for value in values if value not in (0, NO_OFFSET))
 
 
+def _zeros_to_set(offsets: Sequence[str]) -> str:
+    """Return the work offsets of a program as the beginning of a sentence, with its verb."""
+    if len(offsets) > 1:
+        return f"work offsets {', '.join(offsets[:-1])} and {offsets[-1]} are"
+    return f"work offset {offsets[0]} is" if offsets else "the machine's zero is"
+
+
 def _check_of_zeros(run: Run, machine: Machine) -> str:
     """Return what to check of the workpiece zeros: limits of the linear axes were proven for those that are known."""
     values = dict.fromkeys(run.state.work_offset.values.tolist())
@@ -304,10 +311,10 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
 
 def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> Iterator[str]:
     """Yield what the proof cannot see."""
-    offsets = ", ".join(_offsets(run)) or "the machine's zero"
+    zeros = _zeros_to_set(_offsets(run))
     is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
     turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
-    yield f"Check that work offset {offsets} is set to the zero of the program, {turned}."
+    yield f"Check that {zeros} set to the zero of the program, {turned}."
     for notice in job.notices:
         if notice.startswith(PLACED_NOTICES):
             yield f"{notice}."
@@ -332,7 +339,9 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
         knew = "knew the stock, tools and fixtures that it was given, and no more"
         yield f"Check what else there is. The simulation ({counted(found, 'finding')}) {knew}."
         if result.simulation.not_checked:
-            yield f"Look for {result.simulation.not_checked_line}."
+            yield f"Look for {result.simulation.collisions_line}."
+        if result.simulation.cuts_not_checked:
+            yield f"Measure {result.simulation.cuts_line}."
     yield "Check that axis directions, rotary centres and pivot lengths of the machine are those of its definition."
     inserted = [
         event.text.strip()

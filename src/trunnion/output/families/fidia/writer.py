@@ -13,7 +13,13 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import FIRST_HOLE, ArcWords, Codes, Formats, UnsupportedFeatureError
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import ALL_LEFT_ON, SAFE_START_CHOICES, SAFE_START_SETTING, TCP_USED
+from trunnion.controls.vocabulary import (
+    ALL_LEFT_ON,
+    OFFSET_BEFORE_TURN,
+    SAFE_START_CHOICES,
+    SAFE_START_SETTING,
+    TCP_USED,
+)
 from trunnion.controls.words import ABSENT
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
@@ -37,9 +43,10 @@ PLANE_COMMANDS: tuple[str, ...] = ("g154",)
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: SAFE_START_CHOICES}
 SETTING_MEANINGS: Mapping[str, str] = {
     SAFE_START_SETTING: "What an aborted run may have left on the start of every operation cancels: own cancels TCP "
-    "(G197) where the program uses it itself; all writes G197 and G69 in every program.",
+    "(G197) where the program uses it itself; all writes G197 and G69 in every program, and the work offset before the "
+    "rotary axes turn for the first time.",
 }
-_CANCELLING_FIELDS: Final = ("cancel_tcp", "cancel_plane")
+_CANCELLING_FIELDS: Final = ("cancel_tcp", "cancel_plane", OFFSET_BEFORE_TURN)
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: _CANCELLING_FIELDS}
 LINE_COMMENTS: tuple[str, ...] = ()
 COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
@@ -88,10 +95,16 @@ def tool_call(number: int, name: str, by_name: bool) -> str:
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """Return what cancels TCP and a plane that an aborted run may have left on; a plane has no angles."""
+    """Return what cancels TCP and a plane that an aborted run may have left on, and the work offset in which the rotary
+    axes go home before the program needs it; a plane has no angles.
+    """
     everything = settings[SAFE_START_SETTING] == ALL_LEFT_ON
     tcp_off = settings["tcp_off"] if everything or settings.get(TCP_USED) else None
-    return {"cancel_tcp": tcp_off, "cancel_plane": "G69" if everything else None}
+    return {
+        "cancel_tcp": tcp_off,
+        "cancel_plane": "G69" if everything else None,
+        OFFSET_BEFORE_TURN: settings["work_offset"] if everything else None,
+    }
 
 
 def tool_preselection(call: str) -> list[str]:

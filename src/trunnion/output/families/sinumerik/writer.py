@@ -15,6 +15,7 @@ from trunnion.controls.vocabulary import (
     HOLES_IN_PLANES,
     HOLES_SETTING,
     LINES_FOR_SPLINES,
+    OFFSET_BEFORE_TURN,
     OFFSETS_DIFFER,
     PLANES_USED,
     SAFE_START_CHOICES,
@@ -70,17 +71,16 @@ SETTING_MEANINGS: Mapping[str, str] = {
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 _CANCELLING_FIELDS = ("cancel_swivel", "cancel_tool_frame", "cancel_frames")
-_OFFSET_FIELD = "offset_before_turn"
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
     "swivel_mode": ("plane_mode",),
-    SAFE_START_SETTING: (*_CANCELLING_FIELDS, _OFFSET_FIELD),
+    SAFE_START_SETTING: (*_CANCELLING_FIELDS, OFFSET_BEFORE_TURN),
 }
 LINE_COMMENTS: tuple[str, ...] = (";",)
 COMMENTS: re.Pattern[str] = re.compile(r'(MSG\("[^"]*"\)|;.*)|"[^"]*"')
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
-TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, _OFFSET_FIELD, "interpolation"})
+TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, OFFSET_BEFORE_TURN, "interpolation"})
 
 #: A block has 512 characters at most, with its number; the display shows 124 of a message.
 _COMMENT_BYTES: Final = 480
@@ -125,7 +125,7 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
     found: dict[str, Value] = {
         "interpolation": "VECT" if settings["orientation"] == "vector" else "AXES",
         **_cancelled_planes(settings),
-        _OFFSET_FIELD: _offset_before_turn(settings),
+        OFFSET_BEFORE_TURN: _offset_before_turn(settings),
     }
     if plane is None:
         return found | dict.fromkeys(_PLANE_FIELDS)

@@ -15,6 +15,9 @@ def cut_corner(control: FanucControl, block: Block) -> None:
         control.note(Wording("NC216", "several_corners", words=tuple(sizes)), Severity.ERROR)
         return
     for word, size in sizes.items():
+        if size == 0.0:
+            control.note(Wording("NC210", "corner_without_size", word=word), Severity.WARNING)
+            return
         if not size > 0.0:
             control.note(Wording("NC210", "corner_needs_size", word=word), Severity.ERROR)
             return

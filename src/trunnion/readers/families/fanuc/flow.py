@@ -25,6 +25,7 @@ class ActiveProgram(interpreter.ActiveProgram):
 
     line    its first line, for repeats
     begun   its O number has been read
+    has_blocks  a block of it has been executed: the next O number is that of another program
     macro   it has local variables of its own
     modal   the macro of G66 that is called after every motion
     """
@@ -32,6 +33,7 @@ class ActiveProgram(interpreter.ActiveProgram):
     source: FanucText
     line: int = 1
     begun: bool = False
+    has_blocks: bool = False
     macro: bool = False
     modal: "ModalMacro | None" = None
 

@@ -99,6 +99,7 @@ class FanucInterpreter(CycleInterpreter):
             self._needs_number = False
             self._program_number(active, line, text)
             return
+        active.has_blocks = True
         if self._needs_number:
             self._needs_number = False
             if _PROGRAM_NAME.fullmatch(text):
@@ -132,7 +133,8 @@ class FanucInterpreter(CycleInterpreter):
         digits = text[1:]
         if not digits.isdigit() or len(digits) > 8:
             raise BlockError(Wording("NC210", "no_program_number", text=repr(text[:40])))
-        if active.begun and active.line != line:
+        has_begun = active.begun or active.has_blocks or self.control.row > active.row
+        if has_begun and active.line != line:
             self._note(Wording("NC160", "program_runs_next_ends_here"), Severity.ERROR)
             self._break_off()
         active.begun = True
@@ -212,6 +214,11 @@ class FanucInterpreter(CycleInterpreter):
         assign(self._variables, block)
 
     # Words
+
+    def _changes_something(self, word: Word, block: Block) -> bool:
+        if word.act == "leave_plane_of_pose":
+            return self.control.plane_of_pose
+        return word.act == "tcp" or super()._changes_something(word, block)
 
     def _contour_control(self, word: Word, block: Block) -> None:
         if "Q" not in block.words:

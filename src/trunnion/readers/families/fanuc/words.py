@@ -165,6 +165,14 @@ TABLE: Final = WordTable(
         "M: jump on an input", "a jump that only the machine can decide: an error", act="jump_on_input", when=_AFTER,
         numbered=True,
     ),
+    within_compensation={
+        **dict.fromkeys(
+            ("plane", "M6", "tilt", "align_with_plane", "tcp", "cancel_rotation", "preset",
+             "plane of the rotary position"),
+            "refused",
+        ),
+        "local_shift": "suspends",
+    },
 )  # fmt: skip
 
 #: G codes, in tenths, that decide how the whole block is taken.

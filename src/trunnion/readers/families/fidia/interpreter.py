@@ -97,6 +97,11 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
 
     # Words
 
+    def _changes_something(self, word: Word, block: Block) -> bool:
+        if word.act == "work_offset" and "O" in block.words:
+            return bool(self.control.modal.work_offset.current != words.OFFSET_BASE + block.words["O"].value)
+        return super()._changes_something(word, block)
+
     def _units(self, word: Word, block: Block) -> None:
         super()._units(word, block)
         if word.sets:

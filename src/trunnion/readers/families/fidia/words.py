@@ -34,6 +34,9 @@ TABLE: Final = WordTable(
     Word("M242", "event `retract`", act="retract"),
     Word("M306", "event `tool_change`", act="change_tool"),
     modes=When.BEFORE_FEED,
+    within_compensation=dict.fromkeys(
+        ("plane", "take_plane", "end_plane", "tcp", "M6", "change_tool", "work_offset"), "unconfirmed"
+    ),
 )  # fmt: skip
 
 DWELL: Final = TABLE.code("G4")

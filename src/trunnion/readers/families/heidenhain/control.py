@@ -30,6 +30,7 @@ class HeidenhainControl(LeadControl):
     """
 
     compensation_style = CIRCLES
+    compensation_off = "R0"
     doubtful_modes = frozenset({"M89", "M116", "M118", "M120", "feed"})
     reset_by = "whether the end of a program cancels it depends on the software of the control"
 
@@ -146,6 +147,7 @@ class HeidenhainControl(LeadControl):
             self._length_active, self.plane_axis = active, along
         self.record_length()
         if name is not None:
+            self.judge_within_compensation("TOOL CALL")
             self.end_operation("changes_tool_with_m126")
             self.change_tool()
             self._fetched_from = self.row

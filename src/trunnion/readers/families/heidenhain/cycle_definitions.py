@@ -152,8 +152,11 @@ class Definitions:
             case 13:
                 control.add_event("spindle", "oriented")
             case 19:
+                control.judge_within_compensation("cycle 19")
                 self._tilt(words(rest), parameters)
             case 32:
+                if line == 1:
+                    control.judge_within_compensation("cycle 32")
                 self._tolerance(line, words(rest), parameters)
                 control.add_event("cycle32", rest)
             case _:

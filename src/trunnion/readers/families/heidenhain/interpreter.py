@@ -287,6 +287,7 @@ class HeidenhainInterpreter(PathInterpreter):
 
     def _plane(self, active: ActiveProgram, rest: str) -> None:
         self.control.add_event("plane", rest.strip())
+        self.control.judge_within_compensation(" ".join(("PLANE", *rest.split()[:1])))
         plane_block(self.control, words(rest), active.parameters, self._note)
 
     def _function(self, active: ActiveProgram, rest: str) -> None:

@@ -91,6 +91,8 @@ class MFunctions:
         if code in (M_SHORTEST, M_NOT_SHORTEST):
             control.set_shortest_path(code == M_SHORTEST)
         elif code in (M_TCP, M_TCP_OFF):
+            if code == M_TCP or control.tcp:
+                control.judge_within_compensation(f"M{code}")
             control.spatial_angles_active = False
             control.set_tcp(code == M_TCP)
         elif code in (M_PER_TURN, M_PER_MINUTE):

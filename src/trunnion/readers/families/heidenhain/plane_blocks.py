@@ -124,6 +124,7 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
                 note(Wording("NC220", "tcpm_word_not_simulated", words=tuple(pair)), Severity.ERROR)
     if len(names) % 2:
         note(Wording("NC215", "tcpm_unexpected", found=names[-1]), Severity.ERROR)
+    control.judge_within_compensation("FUNCTION TCPM")
     control.set_tcp(True)
     control.spatial_angles_active = spatial_angles
     control.angles = [0.0, 0.0, 0.0]

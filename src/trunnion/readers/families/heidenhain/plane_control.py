@@ -67,6 +67,8 @@ class PlaneControl(VirtualControl):
         incremental  they count from their values before
         """
         frame = datum.frame(self.plane_axis)
+        if datum != self.datum:
+            self.judge_within_compensation("a shift, rotation, mirror image or scale", "unconfirmed")
         self.note_shift()
         self.set_program_frame(frame, keep_base=False)
         if self.program_frame is not frame:

@@ -132,6 +132,13 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     # Words
 
+    def _changes_something(self, word: Word, block: Block) -> bool:
+        """Whether a word changes what is in force: G10 may write data of tools and of other work offsets."""
+        if word.act != "set_data":
+            return super()._changes_something(word, block)
+        kind, number = (block.words[letter].value if letter in block.words else -1.0 for letter in "LP")
+        return kind not in words.TOOL_DATA and number in (0.0, float(self.control.system))
+
     def _may_be_left_on(self) -> list[str]:
         control = self.control  # M2 and M30 end cycles, but no tool length
         has_length = control.length_active and control.cuts_behind(0)

@@ -14,6 +14,15 @@ _BEHIND, _AFTER = When.BEHIND_MODES, When.AFTER_MOTION
 
 _SWITCH, _BIT, _REGISTER = one_of(0, 1), whole(0, 63), whole(0, 99999)
 
+#: What the interpreter refuses while radius compensation is on.
+_WITHIN_COMPENSATION: Final = dict.fromkeys(
+    (
+        "offset", "plane", "length", "path control", "M6", "axis_offset", "set_data", "go_home", "store_home", "cycle",
+        "line", "G33.1", "G53", "compensation", "signal", "wait_for_input", "analog_output", "tcp",
+    ),
+    "refused",
+)  # fmt: skip
+
 #: Which code has which letters, values and group: LinuxCNC's own list, and its interpreter.
 TABLE: Final = WordTable(
     *COMMON_WORDS,
@@ -124,6 +133,7 @@ TABLE: Final = WordTable(
          letters="PQ", own=False),
     Word("M428 M429", "TCP on, off", act="tcp", sets=(True, False)),
     Word("M430", "kinematics of the user are not known", effect=_ERROR, problem="NC224"),
+    within_compensation=_WITHIN_COMPENSATION,
 )  # fmt: skip
 
 MACHINE: Final = TABLE.code("G53")

@@ -34,13 +34,33 @@ class CallInterpreter(Interpreter[ActiveProgram]):
 
     def _flow_handlers(self) -> dict[str, Handler]:
         """Return what executes each keyword of control flow."""
+        flow = Flow(self._note)
+
+        def begin(reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+            self._check_procedure(active, line)
+            flow.define_parameters(reader, active)
+
         return {
-            **Flow(self._note).handlers,
+            **flow.handlers,
+            "PROC": begin,
+            "ENDPROC": self._end_procedure,
             "RET": self._return,
             "MCALL": self._modal_call,
             "EXTCALL": self._external_call,
             "CALL": self._external_call,
         }
+
+    def _check_procedure(self, active: ActiveProgram, line: int) -> None:
+        """Report a PROC that is not the first block of its program."""
+        if active.procedure == line:
+            return
+        is_second, active.procedure = active.procedure > 0, line
+        if is_second or any(map(self._has_words, active.source.lines_before(line))):
+            self._note(Wording("NC160", "proc_not_first", word="PROC"), Severity.ERROR)
+
+    def _end_procedure(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        if not active.procedure:
+            self._note(Wording("NC160", "endproc_without_proc"), Severity.ERROR)
 
     def _call_one(self, calls: Sequence[Call]) -> None:
         """Call the subprogram of a block, after everything else in the block is executed."""

@@ -29,6 +29,7 @@ def rotation_axes(mode: int) -> list[int] | None:
 def swivel(control: SinumerikControl, call: Call) -> None:
     """Execute a call of CYCLE800."""
     note = control.note
+    control.judge_within_compensation("CYCLE800")
     control.add_event("cycle800", ",".join(call.argument_texts))
     texts = [value if isinstance(value, str) else None for value in call.arguments]
     if not call.arguments or (len(texts) > 1 and texts[1] == "0"):

@@ -25,6 +25,7 @@ from trunnion.readers.program.interpreter import ProgramEnd
 class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram that is being executed, and its modal cycle or subprogram (MCALL).
 
+    procedure   the line of its PROC, 0 for none
     header_end  the last of the lines without a block with which the file begins
     repeated    how often a REPEAT or REPEATB has gone to its label, by its line
     sections    the last line of each part that is being repeated, and the line of its REPEAT or REPEATB
@@ -33,6 +34,7 @@ class ActiveProgram(interpreter.ActiveProgram):
     source: SinumerikText
     variables: Variables = field(default_factory=Variables)
     modal: Call | None = None
+    procedure: int = 0
     header_end: int = 0
     repeated: dict[int, int] = field(default_factory=dict)
     sections: list[tuple[int, int]] = field(default_factory=list)
@@ -69,8 +71,6 @@ class Flow:
             "UNTIL": self._until,
             "CASE": self._case,
             "DEF": self._def,
-            "PROC": self._proc,
-            "ENDPROC": self._ignore,
             "EXTERN": self._ignore,
             **dict.fromkeys(("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS"), self._goto),
         }
@@ -334,7 +334,7 @@ class Flow:
             else:
                 active.variables.assign(name, (), given)
 
-    def _proc(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+    def define_parameters(self, reader: ExpressionReader, active: ActiveProgram) -> None:
         """Define the parameters of the PROC line with the arguments of the call."""
         handed = active.variables.arguments
         if any(token.text == "SAVE" for token in reader.tokens[reader.at :]):

@@ -35,6 +35,7 @@ from trunnion.readers.families.sinumerik.words import (
     G_LIMITS,
     G_MACHINE,
     G_NO_MOTION,
+    G_PLANES,
     M_AFTER_MOTION,
 )
 from trunnion.readers.program.declared_variables import DeclaredVariables
@@ -181,6 +182,9 @@ class SinumerikInterpreter(WordInterpreter):
         """Execute the words of a block in the order of the control."""
         for fault in same_group(block.g, G_GROUPS, "G{}".format):
             self._note(fault, Severity.ERROR)
+        for code in block.g:  # before the words, one of which may begin compensation in the new plane
+            if code in G_PLANES and "XYZ".index(G_PLANES[code]) != self.control.plane_axis:
+                self.control.judge_within_compensation(f"G{code}")
         for code in block.g:
             self._g_code(code)
         for word in block.words:

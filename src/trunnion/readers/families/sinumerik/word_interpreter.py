@@ -102,11 +102,14 @@ class WordInterpreter(CallInterpreter):
             control.say_mode(DRIVING_MODES[word], word)
         match word:
             case "TRAORI":
+                control.judge_within_compensation(word)
                 if fault := _fault_of_traori(block.traori):
                     self._note(fault, Severity.ERROR)
                 control.set_tcp(True)
                 control.lose_offset()
             case "TRAFOOF":
+                if control.tcp:
+                    control.judge_within_compensation(word)
                 control.set_tcp(False)
             case "CIP":
                 control.motion = THROUGH
@@ -121,6 +124,8 @@ class WordInterpreter(CallInterpreter):
             case "ORIMKS" | "ORIWKS":
                 control.set_machine_vectors(word == "ORIMKS")
             case _ if word in TOOL_FRAMES:
+                if control.tool_frame or not word.endswith("OF"):
+                    control.judge_within_compensation(word)
                 control.turn_frame(word)
             case _ if word.startswith("CUT2D") or word.startswith("CUT3D"):
                 control.compensates_in_space = word.startswith("CUT3D")
@@ -149,6 +154,7 @@ class WordInterpreter(CallInterpreter):
         elif code == M_AXIS_MODE:
             control.add_event("spindle", "axis")
         elif code == TOOL_CHANGE:
+            control.judge_within_compensation(f"M{code}")
             control.change_tool()
         elif code == M_RETURN or (code in PROGRAM_ENDS and len(self._stack) > 1):
             self._check_behind_return(self._stack[-1])

@@ -165,12 +165,15 @@ WITHIN_COMPENSATION: Final = {
     "CUTCONOF": ("constant", ""),
     "G62": ("corners", "the feed is lowered at inside corners"),
     "FENDNORM": ("corners", ""),
+    "CDON": ("bottlenecks", "blocks that would damage the contour are left out"),
+    "CDOF": ("bottlenecks", ""),
+    "CDOF2": ("bottlenecks", ""),
 }
 #: Words without a value that the path does not depend on.
 WITHOUT_PATH_EFFECT: Final = _words("""
     NORM KONT KONTC KONTT FNORM FENDNORM
     CFC CFTCP CFIN CFCIN
-    CUT2D CUT2DF CUT3DC CUT3DF CUT3DFS CUT3DFF CUTCONON CUTCONOF
+    CUT2D CUT2DF CUT3DC CUT3DF CUT3DFS CUT3DFF CUTCONON CUTCONOF CDON CDOF CDOF2
     COMPOF COMPON COMPCURV COMPCAD COMPSURF
     FFWON FFWOF SOFT BRISK DRIVE SOFTA BRISKA DRIVEA
     DYNNORM DYNPOS DYNROUGH DYNSEMIFIN DYNFINISH DYNPREC
