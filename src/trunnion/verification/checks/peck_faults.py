@@ -21,6 +21,9 @@ _MAX_PECKS: Final = 100_000
 #: A retract by less than this breaks the chip without leaving the hole, mm.
 _CHIP_BREAK: Final = 5.0
 
+#: Behind a full retract motions of the program feed no farther than this through what is drilled, mm.
+_MOST_AT_FEED: Final = 3.0
+
 #: A last peck no longer than this may go with the one before, mm: programs may print no less.
 _SHORTEST_REST: Final = 0.005
 
@@ -59,6 +62,11 @@ def _collect_pecks(
         if kind == Kind.RAPID and height < deepest - hole.tolerance:
             yield motions.fault(k, height, "goes at rapid where nothing is drilled yet")
         elif kind == Kind.LINEAR and height < deepest - 1e-9:
+            start = float(motions.height[k - 1])
+            is_back = bool(pecks) and start >= hole.cycle.clearance - hole.tolerance
+            if motions.by_motion and is_back and start - deepest > _MOST_AT_FEED:
+                text = f"feeds {start - deepest:.4f} mm where nothing is left to drill: the rapid back is missing"
+                yield motions.fault(k, height, text)
             pecks.append(height)
             between.append([])
         elif motions.by_motion and kind == Kind.LINEAR and k <= bottom:
