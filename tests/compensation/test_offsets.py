@@ -99,7 +99,7 @@ def test_the_centre_keeps_its_distance(contour: list[tuple[complex, complex, int
             continue
         near = {int(of), int(of) - 1} - {0} if not own else {int(of)}
         distance = min(_distance(path, element, point) for element in near for point in points[k])
-        assert distance >= abs(left) * np.cos(0.5 * style.smooth) - 1e-6
+        assert distance >= abs(left) * np.cos(style.smooth) - 1e-6
         if own and style.smooth < 1e-3:
             assert max(_distance(path, int(of), point) for point in points[k]) == pytest.approx(abs(left), abs=1e-6)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from string import Formatter
 
 import trunnion
-from trunnion.messages import AROUND, CATALOGUES, PHRASES, catalogue
+from trunnion.messages import AROUND, CATALOGUES, CHECKS, PHRASES, catalogue
 
 SOURCE = Path(trunnion.__file__).parent
 
@@ -50,6 +50,9 @@ NO_SENTENCES = {
     "simulation/finding.py: self.what is What.NEAR",
 }
 
+#: In modules that say nothing themselves: values of data, and what stands for the name of a file.
+WORDS_OF_DATA = {"not checked", "from home", "CL file"}
+
 #: Words of a sentence.
 MOST_WORDS = 35
 
@@ -62,7 +65,7 @@ def trees() -> dict[Path, ast.Module]:
 
 def texts() -> Iterator[tuple[str, str, dict[str, str]]]:
     """Code, variant and parts of every text; the code of a phrase is empty."""
-    for name in CATALOGUES.values():
+    for name in (*CATALOGUES.values(), CHECKS):
         for code, variants in catalogue("en", name).items():
             for variant, parts in variants.items():
                 yield code, variant, parts
@@ -162,6 +165,37 @@ def test_readers_say_wordings() -> None:
         in MAKERS_OF_WORDINGS
         and len(node.args) > MAKERS_OF_WORDINGS[name]
         and is_text(node.args[MAKERS_OF_WORDINGS[name]])
+    ]
+    assert not texts_of_their_own, "\n".join(texts_of_their_own)
+
+
+def words_in(tree: ast.Module) -> Iterator[ast.Constant]:
+    """Texts of a module that are words of a sentence: none of its docstrings, annotations, assertions and kernels."""
+    aside: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            aside.add(node.value)
+        elif isinstance(node, ast.Raise | ast.Assert):
+            aside.update(ast.walk(node))
+        elif isinstance(node, ast.arg | ast.AnnAssign) and node.annotation:
+            aside.update(ast.walk(node.annotation))
+        elif isinstance(node, ast.FunctionDef) and (node.name == "__repr__" or node.returns):
+            aside.update(ast.walk(node) if node.name == "__repr__" else ast.walk(node.returns or node))
+        elif isinstance(node, ast.Call) and called(node) == "kernel":
+            aside.update(each.value for each in node.keywords)
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Constant) or node in aside or node.value in WORDS_OF_DATA:
+            continue
+        if isinstance(node.value, str) and re.search(r"[a-z]{2}[,;:]? |[ (][a-z]{2}", node.value):
+            yield node
+
+
+def test_checks_and_comparisons_have_no_words_of_their_own() -> None:
+    texts_of_their_own = [
+        f"{path.relative_to(SOURCE)}:{node.lineno}: {ast.unparse(node)}"
+        for path, tree in trees().items()
+        if "verification" in path.parts and "comparison" not in path.parts
+        for node in words_in(tree)
     ]
     assert not texts_of_their_own, "\n".join(texts_of_their_own)
 

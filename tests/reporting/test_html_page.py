@@ -12,8 +12,9 @@ import pytest
 
 from tests.support.page_columns import decode_column
 from tests.support.reports import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
+from trunnion.messages import foreign
 from trunnion.model.columns import StepColumn
-from trunnion.reporting.html_text import format_number
+from trunnion.reporting.html_text import capitalised, format_number
 from trunnion.reporting.write import write_report
 from trunnion.verification.results import Check, Verification
 from trunnion.wording import format_duration
@@ -45,7 +46,7 @@ def test_a_program_without_faults_is_passed_at_first_sight(tmp_path: Path) -> No
 
 def test_each_check_has_a_row_and_the_worst_places_have_theirs(page: Page) -> None:
     for check in CHECKS:
-        assert check.title in page.text
+        assert capitalised(check.title) in page.text
         assert check.summary in page.text
     assert "N500" in page.text
     assert "and 8 more" in page.text
@@ -55,7 +56,7 @@ def test_each_check_has_a_row_and_the_worst_places_have_theirs(page: Page) -> No
 
 def test_failed_checks_show_their_places_first(page: Page) -> None:
     places = page.text[page.text.index("Worst places") :]
-    assert places.index("Axis travel") < places.index("Tip against CL points")
+    assert places.index("Travel of the axes") < places.index("Tool tip against")
 
 
 def test_tools_times_and_extents_are_there(page: Page) -> None:
@@ -99,7 +100,7 @@ def test_an_axis_beyond_its_travel_has_a_negative_margin(tmp_path: Path) -> None
 
 
 def test_names_and_texts_cannot_leave_their_place(tmp_path: Path) -> None:
-    check = Check(HOSTILE, HOSTILE, False, HOSTILE, 1.0, 2.0, HOSTILE, (replace(PLACES[0], text=HOSTILE),))
+    check = Check(HOSTILE, False, foreign(HOSTILE), 1.0, 2.0, HOSTILE, (replace(PLACES[0], wording=foreign(HOSTILE)),))
     plain = page_of(blade(), tmp_path)
     verification = blade(HOSTILE, (check,))
     state = replace(verification.run.state, file=StepColumn.constant(len(verification.run), 1, np.uint16))

@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.locations import DOCS
 from tests.support.reports import CHECKS, PLACES, blade, waves, with_columns
+from trunnion.messages import foreign
 from trunnion.reporting import json_report
 from trunnion.reporting.write import write_report
 from trunnion.verification.results import Check, Verification
@@ -75,7 +76,7 @@ def test_columns_have_one_value_a_motion(tmp_path: Path) -> None:
 
 def test_values_without_a_number_are_null(tmp_path: Path) -> None:
     places = (replace(PLACES[0], value=float("nan"), number=-1, cl_line=0, cl_file=""),)
-    check = Check("speed", "Speeds", True, "none stated", float("inf"), float("nan"), "", places)
+    check = Check("speed", True, foreign("none stated"), float("inf"), float("nan"), "", places)
     verification = blade(checks=(check,))
     tip = verification.run.tip.copy()
     tip[:, 0] = np.nan

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tests.support.locations import YL569
 from trunnion.arrays import Floats, Lines
 from trunnion.machines import Machine, load_machine
+from trunnion.messages import foreign
 from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.run import Run
 from trunnion.model.run_columns import ModalState
@@ -18,13 +19,13 @@ from trunnion.readers import run_program
 from trunnion.verification.results import Check, Place, Verification
 
 PLACES = tuple(
-    Place(50 + k, 500 + 10 * k, 0.0004 - k * 1e-5, f"the tip is {k} off", "3_blade_finish.cls", 45 + k)
+    Place(50 + k, 500 + 10 * k, 0.0004 - k * 1e-5, foreign(f"the tip is {k} off"), "3_blade_finish.cls", 45 + k)
     for k in range(20)
 )
 CHECKS = (
-    Check("tip", "Tip against CL points", True, "largest 0.0004 mm at N500", 0.0004, 0.0005, "mm", PLACES),
-    Check("travel", "Axis travel", False, "B leaves its travel by 0.2°", -0.2, 0.0, "°", PLACES[:1]),
-    Check("words", "Unknown words", True, "none"),
+    Check("tip", True, foreign("largest 0.0004 mm at N500"), 0.0004, 0.0005, "mm", PLACES),
+    Check("travel", False, foreign("B leaves its travel by 0.2°"), -0.2, 0.0, "°", PLACES[:1]),
+    Check("words", True, foreign("none")),
 )
 
 

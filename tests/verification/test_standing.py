@@ -38,9 +38,9 @@ def test_a_check_without_its_basis_is_not_checked_and_says_what_is_missing(verif
 
 
 def test_a_fault_counts_more_than_what_is_missing() -> None:
-    from trunnion.messages import phrase
+    from trunnion.messages import foreign, phrase
 
-    assert Check("travel", "", False, "too far", missing=(phrase("no_zero"),)).state is State.FAIL
+    assert Check("travel", False, foreign("too far"), missing=(phrase("no_zero"),)).state is State.FAIL
 
 
 def test_without_cl_files_the_checks_that_need_them_are_one_line(verified: Verifier) -> None:

@@ -70,9 +70,10 @@ def with_inserted_rows(run: Run, insertions: Sequence[Insertion]) -> tuple[Run, 
         xyz=xyz,
         rotary=run.rotary[take],
         state=replace(state, xyz_is_tip=_steps(is_tip)),
-        arcs=_arcs(run.arcs, insertions, row_of, at[curved]),
+        arcs=arcs_with_inserted(run.arcs, insertions, row_of, at[curved]),
         splines=replace(run.splines, first=first[run.splines.first], last=row_of[run.splines.last]),
         normals=replace(run.normals, row=row_of[run.normals.row]),
+        setups=None if run.setups is None else replace(run.setups, number=_moved(run.setups.number, first)),
         comments=[replace(each, before_row=int(first[each.before_row])) for each in run.comments],
         events=[replace(each, before_row=int(first[each.before_row])) for each in run.events],
         units_from=None if run.units_from is None else int(first[run.units_from]),
@@ -83,7 +84,7 @@ def with_inserted_rows(run: Run, insertions: Sequence[Insertion]) -> tuple[Run, 
     return found, row_of
 
 
-def _arcs(arcs: Arcs, insertions: Sequence[Insertion], row_of: Ints, rows: Ints) -> Arcs:
+def arcs_with_inserted(arcs: Arcs, insertions: Sequence[Insertion], row_of: Ints, rows: Ints) -> Arcs:
     """Return circles with those that are inserted in ``rows``."""
     radius = arcs.radius.copy()
     for each in insertions:

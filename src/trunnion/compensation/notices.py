@@ -41,5 +41,20 @@ def compensation_notices(
         yield _problem(run, row, _FAULTS[fault], unsure if fault is Fault.UNSURE else faulty)
 
 
+def fault_notice(file: str, line: int, fault: Fault, severity: Severity) -> Problem:
+    """Return what is said of a place where a control cannot compensate, or nobody knows how it does."""
+    return Problem(file, line, _FAULTS[fault], severity=severity)
+
+
+def unknown_radius(file: str, line: int) -> Problem:
+    """Return what is said where the radius of the tool is not known."""
+    return Problem(file, line, Wording("SIM147", "radius_not_known"), severity=Severity.WARNING)
+
+
+def unknown_corners(file: str, line: int) -> Problem:
+    """Return what is said where nobody knows how a control goes round corners, and the widest way is taken."""
+    return Problem(file, line, Wording("SIM164", "corners_unsure"), severity=Severity.WARNING)
+
+
 def _problem(run: Run, row: int, wording: Wording, severity: Severity) -> Problem:
     return Problem(run.files[run.state.file[row]], run.lines[row], wording, severity=severity)

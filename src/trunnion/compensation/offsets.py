@@ -85,6 +85,9 @@ def centre_path(path: PlanePath, left: float, style: CompensationStyle, *, leave
     if style.corner is Corner.MEET:
         curved = (path.sense[:-1] != 0) | (path.sense[1:] != 0)
         faults += [(int(k), Fault.UNSURE) for k in np.flatnonzero(joints.rounded & curved)]
+    lost = np.isnan(joints.ends)  # a fault, at which the tool is taken to stay beside the element that ends there
+    nearest = np.where(lost, beside.end[:-1], joints.ends), np.where(lost, beside.end[:-1], joints.begins)
+    joints = _Joints(*nearest, joints.corners, joints.rounded)
     end_point = path.end[-1] if leaves else beside.end[-1]
     return _assembled(path, joints, left, end_point, sorted(faults, key=lambda fault: fault[0]))
 

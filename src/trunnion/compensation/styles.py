@@ -54,6 +54,9 @@ MEETINGS: Final = 2
 TYPE_A: Final = 3
 OWN_ENTRY: Final = 4
 
+#: As far from corners as any known control goes.
+WIDEST: Final = CompensationStyle(Corner.CHAMFER, sharpest=math.radians(100.0))
+
 #: Styles by ``ModalState.compensation_style``.
 STYLES: Final = {
     CIRCLES: CompensationStyle(),

@@ -14,8 +14,8 @@ from trunnion.messages import Wording, phrase
 _ROUNDING: Final = 0.5 + 1e-6
 
 
-def spindle_speed_fault(machine: Machine, rpm: float) -> Wording | str:
-    """Return why the spindle cannot turn at a speed; empty if it can, or if the definition states no range."""
+def spindle_speed_fault(machine: Machine, rpm: float) -> Wording | None:
+    """Return why the spindle cannot turn at a speed; None if it can, or if the definition states no range."""
     facts = machine.facts
     greatest, least = machine.spindle_max_rpm, facts.spindle_min_rpm
     if greatest is not None and rpm > greatest + _ROUNDING:
@@ -25,7 +25,7 @@ def spindle_speed_fault(machine: Machine, rpm: float) -> Wording | str:
     gears = facts.spindle_gears_rpm
     if gears and not any(low - _ROUNDING <= rpm <= high + _ROUNDING for low, high in gears):
         return phrase("s_no_gear", rpm=rpm, gears=tuple(f"{low:g} to {high:g}" for low, high in gears))
-    return ""
+    return None
 
 
 def states_spindle_range(machine: Machine) -> bool:

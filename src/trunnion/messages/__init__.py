@@ -20,7 +20,7 @@ from string import Formatter
 from types import MappingProxyType
 from typing import Any, Final, Literal, Self, TypeAlias
 
-#: The file of each kind of code.
+#: The file of each kind of code; what is no such kind is the key of a check.
 CATALOGUES: Final = {
     "ARG": "arguments",
     "BAT": "batch",
@@ -41,7 +41,8 @@ CATALOGUES: Final = {
     "TWN": "twin",
 }
 
-#: The files of sentences that stand around others, and of parts that stand in others.
+#: The files of what checks say, of sentences that stand around others, and of parts that stand in others.
+CHECKS: Final = "checks"
 AROUND: Final = "around"
 PHRASES: Final = "phrases"
 
@@ -74,7 +75,7 @@ LIBRARY: Final = Words()
 class Wording:
     """What is said, as data: a text of the catalogues and what is filled in.
 
-    code        such as ``CL110``
+    code        such as ``CL110``; the key of the check that says it, or ``all`` for what all checks say
     variant     which text of the code; empty: the parameters ``what`` and ``cure`` are the text, which is another's
     parameters  numbers, texts and other wordings by name, in alphabetical order
     around      sentences that stand around it, the inner one first: their names and their parameters
@@ -111,6 +112,10 @@ class Wording:
     def within(self, sentence: str, /, **parameters: object) -> Self:
         """Return the same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
         return self._changed(self.parameters, (*self.around, (sentence, _plain(parameters))))
+
+    def with_cure(self) -> "Wording":
+        """Return the fault with its cure, as one sentence."""
+        return phrase("with_cure", fault=self) if self.cure else self
 
     def parameter(self, name: str) -> object:
         """Return a parameter; None if there is none of the name."""
@@ -198,7 +203,8 @@ def _inner_text(wording: Wording, part: Part, words: Words, language: str) -> st
     try:
         if not wording.code:
             return filled_in(catalogue(language, PHRASES)[wording.variant], words, parameters)
-        variant = catalogue(language, CATALOGUES[wording.code[:-3]])[wording.code][wording.variant]
+        file = CATALOGUES.get(wording.code[:-3], CHECKS)
+        variant = catalogue(language, file)[wording.code][wording.variant]
         return filled_in(variant.get(part, ""), words, parameters)
     except (LookupError, OSError, ValueError, TypeError):
         return _unfilled(wording.variant, wording.parameters) if part == "what" else ""

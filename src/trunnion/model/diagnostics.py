@@ -18,8 +18,7 @@ class Diagnostic:
     @property
     def text(self) -> str:
         """What it says, with its cure."""
-        what, cure = self.wording.what, self.wording.cure
-        return f"{what}; {cure}" if cure else what
+        return self.wording.with_cure().what
 
     @property
     def code(self) -> str:

@@ -18,6 +18,7 @@ import numpy as np
 
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.arc_extremes import RunArcs
 from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision
@@ -116,20 +117,15 @@ def collect_content(
     )
 
 
-def _told(problem: Problem) -> str:
-    """Return a problem without its place."""
-    return f"{problem.what}; {problem.cure}".removesuffix("; ")
-
-
 def refused_content(machine: Machine, program: str, problems: Sequence[Problem]) -> ReportContent:
     """Return the content for a program that was refused before it was run: one check, with the problems as places."""
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     places = tuple(
-        Place(0, -1, math.nan, _told(problem), problem.file, problem.line, code=problem.code)
+        Place(0, -1, math.nan, problem.wording.with_cure(), problem.file, problem.line, code=problem.code)
         for problem in sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
     )
-    summary = f"refused before it was run: {errors[0].what}" if errors else "refused before it was run"
-    check = Check("program", "a program for this machine", False, summary, places=places)
+    refused = Wording("program", "refused_for", fault=errors[0].wording) if errors else Wording("program", "refused")
+    check = Check("program", False, refused, places=places)
     return ReportContent(
         program=clean(program),
         machine_key=clean(machine.key),
@@ -150,14 +146,18 @@ def _control_name(machine: Machine) -> str:
 
 def _clean_check(check: Check) -> Check:
     places = tuple(
-        replace(place, text=clean(place.text), cl_file=clean(place.cl_file), nc_file=clean(Path(place.nc_file).name))
+        replace(
+            place,
+            wording=place.wording.changed(clean),
+            cl_file=clean(place.cl_file),
+            nc_file=clean(Path(place.nc_file).name),
+        )
         for place in check.places
     )
     return replace(
         check,
         key=clean(check.key),
-        title=clean(check.title),
-        summary=clean(check.summary),
+        answer=check.answer and check.answer.changed(clean),
         unit=clean(check.unit),
         missing=tuple(wording.changed(clean) for wording in check.missing),
         places=places,

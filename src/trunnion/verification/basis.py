@@ -22,6 +22,7 @@ from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
 from trunnion.model.unknown_setups import offsets_without_zero, tools_without_length
+from trunnion.verification.block_names import block_name_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,31 +84,26 @@ def _no_start_modes(run: Run) -> Wording | None:
     return phrase("assumed_modes", words=words) if words else None
 
 
-def turns_before_offset(run: Run) -> str:
-    """Return the first block that positions rotary axes before the program selects a work offset; empty: none does.
+def turns_before_offset(run: Run) -> Wording | None:
+    """Return the first block that positions rotary axes before the program selects a work offset; None: none does.
 
     The rotary axes of a work offset count too: which one an earlier program has left in force is not known there.
     """
     runs = (run, *(each.run for each in run.skipped))
-    return next((block for each in runs if (block := _turn_before_offset(each))), "")
+    return next((block for each in runs if (block := _turn_before_offset(each))), None)
 
 
-def _turn_before_offset(run: Run) -> str:
+def _turn_before_offset(run: Run) -> Wording | None:
     selected = np.flatnonzero(run.state.work_offset.part(0, len(run)) != 0)[:1]
     if not len(selected):
-        return ""  # it works in none, which the check "offset" tells
+        return None  # it works in none, which the check "offset" tells
     rows = int(selected[0])
     turns = (run.programmed[:rows] & int(ROTARY_WORDS)) != 0
     before = run.start[None, list(run.machine.rotary)]
     turns |= (np.diff(run.rotary[:rows], axis=0, prepend=before) != 0.0).any(axis=1)  # by a plane or a vector
     turns &= ~run.state.machine_frame.part(0, rows)
     found = np.flatnonzero(turns)[:1].tolist()
-    return _block_name(run, found[0]) if found else ""
-
-
-def _block_name(run: Run, row: int) -> str:
-    number = run.block_numbers[row]
-    return f"N{number}" if number >= 0 else f"line {run.lines[row]}"
+    return block_name_of(run, found[0]) if found else None
 
 
 def _no_start_offset(run: Run) -> Wording | None:

@@ -8,8 +8,10 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.compensation.stretches import RegisterValue
+from trunnion.messages import Wording
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
+from trunnion.verification.block_names import block_name_of
 from trunnion.verification.expected.path import ExpectedPath, OperationSettings
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Check, Place
@@ -92,11 +94,9 @@ class ExpectedValues:
     has_settings: frozenset[str] = frozenset()
     demands: tuple[str, ...] = ()
 
-    def repeat(self, name: str, value: object) -> str:
-        """Return how a setting of the post is told again, to follow a fault; empty if the control has none of it."""
-        if name not in self.has_settings:
-            return ""
-        return f"; if the program was posted with {name}={value}, repeat that setting"
+    def repeated(self, fault: Wording, name: str, value: object) -> Wording:
+        """Return a fault with the setting of the post that would explain it, if the control has that setting."""
+        return fault.within("if_posted", name=name, value=value) if name in self.has_settings else fault
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""
@@ -111,16 +111,16 @@ class Context:
     run: Run
     settings: ExpectedValues
 
-    def place(self, row: int, value: float, text: str) -> Place:
+    def place(self, row: int, value: float, said: Wording) -> Place:
         """Return the place of a row."""
         run = self.run
         file = self.file_name(run.state.file[row])
-        return Place(run.lines[row], run.block_numbers[row], value, text, nc_file=file, row=row)
+        return Place(run.lines[row], run.block_numbers[row], value, said, nc_file=file, row=row)
 
-    def place_of_event(self, event: RunEvent, value: float, text: str) -> Place:
+    def place_of_event(self, event: RunEvent, value: float, said: Wording) -> Place:
         """Return the place of something that happens between rows."""
         row = min(event.before_row, len(self.run) - 1)
-        return Place(event.line, -1, value, text, nc_file=self.file_name(event.file), row=row)
+        return Place(event.line, -1, value, said, nc_file=self.file_name(event.file), row=row)
 
     def file_name(self, number: int) -> str:
         """Return the file of a row or an event as places have it: empty for the program itself."""
@@ -130,10 +130,9 @@ class Context:
         """Return the row after a row, or the last one."""
         return min(row + 1, len(self.run) - 1)
 
-    def block_name(self, row: int) -> str:
-        """Return what a programmer calls the block of a row: ``N120``, or its line where it has no number."""
-        number = self.run.block_numbers[row]
-        return f"N{number}" if number >= 0 else f"line {self.run.lines[row]}"
+    def block_name(self, row: int) -> Wording:
+        """Return what a programmer calls the block of a row."""
+        return block_name_of(self.run, row)
 
     @property
     def last_line(self) -> int:
@@ -153,30 +152,30 @@ class ComparedContext(Context):
         """Return how high the CL files come along a direction (3,), mm from the program's zero."""
         return max(float((section.whole.moves.tip @ axis).max()) for section in self.expected.sections)
 
-    def place_with_cl(self, row: int, value: float, text: str, cl: int) -> Place:
+    def place_with_cl(self, row: int, value: float, said: Wording, cl: int) -> Place:
         """Return the place of a row, with that of a CL row."""
-        return self.at_cl_row(self.place(row, value, text), cl)
+        return self.at_cl_row(self.place(row, value, said), cl)
 
     def at_cl_row(self, place: Place, cl: int) -> Place:
         """Return a place with the file and line of a CL row."""
         return replace(place, cl_file=self.expected.section_at(cl).file, cl_line=self.expected.point(cl).line)
 
-    def place_of_cl_row(self, cl: int, value: float, text: str) -> Place:
+    def place_of_cl_row(self, cl: int, value: float, said: Wording) -> Place:
         """Return the place of a CL row, at the motion that goes to it."""
         if cl not in self.matching.cl:
-            return replace(self.place_of_missing(cl, text), value=value)
-        return self.place_with_cl(self.matching.nc[self.matching.cl.count_before(cl)], value, text, cl)
+            return replace(self.place_of_missing(cl, said), value=value)
+        return self.place_with_cl(self.matching.nc[self.matching.cl.count_before(cl)], value, said, cl)
 
-    def place_of_missing(self, cl: int, text: str) -> Place:
+    def place_of_missing(self, cl: int, said: Wording) -> Place:
         """Return the place of a CL row to which no motion goes: the block before which one is missing."""
         nc, k = self.matching.nc, self.matching.cl.count_before(cl)
         ends = [event for event in self.run.events if event.kind == "end"]
         if not len(nc) and ends:  # the program ends before the first one
-            return self.at_cl_row(self.place_of_event(ends[0], 0.0, text), cl)
+            return self.at_cl_row(self.place_of_event(ends[0], 0.0, said), cl)
         if not len(self.run):
-            return Place(0, -1, 0.0, text)
+            return Place(0, -1, 0.0, said)
         row = nc[k] if k < len(nc) else self.next_row(nc[-1] if k else 0)
-        return self.place_with_cl(row, 0.0, text, cl)
+        return self.place_with_cl(row, 0.0, said, cl)
 
     def rotary_positioning_place(self, row: int) -> Place | None:
         """Return the block before a row that positioned the rotary axes for it; None if that is the row itself or a
@@ -190,12 +189,12 @@ class ComparedContext(Context):
         by = first + int(written[-1])
         if by == row or by in self.matching.nc:
             return None
-        return self.place(by, 0.0, f"this is where the rotary axes were positioned for {self.block_name(row)}")
+        return self.place(by, 0.0, Wording("all", "positioned_for", block=self.block_name(row)))
 
 
-def check_from_places(key: str, title: str, places: Sequence[Place], good: str) -> Check:
-    """Return a check that passes, with the summary ``good``, if there are no places; else the first is the summary."""
-    return Faults(list(places), len(places)).check(key, title, good)
+def check_from_places(key: str, places: Sequence[Place], good: Wording | None) -> Check:
+    """Return a check that passes, with the answer ``good``, if there are no places; else the first is the answer."""
+    return Faults(list(places), len(places)).check(key, good)
 
 
 @dataclass(slots=True, eq=False)
@@ -214,11 +213,14 @@ class Faults:
         self.count += count
         self.places += islice(places, max(MAX_PLACES - len(self.places), 0))
 
-    def check(self, key: str, title: str, good: str) -> Check:
-        """Return the check: passed with the summary ``good`` if there are no faults; else the first is the summary."""
+    def check(self, key: str, good: Wording | None) -> Check:
+        """Return the check: passed with the answer ``good`` if there are no faults; else the first is the answer."""
         if not self.places:
-            return Check(key, title, True, good)
+            return Check(key, True, good)
+        return Check(key, False, self.answer(), places=tuple(self.places[:MAX_PLACES]))
+
+    def answer(self) -> Wording:
+        """Return the first fault, and how many more there are."""
         first = self.places[0]
-        more = f", and {self.count - 1} more" if self.count > 1 else ""
-        summary = f"{first.block_name}: {first.told}{more}"
-        return Check(key, title, False, summary, places=tuple(self.places[:MAX_PLACES]))
+        fault = Wording("all", "fault", block=first.block_name, fault=first.said)
+        return fault.within("and_more", count=self.count - 1) if self.count > 1 else fault

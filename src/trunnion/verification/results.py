@@ -17,6 +17,7 @@ from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
 from trunnion.verification.basis import assumed_modes, turns_before_offset
+from trunnion.verification.block_names import block_name
 from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -35,15 +36,15 @@ class Place:
     row              the row of the run, as long as that is known; -1 for none
     number           block number, -1 for none
     value            what was found there, in the unit of the check
-    text             the same in words
+    wording          what is said of it
     cl_file, cl_line place in a CL file; line 0 for none
-    code             that of the message which ``text`` is, see ``trunnion.explanations``; empty: a finding of the check
+    code             that of the message which it is, see ``trunnion.explanations``; empty: a finding of the check
     """
 
     nc_line: int
     number: BlockNumber
     value: Annotated[float, Figure(after="cl_line")]
-    text: Annotated[str, Figure(after="value")]
+    wording: Annotated[Wording, NOT_DATA]
     cl_file: OptionalText = ""
     cl_line: OptionalLine = 0
     nc_file: Annotated[str, Figure(none="", after="nc_line")] = ""
@@ -51,14 +52,25 @@ class Place:
     code: Annotated[str, Figure(none="", after="text")] = ""
 
     @property
-    def told(self) -> str:
-        """``text`` as it is printed: with its code, if it has one."""
-        return f"{self.text} [{self.code}]" if self.code else self.text
+    @Figure(after="value")
+    def text(self) -> str:
+        """What is said of it, in English."""
+        return self.wording.what
 
     @property
-    def block_name(self) -> str:
-        """What a programmer calls the block: ``N120``, or its line where it has no number."""
-        return f"N{self.number}" if self.number >= 0 else f"line {self.nc_line}"
+    def said(self) -> Wording:
+        """``wording`` as it is printed: with its code, if it has one."""
+        return self.wording.within("with_code", code=self.code) if self.code else self.wording
+
+    @property
+    def told(self) -> str:
+        """The same in English."""
+        return self.said.what
+
+    @property
+    def block_name(self) -> Wording:
+        """What a programmer calls the block."""
+        return block_name(self.number, self.nc_line)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +90,7 @@ class Coverage:
         yield phrase("motions_checked", checked=self.checked, motions=self.motions)
         if self.left_out:
             first = self.left_out[0]
-            yield phrase("motions_left_out", block=first.block_name, why=first.told)
+            yield phrase("motions_left_out", block=first.block_name, why=first.said)
 
 
 class State(StrEnum):
@@ -98,9 +110,8 @@ class Check:
     """One question about a program, and its answer.
 
     key       stable name, such as ``tip`` or ``travel``; each has a section in docs/checks.md
-    title     the question in a few words
     passed    nothing wrong was found; False: the program must not run as it is. See ``state``
-    summary   the answer in one line: the worst value, where it is, and what is allowed
+    answer    the answer in one line: the worst value, where it is, and what is allowed; None: there is none
     worst     the worst value in ``unit``, None where the check does not measure
     limit     what is allowed, None where there is no limit
     places    the worst places, worst first
@@ -110,9 +121,8 @@ class Check:
     """
 
     key: str
-    title: str
     passed: Annotated[bool, NOT_DATA]
-    summary: str
+    answer: Annotated[Wording | None, NOT_DATA]
     worst: float | None = None
     limit: float | None = None
     unit: str = ""
@@ -120,6 +130,18 @@ class Check:
     missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
     coverage: Coverage | None = None
     stands_on: Annotated[tuple[str, ...], Figure(after="missing")] = ()
+
+    @property
+    @Figure(after="key")
+    def title(self) -> str:
+        """The question in a few words."""
+        return Wording(self.key, "title").what
+
+    @property
+    @Figure(after="stands_on")
+    def summary(self) -> str:
+        """``answer`` in English; empty if there is none."""
+        return self.answer.what if self.answer else ""
 
     @property
     @Figure(after="title")
@@ -133,7 +155,7 @@ class Check:
     def told(self) -> str:
         """``summary`` as it is printed: behind what is missing."""
         covered = () if self.coverage is None else tuple(self.coverage.wordings())
-        return "; ".join(filter(None, (*_texts(self.missing), self.summary, *_texts(covered))))
+        return "; ".join(filter(None, _texts((*self.missing, *filter(None, (self.answer,)), *covered))))
 
     def __str__(self) -> str:
         """Return the line that the command prints: key, state, summary."""
@@ -206,7 +228,7 @@ class Verification:
             warnings=severities.count(Severity.WARNING),
             not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
-            turns_before_offset=turns_before_offset(self.run),
+            turns_before_offset=str(turns_before_offset(self.run) or ""),
         )
 
     def __repr__(self) -> str:

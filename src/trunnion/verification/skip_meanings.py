@@ -18,9 +18,12 @@ def other_meanings(*runs: Run) -> list[frozenset[int]]:
     return skip_combinations(_used(*runs))
 
 
-def words_of(levels: frozenset[int], *runs: Run) -> str:
+def words_of(levels: frozenset[int], *runs: Run) -> Wording:
     """Name a meaning, and the first block that is skipped in it."""
-    return f"with blocks{_which(levels, *runs)} skipped (/, first in line {_first_line(levels, *runs)})"
+    line = _first_line(levels, *runs)
+    if levels == _used(*runs):
+        return Wording("all", "blocks_skipped", line=line)
+    return Wording("all", "levels_skipped", **_which(levels), line=line)
 
 
 def with_other_meanings(
@@ -34,7 +37,7 @@ def with_other_meanings(
     verify         of a run, and the numbers of the OPSKIP that are left out; None: it is not compared
     has_toolpaths  whether the proof has compared the program with CL files
     """
-    used, others = _used(proof.run), list[tuple[str, Sequence[Check]]]()
+    used, others = _used(proof.run), list[tuple[Wording, Sequence[Check]]]()
     as_asked_for = all(check.passed for check in proof.checks if check.key == "stops")
     alone = list[Wording]()
     for each in proof.run.skipped:
@@ -42,9 +45,8 @@ def with_other_meanings(
         if has_toolpaths and as_asked_for:
             left_out = _left_out(proof.skip_levels, each.levels, used)
             if left_out is None:
-                alone.append(
-                    phrase("skipped_in_part", which=_which(each.levels), line=_first_line(each.levels, proof.run))
-                )
+                line = _first_line(each.levels, proof.run)
+                alone.append(phrase("skipped_in_part", **_which(each.levels), line=line))
         others.append((words_of(each.levels, proof.run), verify(each.run, left_out).checks))
     if has_toolpaths and not has_every_combination(used):
         alone.append(phrase("other_combinations", count=len(used)))
@@ -69,7 +71,7 @@ def _with_missing(checks: Iterator[Check], missing: Sequence[Wording]) -> Iterat
         yield replace(check, missing=(*check.missing, *missing)) if check.key == "stops" else check
 
 
-def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[str, Sequence[Check]]]) -> Iterator[Check]:
+def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[Wording, Sequence[Check]]]) -> Iterator[Check]:
     """Yield each check, or what it is in the first other meaning in which it fails; ``others``: words and checks."""
     failed = [(words, {check.key: check for check in found if not check.passed}) for words, found in others]
     for check in checks:
@@ -78,16 +80,17 @@ def _worse_checks(checks: Sequence[Check], others: Sequence[tuple[str, Sequence[
             yield check
             continue
         words, fault = wrong
-        places = tuple(replace(place, row=-1, text=f"{words}: {place.text}") for place in fault.places)
-        yield replace(fault, summary=f"{words}: {fault.summary}", places=places)
+        places = tuple(replace(each, row=-1, wording=_with(words, each.wording)) for each in fault.places)
+        yield replace(fault, answer=fault.answer and _with(words, fault.answer), places=places)
 
 
-def _which(levels: frozenset[int], *runs: Run) -> str:
-    """Return which blocks are skipped, to follow "blocks"; empty for all of the runs."""
-    if levels == _used(*runs):
-        return ""
-    names = [str(level) for level in sorted(levels)]
-    return f" of level {names[0]}" if len(names) == 1 else f" of levels {' and '.join(names)}"
+def _with(words: Wording, said: Wording) -> Wording:
+    return said.within("with_skips", meaning=words)
+
+
+def _which(levels: frozenset[int]) -> dict[str, object]:
+    """Return which blocks are skipped: how many levels, and which."""
+    return {"count": len(levels), "levels": tuple(map(str, sorted(levels)))}
 
 
 def _first_line(levels: frozenset[int], *runs: Run) -> int:

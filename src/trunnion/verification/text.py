@@ -5,10 +5,10 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.messages import phrase
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Kind
 from trunnion.verification.results import Check, Place, State, Verification, durations, moving_seconds
-from trunnion.wording import counted, format_duration
+from trunnion.wording import format_duration
 
 #: Places that are told of each check.
 _MOST_PLACES: Final = 5
@@ -46,13 +46,13 @@ def place_lines(verification: Verification, *, failed_only: bool = False) -> Ite
 
     Lines say where those of checks that passed, and of those that were not made, begin.
     """
-    heads = {State.OK: "passed; the worst places:", State.NOT_CHECKED: "not checked; what is known:"}
+    heads = {State.OK: "places_passed", State.NOT_CHECKED: "places_not_checked"}
     order = [State.FAIL, *heads]
     for check in sorted(verification.checks, key=lambda check: order.index(check.state)):
         if check.passed and failed_only:
             continue
         if check.places and check.state in heads:
-            yield heads.pop(check.state)
+            yield Wording("all", heads.pop(check.state)).what
         for place in check.places[:_MOST_PLACES]:
             yield f"{place_line(verification.program, place)} [{check.key}]"
 
@@ -71,11 +71,12 @@ def time_lines(verification: Verification) -> Iterator[str]:
         cuts = moving_seconds(verification)[verification.run.kind != Kind.RAPID]
         whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, cuts))
         unknown = int(np.count_nonzero(~known))
-        left_out = f", without {counted(unknown, 'motion')} whose time is not known" if unknown else ""
-        yield f"time: {whole}, {cutting} of it in cuts{left_out}"
+        line = Wording("all", "time", time=whole, cuts=cutting)
+        yield (line.within("without_motions", count=unknown) if unknown else line).what
         for operation in verification.operations:
             own = seconds[operation.first : operation.end]
-            yield f"time: {format_duration(float(own.sum()))} for {operation.name}"
+            took = format_duration(float(own.sum()))
+            yield Wording("all", "time_of_operation", time=took, operation=operation.name).what
 
 
 def failures(verification: Verification) -> list[Check]:

@@ -15,6 +15,7 @@ from trunnion.capability.reach import (
 from trunnion.cl.read import ClReading
 from trunnion.jobs.arguments import ReachArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
+from trunnion.jobs.inputs.driven_paths import centres_of
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths
 from trunnion.jobs.inputs.stated_setup import set_up_for_all
@@ -89,6 +90,8 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     )
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
+    centres, notices = centres_of(toolpaths, loaded)
+    observer.problems(notices)
     surface = None
     if part is not None:
         mesh = load_mesh(check_path("part", part), warn=lambda problem: observer.problems((problem,)))
@@ -99,7 +102,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
         _of_tilts(loaded, degrees, observer),
         sphere_share(loaded),
         surface,
-        path_reach(loaded, toolpaths, degrees),
+        path_reach(loaded, centres, degrees),
         tuple(reach_remarks(loaded, placed=part is not None or bool(toolpaths))),
     )
 

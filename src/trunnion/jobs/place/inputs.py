@@ -15,6 +15,9 @@ from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.arguments import PlaceArguments
 from trunnion.jobs.inputs.arguments import check_paths, is_stream, wrong_argument
+from trunnion.jobs.inputs.bodies import known_tools
+from trunnion.jobs.inputs.control_settings import register_value
+from trunnion.jobs.inputs.driven_paths import centres_of, driven_by_tools
 from trunnion.jobs.inputs.hooked import hooked_toolpaths, no_cl_files
 from trunnion.jobs.inputs.reading import ToolpathLike, cl_reading, read_toolpaths
 from trunnion.jobs.inputs.settings import Settings, as_texts
@@ -100,9 +103,15 @@ def read_input(
     if programs and hooks:
         raise no_cl_files()
     if programs:
-        runs = [_run_of(program, machine, subprograms) for program in programs]
-        clamping, problems = _clamping_of_programs(programs)
-        return replace(_of_runs(runs), problems=problems, clamping=clamping)
+        known = known_tools(stated["tools"], stated["tool_libraries"], stated["unit"], ())
+        holds = register_value(None, settings, machine)
+        runs, problems = list[Run](), list[Problem]()
+        for program in programs:
+            run, notices = driven_by_tools(_run_of(program, machine, subprograms), known, holds)
+            runs.append(run)
+            problems += [replace(each, severity=Severity.WARNING) for each in notices]
+        clamping, damaged = _clamping_of_programs(programs)
+        return replace(_of_runs(runs), problems=(*problems, *damaged), clamping=clamping)
     clamping = stated_clamping(toolpaths)
     placed = _planned_tilted(hooked_toolpaths(toolpaths, machine, hooks, texts), machine, texts, observer, tilts)
     return replace(placed, clamping=clamping, toolpaths=tuple(toolpaths))  # a post has hooks change them itself
@@ -228,13 +237,14 @@ def _planned(
         workpiece_zero=(0.0, 0.0, 0.0),
         axes=tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in machine.axes),
     )
-    planned = plan(toolpaths, machine=free, settings={**settings, "cycles": "off"}, explain=False, observer=observer)
+    centres, notices = centres_of(toolpaths, machine)
+    planned = plan(centres, machine=free, settings={**settings, "cycles": "off"}, explain=False, observer=observer)
     warnings = tuple(problem for problem in planned.problems if problem.severity is Severity.WARNING)
     rows = rows_of_plan(free, planned.motions)
     tools = tuple(dict.fromkeys(stretch.tool for stretch in rows.stretches))
     ends = np.diff([*(stretch.first for stretch in rows.stretches), len(rows)])
     tool = np.repeat([tools.index(stretch.tool) for stretch in rows.stretches], ends)
-    return PlacedInput(rows, tool, tools, tuple(toolpaths), warnings)
+    return PlacedInput(rows, tool, tools, tuple(toolpaths), (*notices, *warnings))
 
 
 def _of_runs(runs: Sequence[Run]) -> PlacedInput:

@@ -61,7 +61,7 @@ class ProgramPlaces:
 
     def _place(self, place: Place, control: Control) -> Place:
         written = self._written_by(place.nc_file, place.nc_line, control)
-        return replace(place, text=f"{place.text} ({written})") if written else place
+        return replace(place, wording=place.wording.within("with_note", note=written)) if written else place
 
     def _written_by(self, file: str, line: int, control: Control) -> str:
         for passage in self.passages:

@@ -35,7 +35,7 @@ def in_other_meanings(
     """
     runs = [run for _, own in setups for run in own.runs]
     for levels in other_meanings(*runs):
-        words, told = words_of(levels, *runs), [list[Problem]() for _ in setups]
+        words, told = words_of(levels, *runs).what, [list[Problem]() for _ in setups]
         wrong, found = tuple[Problem, ...](), list[SimulationResult]()
         try:
             others = [

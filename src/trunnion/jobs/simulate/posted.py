@@ -37,7 +37,7 @@ from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place
-from trunnion.wording import counted, position
+from trunnion.wording import position
 
 #: Arguments of ``simulate`` by their names, or the path of a project file.
 SimulationLike: TypeAlias = Mapping[str, Any] | FilePath
@@ -218,8 +218,8 @@ def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:
     hits = [each for each in found.findings if each.kind == What.BODY]
     broken = [remark for remark in found.remarks if remark.severity is Severity.ERROR]
     checks = [
-        _check(found, "removal", "what takes material away", of_removal, broken),
-        _check(found, "collision", "what touches", hits, ()),
+        _check(found, "removal", of_removal, broken),
+        _check(found, "collision", hits, ()),
     ]
     if found.gouge is not None:
         gouges = [each for each in found.findings if each.kind == What.GOUGE]
@@ -228,46 +228,43 @@ def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:
 
 
 def _check(
-    found: SimulationResult,
-    key: str,
-    title: str,
-    findings: Sequence[SimulationFinding],
-    broken: Sequence[Problem],
+    found: SimulationResult, key: str, findings: Sequence[SimulationFinding], broken: Sequence[Problem]
 ) -> Check:
     missing = _cuts_missing(found)
     passed = not findings and not broken
     deepest = max((each.depth for each in findings), default=None)
+    answer: Wording | None = None
     if findings:
         worst = max(findings, key=lambda each: each.depth)
-        summary = f"{counted(len(findings), 'finding')}, the deepest {worst.depth:.3f} mm: {_words(worst)}"
-        first = min(findings, key=lambda each: each.seconds)
-        summary += f"; the first begins in line {first.first_line}"
+        first = min(findings, key=lambda each: each.seconds).first_line
+        numbers = {"count": len(findings), "depth": worst.depth, "first": first}
+        answer = Wording("removal", "findings", **numbers, worst=_words(worst))
     elif broken:
-        summary = broken[0].what
+        answer = broken[0].wording
     elif key == "removal":
-        summary = f"{found.removed:.0f} mm³ removed by turning cutters at feed, and by nothing else"
-        summary += f"; {found.meanings_line}" if found.meanings else ""
+        answer = Wording("removal", "good", volume=found.removed)
+        if found.meanings:
+            answer = Wording("removal", "with_note", answer=answer, note=found.meanings_line)
     elif found.pairs:
-        summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
-        summary += f"; {found.collisions_line}" if found.not_checked else ""
+        answer = Wording("collision", "good", pairs=found.pairs)
+        if found.not_checked:
+            answer = Wording("removal", "with_note", answer=answer, note=found.collisions_line)
     else:
-        summary, missing = "", (phrase("no_bodies"),)
-    places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))
-    return Check(
-        key, title, passed, summary, deepest, 0.0 if key == "collision" else found.limit, "mm", places, missing
-    )
+        missing = (phrase("no_bodies"),)
+    places = (*_places(findings), *(Place(each.line, -1, math.nan, each.wording, code=each.code) for each in broken))
+    return Check(key, passed, answer, deepest, 0.0 if key == "collision" else found.limit, "mm", places, missing)
 
 
 def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding]) -> Check:
     assert found.gouge is not None
     largest = found.gouge.largest
     passed = not findings and largest <= found.limit
-    summary = f"missing from the part: {largest:.3f} mm at most, {found.gouge.volume:.2f} mm³"
+    missing = {"largest": largest, "volume": found.gouge.volume}
+    answer = Wording("gouge", "missing", **missing)
     if findings:
         worst = max(findings, key=lambda each: each.depth)
-        summary += f", by line {worst.line}; {counted(len(findings), 'gouge')}"
-    places, missing = tuple(_places(findings)), _cuts_missing(found)
-    return Check("gouge", "the design against the stock", passed, summary, largest, found.limit, "mm", places, missing)
+        answer = Wording("gouge", "missing_by", **missing, line=worst.line, count=len(findings))
+    return Check("gouge", passed, answer, largest, found.limit, "mm", tuple(_places(findings)), _cuts_missing(found))
 
 
 def _cuts_missing(found: SimulationResult) -> tuple[Wording, ...]:
@@ -278,9 +275,10 @@ def _cuts_missing(found: SimulationResult) -> tuple[Wording, ...]:
 
 def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
     for each in sorted(findings, key=lambda finding: -finding.depth)[:_MOST_PLACES]:
-        text = f"{_words(each)}, {each.depth:.3f} mm deep at {position(each.place)}"
-        text = ", ".join(filter(None, (text, each.stretch)))
-        yield Place(each.line, each.block, each.depth, text, each.cl_file, each.cl_line if each.cl_file else 0)
+        said = Wording("removal", "finding", what=_words(each), depth=each.depth, place=position(each.place))
+        if each.stretch:
+            said = Wording("removal", "in_stretch", finding=said, stretch=each.stretch)
+        yield Place(each.line, each.block, each.depth, said, each.cl_file, each.cl_line if each.cl_file else 0)
 
 
 def _words(finding: SimulationFinding) -> str:

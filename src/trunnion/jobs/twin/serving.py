@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Unpack
 
 from trunnion.cl import is_cl_file
-from trunnion.compensation.driven_runs import driven_run
-from trunnion.compensation.notices import compensation_notices
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, RefusedError, Severity
@@ -19,16 +17,16 @@ from trunnion.jobs.arguments import SetUpArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths, wrong_argument
 from trunnion.jobs.inputs.bodies import known_tools
 from trunnion.jobs.inputs.control_settings import rapid_feed_of, register_value_of
+from trunnion.jobs.inputs.driven_paths import driven_by_tools
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.result_output import check_output_name
 from trunnion.messages import Wording, phrase
+from trunnion.model.one_frame import frame_of_offset
 from trunnion.model.run import Run
 from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
-from trunnion.simulation.tool_deltas import radius_of
-from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.timing import time_run
 from trunnion.twin.mtconnect.device import device_xml
 from trunnion.twin.playback import Playback
@@ -180,15 +178,13 @@ def twin_program(
         raise RefusedError([Problem(each.file, each.line, each.wording.within("stops_twin")) for each in run.errors])
     if not len(run):
         raise InputError(Problem(run.files[0], 0, Wording("TWN111", "nothing_moves")))
+    (run,) = frame_of_offset([run], None).runs([run])
     known = known_tools(given.get("tools", ()), given.get("tool_libraries", ()), given.get("unit"), ())
-    shapes = {name: shape for name in run.tools if (shape := known.find(name or NO_CALL)) is not None}
     holds = RegisterValue(given.get("radius_register") or register_value_of(placed))
-    driven = driven_run(run, holds, lambda row: radius_of(run, shapes, row))
-    notices = list(compensation_notices(run, driven, unsure=Severity.WARNING))
+    run, notices = driven_by_tools(run, known, holds)
     if alarms := [each for each in notices if each.severity is Severity.ERROR]:
         raise RefusedError(alarms)
     observer.problems(notices)
-    run = driven.centre.run
     return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.machines import Mount
+from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.verification.context import Context
 from trunnion.verification.kinematics.cut_extent import cut_extent
@@ -43,7 +44,7 @@ def approaches_through_part(context: Context) -> Iterator[Place]:
             axis=1
         )
         if inside.any() and not inside[0] and not inside[-1]:
-            yield context.place(row, 0.0, "the way from home leads through the part at rapid")
+            yield context.place(row, 0.0, Wording("modal", "through_part"))
 
 
 def _tilts_tool(run: Run, rows: Ints) -> Flags:

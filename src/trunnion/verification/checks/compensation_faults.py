@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.messages import Wording
 from trunnion.model.run import CHUNK_ROWS, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import Context
@@ -31,20 +32,18 @@ def compensated_blind(context: Context) -> Iterator[Place]:
     on = np.flatnonzero(run.compensation != 0)
     if not len(on):
         return
-    cure = "the control does not see the next corner, and may cut into it"
     if not settings.stops_in_compensation:
         within = set(on[1:][np.diff(on) == 1].tolist())
         stops = (
             event for event in run.events if event.kind in ("stop", "optional_stop") and event.before_row in within
         )
         for event in stops:
-            yield context.place_of_event(event, 0.0, f"stops within radius compensation: {cure}")
+            yield context.place_of_event(event, 0.0, Wording("modal", "stop_compensated"))
             break
     row, found = next(blind_corners(run, settings.blocks_in_compensation), (-1, 0))
     if row >= 0:
-        text = f"{found} blocks without motion in the plane of radius compensation before this, and the control reads"
-        text = f"{text} {settings.blocks_in_compensation}: {cure}"
-        yield context.place(row, float(found), text)
+        said = Wording("modal", "blocks_compensated", found=found, most=settings.blocks_in_compensation)
+        yield context.place(row, float(found), said)
 
 
 def blind_corners(run: Run, most: int) -> Iterator[tuple[int, int]]:
@@ -114,6 +113,5 @@ def compensated_askew(context: Context) -> Iterator[Place]:
         askew = np.flatnonzero(angle > _ASKEW)
         if len(askew):
             worst = float(angle[askew[0]])
-            text = f"radius compensation in a plane to which the tool is not perpendicular, by {worst:.2f} degrees"
-            yield context.place(int(rows[askew[0]]), worst, f"{text}: it offsets the path along the tool as well")
+            yield context.place(int(rows[askew[0]]), worst, Wording("modal", "askew", angle=worst))
             return

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.messages import phrase
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import EventValue, Run, RunEvent
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.states import all_coolants, coolant_states
@@ -113,29 +113,27 @@ def check_coolant(context: ComparedContext) -> Check:
         if wanted is None or (of_builder and unknown):
             unread.add(state.value)
             if not by_builder and (state.value != before or words.has_own_word(after, row)):
-                text = (
-                    f"the CL file wants coolant {state.value} from here on,"
-                    " and no word of the machine builder stands here"
-                )
-                places.append(context.place_with_cl(row, 0.0, text, matching.cl[first]))
+                said = Wording("coolant", "no_word", wanted=state.value)
+                places.append(context.place_with_cl(row, 0.0, said, matching.cl[first]))
             off = words.stays_off[(words.stays_off > row) & (words.stays_off <= last)]
             if len(off):
-                text = f"coolant is switched off; the CL file wants {state.value}"
-                places.append(context.place(int(off[0]), 0.0, text))
+                said = Wording("coolant", "switched_off", wanted=state.value)
+                places.append(context.place(int(off[0]), 0.0, said))
         else:
             asked.add(wanted)
             fault = _fault(words, wanted, row, last, readable=not unread)
             if fault is not None and fault.at_point:
-                places.append(context.place_with_cl(fault.row, 0.0, fault.text, matching.cl[first]))
+                places.append(context.place_with_cl(fault.row, 0.0, fault.said, matching.cl[first]))
             elif fault is not None:
-                places.append(context.place(min(fault.row, len(run) - 1), 0.0, fault.text))
+                places.append(context.place(min(fault.row, len(run) - 1), 0.0, fault.said))
         before = state.value
     anywhere = {words.names.get(word) for word in all_coolants(context.expected)}
     for _, name, event in words.changes:
         if not unread and None not in anywhere and name not in asked | anywhere | {"off"}:
-            places.append(context.place_of_event(event, 0.0, f"coolant {name}, which the CL file never asks for"))
+            places.append(context.place_of_event(event, 0.0, Wording("coolant", "never_asked", kind=_kind(name))))
     places.sort(key=lambda place: place.nc_line)
-    found = check_from_places("coolant", "coolant as the CL file says", places, ", ".join(sorted(asked)))
+    good = Wording("coolant", "good", kinds=tuple(map(_kind, sorted(asked)))) if asked else None
+    found = check_from_places("coolant", places, good)
     missing = () if places else tuple(phrase("coolant_unread", kind=kind) for kind in sorted(unread))
     return replace(found, missing=missing)
 
@@ -145,8 +143,13 @@ class _Fault:
     """A row with wrong coolant; ``at_point``: it belongs to the CL point from which on the state is expected."""
 
     row: int
-    text: str
+    said: Wording
     at_point: bool = True
+
+
+def _kind(name: str) -> Wording | str:
+    """Return a kind of coolant in words; others have the name that their definition gives them."""
+    return Wording("coolant", name) if name in ("off", "flood", "mist", "through") else name
 
 
 def _fault(words: _CoolantWords, wanted: str, row: int, last: int, *, readable: bool) -> _Fault | None:
@@ -162,11 +165,11 @@ def _fault(words: _CoolantWords, wanted: str, row: int, last: int, *, readable: 
         row += 1  # M9 acts after the motion of its block
         if row > last:
             still_on = not words.is_off_before(row)
-            return _Fault(last, "coolant is still on; the CL file wants it off") if still_on else None
+            return _Fault(last, Wording("coolant", "still_on")) if still_on else None
     now = words.at(row)
     if differs(now):
-        return _Fault(row, f"coolant is {now}; the CL file wants {wanted}")
+        return _Fault(row, Wording("coolant", "other", has=_kind(now), wanted=_kind(wanted)))
     for changed, state in words.between(row, last):
         if differs(state):
-            return _Fault(changed, f"coolant changes; the CL file wants {wanted}", at_point=False)
+            return _Fault(changed, Wording("coolant", "changes", wanted=_kind(wanted)), at_point=False)
     return None

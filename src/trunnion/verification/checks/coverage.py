@@ -84,6 +84,6 @@ def _coverage(context: ComparedContext, why: Codes) -> Coverage:
     """Return the count, and the first motion of each reason: those first that no other check compares with anything."""
     reasons = [reason for reason in (_FROM_HOME, _NO_POINT, *_REASONS) if (why == reason).any()]
     places = tuple(
-        context.place(int(np.argmax(why == reason)), 0.0, _REASONS[reason]().what) for reason in dict.fromkeys(reasons)
+        context.place(int(np.argmax(why == reason)), 0.0, _REASONS[reason]()) for reason in dict.fromkeys(reasons)
     )
     return Coverage(int(np.count_nonzero(why == _CHECKED)), len(why), places)

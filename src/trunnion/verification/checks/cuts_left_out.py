@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from trunnion.arrays import Flags
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import RunEvent
 from trunnion.model.toolpath import Kind
@@ -43,12 +44,10 @@ def cuts_left_out(context: ComparedContext, told: Collection[int]) -> Iterator[P
         words = [retracts[row] for row in range(first, end + 1) if row in retracts]
         if not _is_back(context, first, end, words):
             left, wanted = run.positions(np.array([first - 1])).tip[0], context.expected.point(cl).tip
-            text = (
-                f"leaves the path and goes on in {context.block_name(end)} at {position(wanted)}: "
-                f"the cut from {position(left)} to there is not made"
-            )
+            block, places = context.block_name(end), {"left": position(left), "wanted": position(wanted)}
+            said = Wording("order", "cut_left_out", block=block, **places)
             by_word = words and words[0].before_row == first
-            place = context.place_of_event(words[0], 0.0, text) if by_word else context.place(first, 0.0, text)
+            place = context.place_of_event(words[0], 0.0, said) if by_word else context.place(first, 0.0, said)
             yield context.at_cl_row(place, cl)
 
 

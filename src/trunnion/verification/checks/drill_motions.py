@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Codes, Floats, Ints
+from trunnion.messages import Wording
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -16,7 +17,7 @@ class HoleFault:
 
     row: int
     value: float
-    text: str
+    said: Wording
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,6 +40,6 @@ class DrillMotions:
         """Index of the deepest row."""
         return int(np.argmin(self.height))
 
-    def fault(self, k: int, value: float, text: str) -> HoleFault:
+    def fault(self, k: int, value: float, said: Wording) -> HoleFault:
         """Return a fault at the k-th row."""
-        return HoleFault(int(self.row[k]), value, text)
+        return HoleFault(int(self.row[k]), value, said)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.feed_path import NO_ROTATION, FeedPath, row_feed_path_lengths
 from trunnion.model.toolpath import Kind
 from trunnion.timing import HARDLY_MOVES
@@ -14,7 +15,9 @@ from trunnion.verification.deviations.declared_deviations import AcceptedDeviati
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import feed_per_rev_tolerance
 from trunnion.verification.results import Check
-from trunnion.wording import counted
+
+#: What is said of several feeds in a unit, by what is said of one.
+_RANGES = {"per_minute": "range_per_minute", "per_revolution": "range_per_revolution"}
 
 #: A tip that moves by less than this, mm, or by less than rounding, may be taken to rest.
 _TIP_RESTS = 1e-3
@@ -36,7 +39,7 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original:
     """
     found = Faults()
     declared = [*accepted.feed, *needlessly_lowered_feeds(context.run, context.expected, context.matching)]
-    found.add_rows(len(declared), (context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in declared))
+    found.add_rows(len(declared), (context.place_of_cl_row(fault.cl, fault.value, fault.said) for fault in declared))
     ranges = _compare_points(context, original, found)
     for segments in context.matching.arc_segments:
         wanted, tolerances = (
@@ -48,17 +51,16 @@ def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original:
         digit = feed_per_rev_tolerance(asked) if per_rev else np.full(len(asked), tolerances.feed)
         near, feed = _compare_feeds(context, segments.nc, asked, tolerances.tip, digit)
         for k in np.flatnonzero(~near).tolist():
-            text = f"moves with {feed[k]:g} mm/min; the CL file wants {wanted:g}"
-            found.add(context.place_with_cl(int(segments.nc[k]), float(feed[k]), text, segments.cl))
-    good = ", ".join(map(_range_text, sorted(ranges.items()))) or "no cutting motions outside of cycles"
+            said = Wording("feed", "other_on_arc", has=feed[k], wanted=wanted)
+            found.add(context.place_with_cl(int(segments.nc[k]), float(feed[k]), said, segments.cl))
+    feeds = tuple(_range(unit, *ends) for unit, ends in sorted(ranges.items()))
+    good = Wording("feed", "feeds", feeds=feeds) if feeds else Wording("feed", "nothing_cuts")
     lowest, rows = accepted.slowed
-    good += f"; lowered at {counted(rows, 'row')}, down to {lowest:.2f}, for the rotary axes" if rows else ""
-    return found.check("feed", "feeds as the CL file says", good)
+    return found.check("feed", Wording("feed", "lowered", feeds=good, rows=rows, lowest=lowest) if rows else good)
 
 
-def _range_text(item: tuple[str, tuple[float, float]]) -> str:
-    unit, (low, high) = item
-    return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
+def _range(unit: str, low: float, high: float) -> Wording:
+    return Wording("feed", unit, feed=low) if low == high else Wording("feed", _RANGES[unit], low=low, high=high)
 
 
 def _compare_points(context: ComparedContext, original: ExpectedPath, found: Faults) -> dict[str, tuple[float, float]]:
@@ -79,26 +81,29 @@ def _compare_points(context: ComparedContext, original: ExpectedPath, found: Fau
         stated = at_feed & ~np.isnan(asked)
         wrong = at_feed & ((mode == 95) != per_rev)
         wrong |= stated & ~near
-        for unit, rows in (("mm/min", stated & ~per_rev), ("mm/rev", stated & per_rev)):
+        for unit, rows in (("per_minute", stated & ~per_rev), ("per_revolution", stated & per_rev)):
             if rows.any():
                 low, high = ranges.get(unit, (np.inf, -np.inf))
                 ranges[unit] = min(low, float(asked[rows].min())), max(high, float(asked[rows].max()))
         if not wrong.any():
             continue
         texts = (
-            (int(k), _feed_text(float(feed[k]), int(mode[k]), float(asked[k]), "mm/rev" if per_rev[k] else "mm/min"))
+            (int(k), _feed_fault(float(feed[k]), int(mode[k]), float(asked[k]), 95 if per_rev[k] else 94))
             for k in np.flatnonzero(wrong)
         )
-        places = (context.place_with_cl(int(nc[k]), float(feed[k]), text, int(cl[k])) for k, text in texts)
+        places = (context.place_with_cl(int(nc[k]), float(feed[k]), said, int(cl[k])) for k, said in texts)
         found.add_rows(int(wrong.sum()), places)
     return ranges
 
 
-def _feed_text(feed: float, mode: int, asked: float, unit: str) -> str:
-    """Return a feed that is wrong, and the one asked for, in words."""
-    own = {93: "mm/min (inverse time)", 95: "mm/rev"}.get(mode, "mm/min")
-    has = "no feed" if math.isnan(feed) else f"{feed:g} {own}"
-    return f"moves with {has}; the CL file wants {asked:g} {unit}"
+def _feed_fault(feed: float, mode: int, asked: float, mode_asked: int) -> Wording:
+    """Return a feed that is wrong, and the one asked for."""
+    has = Wording("feed", "no_feed") if math.isnan(feed) else _feed_in(mode, feed)
+    return Wording("feed", "other", has=has, wanted=_feed_in(mode_asked, asked))
+
+
+def _feed_in(mode: int, feed: float) -> Wording:
+    return Wording("feed", {93: "per_minute_by_time", 95: "per_revolution"}.get(mode, "per_minute"), feed=feed)
 
 
 def _asked_at_rest(context: ComparedContext, nc: Ints, asked: Floats, own: Floats) -> tuple[Floats, Ints]:

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.verification.checks.drill_motions import HoleFault
 from trunnion.verification.checks.hole_faults import hole_faults
@@ -17,7 +18,6 @@ from trunnion.verification.matching.hole_approaches import clearance_between_hol
 from trunnion.verification.matching.hole_matching import MatchedHole, match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted
 
 #: A way from hole to hole is level, or along the axis, when it is off by no more than this, mm.
 _SLANT: Final = 0.05
@@ -46,7 +46,7 @@ def check_holes(context: ComparedContext) -> Check:
     for index, hole in enumerate(expected.holes):
         match = by_index.get(index)
         if match is None:
-            found.add(Place(context.last_line, -1, 0.0, "nothing drills this hole", hole.file, hole.line))
+            found.add(Place(context.last_line, -1, 0.0, Wording("holes", "nothing_drills"), hole.file, hole.line))
             continue
         drilled = _Drilled(hole, match)
         faults = list(hole_faults(run, hole, match, dwells, work, _clearance_on_the_way(context, before, drilled)))
@@ -54,15 +54,15 @@ def check_holes(context: ComparedContext) -> Check:
         faults += _slanted_rapids(context, before, drilled)
         before = drilled
         for fault in faults:
-            at = context.place(fault.row, fault.value, fault.text)
+            at = context.place(fault.row, fault.value, fault.said)
             found.add(replace(at, cl_file=hole.file, cl_line=hole.line))
     found.add(*_floating_threads(context, by_index))
     for match in (match for match in matches if match.index >= len(expected.holes)):
-        found.add(context.place(match.first, 0.0, "drills where the CL file has no more holes"))
-    good = counted(len(matches), "hole") if matches else "the CL file has none"
-    by_motion = sum(match.by_motion for match in matches)
-    good += f", {by_motion} of them by motion" if by_motion else ""
-    return found.check("holes", "holes as the cycles of the CL file ask", good)
+        found.add(context.place(match.first, 0.0, Wording("holes", "no_more")))
+    good = Wording("holes", "good", count=len(matches)) if matches else Wording("holes", "none_asked")
+    if by_motion := sum(match.by_motion for match in matches):
+        good = Wording("holes", "some_by_motion", count=len(matches), by_motion=by_motion)
+    return found.check("holes", good)
 
 
 def _floating_threads(context: ComparedContext, matches: Mapping[int, MatchedHole]) -> Iterator[Place]:
@@ -81,8 +81,7 @@ def _floating_threads(context: ComparedContext, matches: Mapping[int, MatchedHol
         elif match.first > before:
             rigid = False
         if hole.cycle.mode[:1] == ("TAP",) and not (hole.cycle.floating or rigid or match.by_motion):
-            text = f"cuts a thread as with a compensating chuck: M{code} is missing"
-            place = context.place(match.first, 0.0, text)
+            place = context.place(match.first, 0.0, Wording("holes", "chuck", code=code))
             yield replace(place, cl_file=hole.file, cl_line=hole.line)
         before = match.end
 
@@ -145,4 +144,4 @@ def _faults_around(context: ComparedContext, drilled: _Drilled) -> Iterator[Hole
     first = row + drilled.match.shares_first_row
     end = drilled.match.end - drilled.match.shares_last_row
     if (k and matching.nc[k - 1] >= first) or (k < len(matching.nc) and matching.nc[k] < end):
-        yield HoleFault(row, 0.0, "the hole is drilled before or after its turn")
+        yield HoleFault(row, 0.0, Wording("holes", "out_of_turn"))

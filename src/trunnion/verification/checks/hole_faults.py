@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.model.toolpath import Kind
@@ -31,18 +32,15 @@ _DWELL: Final = 1.01e-3
 
 #: What a cycle does with the spindle, for messages.
 _TASKS: Final[dict[SpindleTask | None, str]] = {
-    None: "only turns the spindle",
-    SpindleTask.TAP: "cuts a thread",
-    SpindleTask.STOP: "stops the spindle at the bottom",
-    SpindleTask.LIFT: "lifts the oriented tool off the wall",
-    SpindleTask.MANUAL: "stops for a retract by hand",
-}
+    None: "turns_only", SpindleTask.TAP: "cuts_thread", SpindleTask.STOP: "stops_spindle",
+    SpindleTask.LIFT: "lifts_tool", SpindleTask.MANUAL: "by_hand",
+}  # fmt: skip
 
 #: Bores by the word behind BORE; those that motions of the program can make, which are judged by themselves.
 _BORES: Final = {"DRAG": SpindleTask.STOP, "NODRAG": SpindleTask.LIFT, "MANUAL": SpindleTask.MANUAL}
 _BY_MOTION: Final = (SpindleTask.STOP,)
 
-_SENSES: Final = {1: "turning clockwise", -1: "turning counter-clockwise", 0: "standing"}
+_SENSES: Final = {1: "clockwise", -1: "counter_clockwise", 0: "standing"}
 
 #: Cycles that leave the hole at feed.
 _FEED_OUT: Final = ("TAP", "REAM")
@@ -70,18 +68,18 @@ def hole_faults(
         kind[0] = Kind.RAPID
     motions = DrillMotions(rows[1:], kind, height[1:], match.by_motion)
     if float(np.abs(positions.axis[1:] - hole.axis).max()) > 1e-6 + np.radians(4.0 * hole.tip_tolerance):
-        yield motions.fault(0, 0.0, "the tool does not stand along the axis of the hole")
+        yield motions.fault(0, 0.0, Wording("holes", "askew"))
         return
     off_axis = (aside[1:] > hole.tolerance) & ~(("NODRAG" in hole.cycle.mode) & (kind == Kind.RAPID))
     if off_axis.any():
         k = int(np.argmax(off_axis))
         off = float(aside[1:][k])
-        yield motions.fault(k, off, f"{off:.5f} mm beside the hole that the CL file asks for")
+        yield motions.fault(k, off, Wording("holes", "aside", off=off))
         return
     from_aside = bool(aside[0] > hole.tolerance) and not comes_from_home(run, match.first)
     yield from _approach_faults(hole, motions, float(height[0]), from_aside, clearance)
     if len(motions.row) < 3 or (kind == Kind.RAPID).all():
-        yield motions.fault(0, 0.0, "the hole is not drilled")
+        yield motions.fault(0, 0.0, Wording("holes", "not_drilled"))
         return
     rpm = float(run.state.rpm[match.end - 1])
     bottom = int(motions.row[motions.bottom])
@@ -104,14 +102,12 @@ def _approach_faults(
     from_aside  the approach starts at a known place that is not on the axis of the hole
     """
     if clearance is not None and clearance < -hole.tolerance:
-        text = f"goes to the hole {-clearance:.4f} mm too low over both it and the one before"
-        yield motions.fault(0, clearance, text)
+        yield motions.fault(0, clearance, Wording("holes", "too_low", low=-clearance))
     lowest = hole.cycle.clearance - hole.tolerance
     slanted = clearance is None and from_aside and start_height < lowest
     if motions.kind[0] != Kind.RAPID or motions.height[0] < lowest or slanted:
         low = min(float(motions.height[0]), start_height)
-        text = f"goes to the hole {low:.4f} mm above it; the CL file wants at least {hole.cycle.clearance:g}"
-        yield motions.fault(0, low, text)
+        yield motions.fault(0, low, Wording("holes", "low_approach", low=low, wanted=hole.cycle.clearance))
 
 
 def _height_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
@@ -119,13 +115,15 @@ def _height_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
     h = motions.height
     start = int(np.argmax(motions.kind != Kind.RAPID)) - 1  # a control may come down to it in two steps
     if abs(h[start] - hole.cycle.clearance) > hole.tolerance:
-        text = f"begins to feed {h[start]:.4f} mm above the hole, not {hole.cycle.clearance:g}"
-        yield motions.fault(start, float(h[start]), text)
+        said = Wording("holes", "feed_begins", height=h[start], wanted=hole.cycle.clearance)
+        yield motions.fault(start, float(h[start]), said)
     if abs(h[-1] - hole.cycle.retract) > hole.tolerance:
-        yield motions.fault(-1, float(h[-1]), f"is drawn back to {h[-1]:.4f} mm, not to {hole.cycle.retract:g}")
+        said = Wording("holes", "drawn_back", height=h[-1], wanted=hole.cycle.retract)
+        yield motions.fault(-1, float(h[-1]), said)
     depth = -h.min()
     if abs(depth - hole.cycle.depth) > hole.tolerance:
-        yield motions.fault(motions.bottom, float(depth), f"drills {depth:.4f} mm deep, not {hole.cycle.depth:g}")
+        said = Wording("holes", "other_depth", depth=depth, wanted=hole.cycle.depth)
+        yield motions.fault(motions.bottom, float(depth), said)
 
 
 def _exit_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
@@ -136,10 +134,9 @@ def _exit_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
     at_feed = hole.cycle.mode[0] in _FEED_OUT or hole.cycle.mode == ("BORE",)
     height = float(motions.height[after])
     if (motions.kind[after] == Kind.LINEAR) != at_feed:
-        how = "at rapid" if at_feed else "at a feed"
-        yield motions.fault(after, 0.0, f"leaves the hole {how}, which is not what the CL file says")
+        yield motions.fault(after, 0.0, Wording("holes", "leaves_at_rapid" if at_feed else "leaves_at_feed"))
     elif motions.by_motion and at_feed and abs(height - hole.cycle.clearance) > hole.tolerance:
-        yield motions.fault(after, height, f"leaves the hole at a feed to another height than {hole.cycle.clearance:g}")
+        yield motions.fault(after, height, Wording("holes", "leaves_to_height", wanted=hole.cycle.clearance))
 
 
 def _repeats(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
@@ -152,7 +149,7 @@ def _repeats(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
         into[: int(out[0])] = False
         if into.any():
             k = int(np.argmax(into))
-            yield motions.fault(k, float(h[k]), "drills the hole again; the CL file wants it once")
+            yield motions.fault(k, float(h[k]), Wording("holes", "again"))
 
 
 def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float, way: Floats) -> Iterator[HoleFault]:
@@ -171,10 +168,12 @@ def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float, way: Floats) -> 
     off = ~(np.abs(feed - wanted) <= allowed + 1e-9 * wanted)
     if off.any():
         k = int(np.argmax(off))
-        unit = f" ({hole.cycle.feed:g} mm/rev)" if hole.cycle.per_rev else ""
-        found = f"moves with {feed[k]:g} mm/min" if feed[k] == feed[k] else "has its F in inverse time (G93)"
-        text = f"{found}; the CL file wants {wanted:g}{unit}"
-        yield HoleFault(int(lines[k]), float(np.nan_to_num(feed[k])), text)
+        has = Wording("holes", "moves_with", feed=feed[k]) if feed[k] == feed[k] else Wording("holes", "by_time")
+        asked = Wording("holes", "feed", feed=wanted)
+        if hole.cycle.per_rev:
+            asked = Wording("holes", "feed_per_revolution", feed=wanted, per_revolution=hole.cycle.feed)
+        said = Wording("holes", "other_feed", has=has, wanted=asked)
+        yield HoleFault(int(lines[k]), float(np.nan_to_num(feed[k])), said)
 
 
 def _dwell_faults(
@@ -184,13 +183,13 @@ def _dwell_faults(
     wanted = 60.0 * hole.cycle.dwell / rpm if hole.cycle.dwell_turns and rpm else hole.cycle.dwell
     has = _seconds(dwells.get(bottom + 1, ()), rpm)
     if abs(has - wanted) > _DWELL:
-        yield HoleFault(bottom, has, f"waits {has:g} s at the bottom; the CL file wants {wanted:g}")
+        yield HoleFault(bottom, has, Wording("holes", "other_dwell", seconds=has, wanted=wanted))
     for row in range(match.first + 1, match.end):
         if row == bottom + 1 or row not in dwells:
             continue
         waits = _seconds(dwells[row], rpm)
         if match.by_motion or abs(waits - wanted) > _DWELL:  # some cycles wait after every peck
-            yield HoleFault(row, waits, f"waits {waits:g} s in the hole where the CL file does not want it")
+            yield HoleFault(row, waits, Wording("holes", "waits", seconds=waits))
             return
 
 
@@ -208,21 +207,19 @@ def _work_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, Spin
     at = match.end - 1 if row is None else min(row, match.end - 1)
     has, wants = None if work is None else work.task, _task(hole.cycle.mode)
     if has is not wants and not (match.by_motion and wants in _BY_MOTION):
-        yield HoleFault(at, 0.0, f"{_TASKS[has]}; the CL file wants a hole whose cycle {_TASKS[wants]}")
+        tasks = {"has": Wording("holes", _TASKS[has]), "wanted": Wording("holes", _TASKS[wants])}
+        yield HoleFault(at, 0.0, Wording("holes", "other_task", **tasks))
         return
     if work is not None and work.stroke and not hole.cycle.pecks:
-        text = f"cuts a thread in strokes of {work.stroke:g} mm; the CL file wants it in one"
-        yield HoleFault(at, work.stroke, text)
+        yield HoleFault(at, work.stroke, Wording("holes", "in_strokes", stroke=work.stroke))
     if work is None or hole.spindle is None or not hole.spindle.sense:
         return
     hand, sense = work.hand, hole.spindle.sense  # 0: that of the spindle, which is judged by itself
     if hand and hand != sense:
-        which, asked = ("left", "right") if hand < 0 else ("right", "left")
-        text = f"cuts a {which}-hand thread; the CL file wants a {asked}-hand one"
-        yield HoleFault(at, hand, text)
+        yield HoleFault(at, hand, Wording("holes", "left_hand" if hand < 0 else "right_hand"))
     if work.after is not None and work.after != sense:
-        text = f"the cycle leaves the spindle {_SENSES[work.after]}; the CL file wants it {_SENSES[sense]}"
-        yield HoleFault(at, work.after, text)
+        senses = {"has": Wording("holes", _SENSES[work.after]), "wanted": Wording("holes", _SENSES[sense])}
+        yield HoleFault(at, work.after, Wording("holes", "other_sense", **senses))
 
 
 def _task(mode: tuple[str, ...]) -> SpindleTask | None:
@@ -238,7 +235,7 @@ def _spindle_faults(run: Run, hole: Hole, match: MatchedHole, bottom: int) -> It
     row = bottom if leaves_off else match.end - 1
     sense, rpm, wanted = int(run.state.spindle[row]), float(run.state.rpm[row]), hole.spindle
     if wanted is not None and (sense != wanted.sense or (sense and abs(rpm - wanted.rpm) > RPM_TOLERANCE)):
-        text = f"the spindle turns with {sense * rpm:g}, not with {wanted.sense * wanted.rpm:g}"
-        yield HoleFault(row, rpm, text)
+        said = Wording("holes", "other_speed", speed=sense * rpm, wanted=wanted.sense * wanted.rpm)
+        yield HoleFault(row, rpm, said)
     if leaves_off and int(run.state.spindle[row + 1]):
-        yield HoleFault(row + 1, rpm, "leaves the hole with the spindle turning; the CL file wants it to stand")
+        yield HoleFault(row + 1, rpm, Wording("holes", "left_turning"))

@@ -1,6 +1,6 @@
 """Motions to the machine's home positions."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
-from trunnion.messages import phrase
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.passages import without_retract
@@ -18,10 +18,11 @@ from trunnion.verification.kinematics.home_tolerance import HOME_TOLERANCE, home
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.results import Check, Place
 
-_TITLE: Final = "retracts to the machine's home"
-
-#: Where axes must be at home, by the kinds of events.
-_NAMES: Final = {"tool_change": "a tool change", "end": "the end"}
+#: Where axes must be at home, by the kinds of events: how it is said where there are none, and with their names.
+_PLACES: Final = {
+    "tool_change": ("no_axis_at_change", "axes_at_change"),
+    "end": ("no_axis_at_end", "axes_at_end"),
+}
 
 _SLIDE_WORDS: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
 
@@ -75,7 +76,7 @@ def check_home(context: Context) -> Check:
     """
     check = _check_motions(context)
     unretracted = list(without_retract(context))
-    return check_from_places("home", _TITLE, [*check.places, *unretracted], "") if unretracted else check
+    return check_from_places("home", [*check.places, *unretracted], None) if unretracted else check
 
 
 def _check_motions(context: Context) -> Check:
@@ -85,12 +86,10 @@ def _check_motions(context: Context) -> Check:
     if not (motions.at_home & motions.named).any():
         return _check_other_positions(context)
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
-    good = "linear and rotary axes at home before, after and at every tool change"
     stated = context.run.machine.home_at
-    if stated:
-        which = (f"{' '.join(names) or 'no axis'} at {_NAMES[place]}" for place, names in stated.items())
-        good = f"at home as the definition asks: {', '.join(which)}"
-    return check_from_places("home", _TITLE, places, good)
+    which = tuple(Wording("home", _PLACES[at][bool(names)], axes=tuple(names)) for at, names in stated.items())
+    good = Wording("home", "as_defined", places=which) if which else Wording("home", "good")
+    return check_from_places("home", places, good)
 
 
 def _needed(machine: Machine, *places: str) -> list[int]:
@@ -102,21 +101,19 @@ def _needed(machine: Machine, *places: str) -> list[int]:
 def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
     """Motions to other positions, at feed, or along several axes before the tool was retracted along one."""
     run, machine = context.run, context.run.machine
-    free = set(machine.linear) - set(_needed(machine, *_NAMES))
+    free = set(machine.linear) - set(_needed(machine, *_PLACES))
     for k, row in enumerate(motions.rows.tolist()):
         axes = [machine.axes[c].name for c in np.flatnonzero(motions.named[k])]
         elsewhere = np.flatnonzero(motions.named[k] & ~motions.at_home[k]).tolist()
         away = [machine.axes[c].name for c in elsewhere if c not in free]
         if away:
-            text = f"moves {' and '.join(away)} to a machine position that is not its home"
-            yield context.place(row, 0.0, text)
+            yield context.place(row, 0.0, Wording("home", "elsewhere", axes=tuple(away)))
         if run.kind[row] != Kind.RAPID:
-            yield context.place(row, 0.0, "moves home at feed, not at rapid")
+            yield context.place(row, 0.0, Wording("home", "at_feed"))
         not_retracted = k == 0 or row != motions.rows[k - 1] + 1
         moves = bool((np.abs(motions.joints[k] - motions.before[k]) > HOME_TOLERANCE).any())
         if not_retracted and len(axes) > 1 and (moves or row == 0):
-            text = f"moves {' and '.join(axes)} home before the tool has been drawn back along one linear axis"
-            yield context.place(row, 0.0, text)
+            yield context.place(row, 0.0, Wording("home", "not_retracted", axes=tuple(axes)))
 
 
 def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator[Place]:
@@ -132,9 +129,8 @@ def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator
         k = int(np.searchsorted(motions.rows, row, "right")) - 1
         was_home = k >= 0 and motions.at_home[k, slides].all()
         if not (was_home and _slides_stay_home(run, slides, int(motions.rows[k]) + 1, row + 1)):
-            what = "changes the tool" if event.kind == "tool_change" else "ends"
-            text = f"{what} in line {event.line} while the linear axes are not at home; this is the last motion before"
-            yield context.place(row, 0.0, text)
+            what = "changes_away" if event.kind == "tool_change" else "ends_away"
+            yield context.place(row, 0.0, Wording("home", what, line=event.line))
 
 
 def _slides_stay_home(run: Run, slides: list[int], first: int, end: int) -> bool:
@@ -154,14 +150,14 @@ def _check_other_positions(context: Context) -> Check:
     changes = [(place, event) for place, event in changes if event.before_row > 0]
     lost = [event for place, event in changes if not away(place)]
     if len(lost) == len(changes):
-        return Check(
-            "home", _TITLE, True, "machine positions other than the home of the definition",
-            missing=(phrase("no_home"),),
-        )  # fmt: skip
-    text = "changes the tool without the retract that stands before other tool changes"
-    places = [context.place_of_event(event, 0.0, text) for event in lost]
-    good = "a retract before every tool change, to machine positions other than the home of the definition"
-    return check_from_places("home", _TITLE, places, good)
+        return Check("home", True, Wording("home", "other_positions"), missing=(phrase("no_home"),))
+    return check_from_places("home", _unretracted(context, lost), Wording("home", "retracts_elsewhere"))
+
+
+def _unretracted(context: Context, events: Iterable[RunEvent]) -> list[Place]:
+    """Return the places of tool changes, and the end, before which no retract stands."""
+    variants = {"tool_change": "change_unretracted", "end": "end_unretracted"}
+    return [context.place_of_event(each, 0.0, Wording("home", variants[each.kind])) for each in events]
 
 
 def _check_retracts_by_word(context: Context) -> Check:
@@ -185,8 +181,5 @@ def _check_retracts_by_word(context: Context) -> Check:
             if since is None or (since & int(_SLIDE_WORDS)).any():
                 lost.append(event)
     if sum(event.kind == "tool_change" for event in lost) == changes:
-        return Check("home", _TITLE, True, "", missing=(phrase("no_home"),))
-    what = {"tool_change": "changes the tool", "end": "ends"}
-    text = "without the retract that stands before other tool changes"
-    places = [context.place_of_event(event, 0.0, f"{what[event.kind]} {text}") for event in lost]
-    return check_from_places("home", _TITLE, places, "a retract by its word before every tool change, and at the end")
+        return Check("home", True, None, missing=(phrase("no_home"),))
+    return check_from_places("home", _unretracted(context, lost), Wording("home", "retracts_by_word"))

@@ -8,13 +8,13 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
-from trunnion.messages import phrase
+from trunnion.messages import Wording, phrase
 from trunnion.model.columns import StepColumn
 from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.coverage import coverage_of
-from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues, Faults
 from trunnion.verification.deviations.linearization import LinearizationErrors
 from trunnion.verification.expected.arcs import circle_of
 from trunnion.verification.expected.path import WrittenSpline
@@ -66,7 +66,7 @@ def spline_faults(context: ComparedContext) -> SplineFaults:
             deviation, row = float(off.max()), spline.last
         places += _too_far(context, spline, off)
         if changed := _change_inside(context.run, spline, events):
-            places.append(context.place(spline.last, 0.0, f"{changed} along a spline of the CL file"))
+            places.append(context.place(spline.last, 0.0, changed))
     return SplineFaults(tuple(places), deviation, row)
 
 
@@ -78,8 +78,7 @@ def _too_far(context: ComparedContext, written: WrittenSpline, off: Floats) -> I
         splines, end = context.run.splines, written.begin + written.count
         ends = np.cumsum(span_counts(splines)[written.begin : end])
         own = written.begin + int(np.searchsorted(ends, int(np.argmax(off.max(axis=1))), "right"))
-        text = f"the spline is {worst:.5f} mm off that of the CL file, {limit:.5f} is allowed"
-        yield context.place(int(splines.last[own]), worst, text)
+        yield context.place(int(splines.last[own]), worst, Wording("span", "spline_off", off=worst, limit=limit))
 
 
 def _deviations(context: ComparedContext, written: WrittenSpline) -> Floats:
@@ -89,19 +88,19 @@ def _deviations(context: ComparedContext, written: WrittenSpline) -> Floats:
     return np.asarray(np.abs(actual - dense_points(wanted, written.number, written.number + 1)).max(axis=2))
 
 
-def _change_inside(run: Run, written: WrittenSpline, events: Ints) -> str:
-    """Return what changes between the rows of a spline, in words; empty for nothing.
+def _change_inside(run: Run, written: WrittenSpline, events: Ints) -> Wording | None:
+    """Return what changes between the rows of a spline; None for nothing.
 
     ``events`` are their rows, sorted.
     """
     first, last = written.first, written.last
     if (run.kind[first : last + 1] != Kind.LINEAR).any():
-        return "the motion changes"
+        return Wording("span", "spline_motion")
     for each in fields(run.state):
         column: StepColumn = getattr(run.state, each.name)
         if _is_one_inside(column.rows, first, last):
-            return f"the state {each.name} changes"
-    return "a command stands" if _is_one_inside(events, first, last) else ""
+            return Wording("span", "spline_state", name=each.name)
+    return Wording("span", "spline_command") if _is_one_inside(events, first, last) else None
 
 
 def _is_one_inside(rows: Ints, first: int, last: int) -> bool:
@@ -118,7 +117,7 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     asked = settings.span is not None or settings.span_tip is not None
     axis = errors.axis if settings.span is not None or errors.axis.count else motion.axis_deviation
     tip = errors.tip if asked or errors.tip.count else motion.tip_deviation
-    where = "on the way" if axis is errors.axis else "half-way"
+    on_way = axis is errors.axis
     deviation, deviation_row = _largest_deviation(context)
     splines = spline_faults(context) if isinstance(context, ComparedContext) else SplineFaults()
     if splines.deviation > max(deviation, _NOISE):
@@ -127,27 +126,24 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     places = []
     if axis.row >= 0:
         rows = axis.rows or [(axis.row, axis.value)]
-        places += [
-            context.place(r, v, f"{where} the tool axis is {v:.5f} degrees off the great circle") for r, v in rows
-        ]
+        variant = "axis_on_way" if on_way else "axis_half_way"
+        places += [context.place(r, v, Wording("span", variant, off=v)) for r, v in rows]
     faults = [*arc_chord_faults(context), *splines.places] if isinstance(context, ComparedContext) else []
     if row >= 0 and off_tip > 0.0 and not (faults and row == deviation_row):
         rows = tip.rows or [(row, off_tip)]
-        longest = "" if asked or not errors.tip.count else "a rotary axis turns by more than half a turn without TCP; "
-        places += [context.place(r, v, f"{longest}between its ends the tip is {v:.5f} mm off") for r, v in rows]
-    summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off {where}"
+        variant = "tip_off" if asked or not errors.tip.count else "tip_off_long"
+        places += [context.place(r, v, Wording("span", variant, off=v)) for r, v in rows]
+    answer = Wording("span", "on_way" if on_way else "half_way", tip=off_tip, axis=axis.value)
     if axis.row >= 0:
-        summary += f", in {context.block_name(axis.row)}"
-    if allowed := [*_allowed_tip(settings), *_allowed_axis(settings, errors, axis.row)]:
-        summary += f", allowed {' and '.join(allowed)}"
+        answer = Wording("span", "in_block", measured=answer, block=context.block_name(axis.row))
+    if limits := (*_allowed_tip(settings), *_allowed_axis(settings, errors, axis.row)):
+        answer = Wording("span", "allowed", measured=answer, limits=limits)
     if faults:
-        summary += f"; {faults[0].block_name}: {faults[0].text}"
-        summary += f", and {len(faults) - 1} more" if len(faults) > 1 else ""
+        answer = Wording("span", "with_faults", measured=answer, fault=Faults(faults, len(faults)).answer())
         places = [*faults[:MAX_PLACES], *places]
     passed = not errors.axis.count + errors.tip.count + len(faults)
-    title = "tool between the points"
     seen = coverage_of(context, _seen(context, rapids=settings.span_tip is not None))
-    return Check("span", title, passed, summary, axis.value, settings.span, "deg", tuple(places), (), seen)
+    return Check("span", passed, answer, axis.value, settings.span, "deg", tuple(places), (), seen)
 
 
 def _seen(context: Context, *, rapids: bool) -> SeenRows:
@@ -165,24 +161,24 @@ def _seen(context: Context, *, rapids: bool) -> SeenRows:
     return seen
 
 
-def _allowed_tip(settings: ExpectedValues) -> Iterator[str]:
+def _allowed_tip(settings: ExpectedValues) -> Iterator[Wording]:
     if settings.span_tip is not None:
-        yield f"{settings.span_tip:g} mm"
+        yield Wording("span", "limit_tip", limit=settings.span_tip)
 
 
-def _allowed_axis(settings: ExpectedValues, errors: LinearizationErrors, row: int) -> Iterator[str]:
-    """Yield the tolerance of the tool axis that counts in a row, in words; -1: no row turns it, and none counts."""
+def _allowed_axis(settings: ExpectedValues, errors: LinearizationErrors, row: int) -> Iterator[Wording]:
+    """Yield the tolerance of the tool axis that counts in a row; -1: no row turns it, and none counts."""
     if settings.span is not None:
-        yield f"{settings.span:g} deg"
+        yield Wording("span", "limit_axis", limit=settings.span)
     elif row >= 0:
         default, allowed = settings.axis_tolerance, errors.allowed_by_default(row)
         if math.isinf(allowed):
-            yield "any, since it does not cut there"
+            yield Wording("span", "no_limit")
         elif allowed > max(default.cutting, default.finishing) + _NOISE:
-            yield f"{allowed:.5f} deg, a sixth of the turn"
+            yield Wording("span", "limit_of_turn", limit=allowed)
         else:
             is_finishing = abs(allowed - default.finishing) < _NOISE and default.finishing != default.cutting
-            yield f"{allowed:g} deg{', as in finishing' if is_finishing else ''}"
+            yield Wording("span", "limit_finishing" if is_finishing else "limit_axis", limit=allowed)
 
 
 def _largest_deviation(context: Context) -> tuple[float, int]:
@@ -245,11 +241,11 @@ def _faults(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
     for k in np.flatnonzero(bad).tolist():
         if back[k]:
             value = 2.0 * arc.radius * math.sin(min(-0.5 * float(turns[k]), 0.5 * math.pi))
-            text = f"goes back along the arc that it stands for, by {value:.5f} mm"
+            said = Wording("span", "arc_back", off=value)
         else:
             value = float(heights[k])
-            text = f"is {value:.5f} mm off the arc that it stands for, {tolerances.chord:g} mm is allowed"
-        yield context.place_with_cl(_row(context, segments, k), value, text, segments.cl)
+            said = Wording("span", "arc_off", off=value, limit=tolerances.chord)
+        yield context.place_with_cl(_row(context, segments, k), value, said, segments.cl)
 
 
 def _row(context: ComparedContext, segments: ArcSegments, k: int) -> int:

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -45,8 +46,7 @@ def low_rapids(context: Context) -> Iterator[Place]:
         if height is not None and (left := _height_left_at(run, row, axis, entry)) is not None:
             height = min(height, left)
         if suspects[row] and height is not None and aside > _STILL and highest < height - _STILL:
-            text = f"rapid goes sideways {height - highest:.3f} mm below the retract height"
-            yield context.place(row, height - highest, text)
+            yield context.place(row, height - highest, Wording("modal", "sideways", below=height - highest))
         elif height is None or (aside <= _STILL and up > _STILL):
             height = float(end @ axis)
         entry = float(end @ axis)

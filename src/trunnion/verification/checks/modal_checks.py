@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
@@ -19,11 +20,9 @@ from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
 from trunnion.verification.spindle_words import TURNING, both_senses, started_behind_cuts
 
-_FAULTS: Final = {
-    "no feed": "moves at feed, but no feed is programmed",
-    "spindle off": "moves at feed, spindle off",
-    "no time": "moves with inverse time (G93), and has no F of its own",
-}
+_FAULTS: Final = ("no_feed", "spindle_off", "no_time")
+
+_SENSES: Final = {"clockwise": "clockwise", "counter-clockwise": "counter_clockwise"}
 
 #: Smaller rotary motion, degrees, is none.
 _STILL: Final = 1e-3
@@ -49,29 +48,27 @@ def check_modal_state(context: Context) -> Check:
     places += compensated_blind(context)
     if not any(event.kind == "end" for event in run.events):
         last = max(context.last_line, run.lines[-1] if len(run) else 1)
-        places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))
+        places.append(Place(last, -1, 0.0, Wording("modal", "no_end")))
     places += _changed_while_turning(context)
     places += _odd_spindle_words(context)
     places.sort(key=lambda place: place.nc_line)
     # With a CL file, the check "spindle" has the spindle.
-    at_cuts = "feed" if isinstance(context, ComparedContext) else "feed and spindle"
-    good = f"{at_cuts} at every cut, TCP off at home, no rapids below the retract height, program end present"
-    return check_from_places("modal", "modal state", places, good)
+    good = "good_feed" if isinstance(context, ComparedContext) else "good_feed_and_spindle"
+    return check_from_places("modal", places, Wording("modal", good))
 
 
 def _cuts_from_unknown_places(context: Context) -> Iterator[Place]:
     """Yield the first cut at a height, or beside a line, that no block states."""
     rows = cuts_from_unknown_places(context.run)
     if len(rows):
-        text = "cuts from a position of the machine, before all linear axes are stated in the workpiece again"
-        yield context.place(int(rows[0]), 0.0, text)
+        yield context.place(int(rows[0]), 0.0, Wording("modal", "from_machine"))
 
 
 def _without_units(context: Context) -> Iterator[Place]:
     """Yield the first motion, if the program never said before whether its lengths are millimetres or inches."""
     row = context.run.first_without_units
     if row is not None:
-        yield context.place(row, 0.0, "moves before the program says whether it counts in mm or inches")
+        yield context.place(row, 0.0, Wording("modal", "no_units"))
 
 
 def _changed_while_turning(context: Context) -> Iterator[Place]:
@@ -82,15 +79,16 @@ def _changed_while_turning(context: Context) -> Iterator[Place]:
         if event.kind == "spindle":
             turning = event.value in TURNING
         elif event.kind == "tool_change" and turning and 0 < event.before_row <= len(context.run):
-            yield context.place_of_event(event, 0.0, "changes the tool while the spindle turns")
+            yield context.place_of_event(event, 0.0, Wording("modal", "change_while_turning"))
 
 
 def _odd_spindle_words(context: Context) -> Iterator[Place]:
     """Yield blocks with both senses of the spindle, and the start of a spindle that nothing needs and nothing stops."""
     for before, event in both_senses(context.run):
-        yield context.place_of_event(event, 0.0, f"turns the spindle {before.value} and {event.value} in one block")
+        senses = [Wording("modal", _SENSES[str(each.value)]) for each in (before, event)]
+        yield context.place_of_event(event, 0.0, Wording("modal", "both_senses", first=senses[0], second=senses[1]))
     if (start := started_behind_cuts(context.run)) is not None:
-        yield context.place_of_event(start, 0.0, "starts the spindle behind the last cut, and nothing stops it")
+        yield context.place_of_event(start, 0.0, Wording("modal", "started_behind_cuts"))
 
 
 def _without_feed_or_spindle(context: Context) -> list[Place]:
@@ -100,19 +98,19 @@ def _without_feed_or_spindle(context: Context) -> list[Place]:
     found = dict.fromkeys(_FAULTS, False)
     for start, end in chunk_bounds(len(run)):
         at_feed = run.kind[start:end] != Kind.RAPID
-        faults = {"no feed": at_feed & ~(run.state.feed.part(start, end) > 0.0)}
+        faults = {"no_feed": at_feed & ~(run.state.feed.part(start, end) > 0.0)}
         inverse_time = run.state.feed_mode.part(start, end) == 93
         programmed = run.programmed[start:end]
         # Motions without a block of their own, as those of cycles, have their feed from elsewhere.
-        faults["no time"] = at_feed & inverse_time & (programmed != 0) & ((programmed & int(ProgrammedWord.FEED)) == 0)
+        faults["no_time"] = at_feed & inverse_time & (programmed != 0) & ((programmed & int(ProgrammedWord.FEED)) == 0)
         # A CL file tells where the spindle turns; some tools do not.
         if not isinstance(context, ComparedContext):
             off = (run.state.spindle.part(start, end) == 0) | (run.state.rpm.part(start, end) <= 0.0)
-            faults["spindle off"] = at_feed & off & ~run.state.machine_frame.part(start, end)
+            faults["spindle_off"] = at_feed & off & ~run.state.machine_frame.part(start, end)
         for fault, rows in faults.items():
             if not found[fault] and rows.any():
                 found[fault] = True
-                places.append(context.place(start + int(np.argmax(rows)), 0.0, _FAULTS[fault]))
+                places.append(context.place(start + int(np.argmax(rows)), 0.0, Wording("modal", fault)))
     return places
 
 
@@ -123,11 +121,11 @@ def _tcp_left_on(context: Context) -> Iterator[Place]:
     retracts = [event.before_row for event in run.events if event.kind == "retract"]
     wrong = frame[run.state.tcp.at(frame) & ~np.isin(frame, retracts)]
     if len(wrong):
-        yield context.place(int(wrong[0]), 0.0, "moves in the machine's frame with TCP on")
+        yield context.place(int(wrong[0]), 0.0, Wording("modal", "machine_with_tcp"))
     for event in run.events:
         if event.tcp and event.kind in ("tool_change", "end"):
-            what = "changes the tool" if event.kind == "tool_change" else "ends the program"
-            yield context.place_of_event(event, 0.0, f"{what} with TCP on")
+            what = "change_with_tcp" if event.kind == "tool_change" else "end_with_tcp"
+            yield context.place_of_event(event, 0.0, Wording("modal", what))
 
 
 def _turned_under_tcp(context: Context) -> Iterator[Place]:
@@ -142,8 +140,6 @@ def _turned_under_tcp(context: Context) -> Iterator[Place]:
                 break
             turned = float(turns[row - first])
             if turned > _STILL and not run.state.machine_frame[row]:
-                what = f"swings a rotary axis by {turned:.3f} degrees at rapid with TCP on"
-                text = f"{what}: position it before TCP is switched on"
-                yield context.place(row, turned, text)
+                yield context.place(row, turned, Wording("modal", "swings", angle=turned))
             if run.programmed[row] & int(POSITION_WORDS):
                 break

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.cuts_left_out import cuts_left_out
@@ -15,14 +16,8 @@ from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.rewind_retracts import RewindRetract, find_rewind_retracts
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted
 
-_KINDS = {Kind.RAPID: "at rapid", Kind.LINEAR: "at feed on a line", Kind.ARC: "on a circle"}
-
-_ORDER = "every CL point has its block, every block its point"
-
-#: What is said of a motion that no CL point has.
-_NO_POINT = "goes to a position that is not a CL point"
+_KINDS = {Kind.RAPID: "at_rapid", Kind.LINEAR: "on_line", Kind.ARC: "on_circle"}
 
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
@@ -48,18 +43,19 @@ def check_order(context: ComparedContext) -> Check:
     stands_still = [row in known and _stands_still(run, row) for row in unexplained]
     still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
-    places = [context.place_of_missing(cl, "no block goes to this CL point") for cl in matching.missing[:MAX_PLACES]]
+    missing = Wording("order", "no_block")
+    places = [context.place_of_missing(cl, missing) for cl in matching.missing[:MAX_PLACES]]
     above = rows_of_clearance(context) if extra else set()
-    repeat = context.settings.repeat("same_tool", "clearance")
-    texts = [f"{_NO_POINT}{repeat if row in above else ''}" for row in extra[:MAX_PLACES]]
-    places += [context.place(row, 0.0, text) for row, text in zip(extra[:MAX_PLACES], texts, strict=True)]
+    no_point = Wording("order", "no_point")
+    posted = context.settings.repeated(no_point, "same_tool", "clearance")
+    places += [context.place(row, 0.0, posted if row in above else no_point) for row in extra[:MAX_PLACES]]
     left_out = list(cuts_left_out(context, set(extra)))
     places += left_out[:MAX_PLACES]
     if not places:
         return _in_order(context, retracts, still)
     count = len(matching.missing) + len(extra) + len(left_out)
     found = Faults(sorted(places, key=lambda place: place.nc_line), count)
-    return found.check("order", _ORDER, "")
+    return found.check("order", None)
 
 
 def _in_order(context: ComparedContext, retracts: list[RewindRetract], still: list[int]) -> Check:
@@ -69,22 +65,17 @@ def _in_order(context: ComparedContext, retracts: list[RewindRetract], still: li
         context.place(
             retract.first,
             retract.distance,
-            f"draws back {retract.distance:.3f} mm along the tool axis, turns, and comes back",
+            Wording("order", "draws_back", distance=retract.distance),
         )
         for retract in retracts
     ]
-    notes += [context.place(row, 0.0, "repeats the position before it: nothing moves") for row in still]
+    notes += [context.place(row, 0.0, Wording("order", "repeats")) for row in still]
     left_out = len(context.expected) - len(matching.cl)
-    summary = f"{counted(len(matching.cl), 'point')} in their order"
-    if len(matching.intermediate[0]):
-        summary += f", {len(matching.intermediate[0])} more on the way between them"
-    if left_out:
-        summary += f", {counted(left_out, 'repeated point')} left out"
-    if retracts:
-        summary += f", {counted(len(retracts), 'retract')} along the tool axis to turn"
-    if still:
-        summary += f", {counted(len(still), 'block')} without motion"
-    return Check("order", _ORDER, True, summary, places=tuple(notes[:MAX_PLACES]))
+    parts = {"more_between": len(matching.intermediate[0]), "left_out": left_out}
+    parts |= {"retracts": len(retracts), "still": len(still)}
+    more = (Wording("order", variant, count=count) for variant, count in parts.items() if count)
+    good = Wording("order", "good", parts=(Wording("order", "points", count=len(matching.cl)), *more))
+    return Check("order", True, good, places=tuple(notes[:MAX_PLACES]))
 
 
 def _retracts_before_home(run: Run, row: int, tolerance: float) -> bool:
@@ -120,14 +111,13 @@ def check_kind(context: ComparedContext) -> Check:
             at_rapid_feed = expected.point(point).feed == context.settings.rapid_feed
             if actual is Kind.RAPID and wanted is Kind.LINEAR and at_rapid_feed:
                 continue
-            text = f"moves {_KINDS[actual]}; the CL file wants it {_KINDS[wanted]}"
-            found.add(context.place_with_cl(row, 0.0, text, point))
+            kinds = {"has": Wording("kind", _KINDS[actual]), "wanted": Wording("kind", _KINDS[wanted])}
+            found.add(context.place_with_cl(row, 0.0, Wording("kind", "other", **kinds), point))
     others = [*_rapids_on_arcs(context), *_wrong_circles(context)]
     found = Faults(sorted(found.places + others, key=lambda place: place.nc_line), found.count + len(others))
     rapids, arcs = expected.rapid_count, len(expected.arcs.row)
     lines = len(expected) - rapids - arcs
-    good = ", ".join((counted(rapids, "rapid"), counted(arcs, "arc"), counted(lines, "line")))
-    return found.check("kind", "rapid, line or circle as the CL file says", good)
+    return found.check("kind", Wording("kind", "good", rapids=rapids, arcs=arcs, lines=lines))
 
 
 def _is_flat(context: ComparedContext, cl: int) -> bool:
@@ -144,8 +134,7 @@ def _rapids_on_arcs(context: ComparedContext) -> Iterator[Place]:
         if segments.pieces is not None:
             continue
         for row in segments.nc[context.run.kind[segments.nc] != Kind.LINEAR].tolist():
-            text = "moves at rapid along an arc that is to be cut"
-            yield context.place_with_cl(row, 0.0, text, segments.cl)
+            yield context.place_with_cl(row, 0.0, Wording("kind", "rapid_on_arc"), segments.cl)
 
 
 def _wrong_circles(context: ComparedContext) -> Iterator[Place]:
@@ -167,8 +156,8 @@ def _wrong_circles(context: ComparedContext) -> Iterator[Place]:
         wanted = int(expected.arcs.full_turns[k])
         # Pieces have been matched by how far they go round, so that together they make the turns.
         if not before and turns != wanted:
-            text = f"makes {turns} full turns before its end; the CL file wants {wanted}"
-            yield context.place_with_cl(motion, 0.0, text, row)
+            said = Wording("kind", "other_turns", turns=turns, wanted=wanted)
+            yield context.place_with_cl(motion, 0.0, said, row)
 
 
 def _circle_faults(context: ComparedContext, k: int, motion: int) -> Iterator[Place]:
@@ -177,8 +166,7 @@ def _circle_faults(context: ComparedContext, k: int, motion: int) -> Iterator[Pl
     m, row = int(np.searchsorted(run.arcs.row, motion)), int(expected.arcs.row[k])
     normal, centre = expected.arcs.normal[k], expected.arcs.centre[k]
     if float(run.arcs.normal[m] @ normal) < 1.0 - 1e-6:
-        text = "goes round the circle the other way, or in another plane"
-        yield context.place_with_cl(motion, 0.0, text, row)
+        yield context.place_with_cl(motion, 0.0, Wording("kind", "other_way"), row)
         return
     start = run.positions(np.array([motion - 1])).tip[0]
     off_from_start = run.arcs.centre[m] - start - (centre - expected.point(row - 1).tip)
@@ -188,5 +176,4 @@ def _circle_faults(context: ComparedContext, k: int, motion: int) -> Iterator[Pl
     tolerances = expected.section_at(row).tolerances
     limit = tolerances.tip + tolerances.centre
     if error > limit + 1e-9:
-        text = f"the circle's centre is off by {error:.6f} mm, {limit:.6f} is allowed"
-        yield context.place_with_cl(motion, error, text, row)
+        yield context.place_with_cl(motion, error, Wording("kind", "centre_off", off=error, limit=limit), row)

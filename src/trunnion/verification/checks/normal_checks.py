@@ -5,11 +5,11 @@ retract to turn has the normal of the point that it comes back to; no other bloc
 """
 
 from collections.abc import Iterator
-from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -17,9 +17,6 @@ from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.expected.path import Section
 from trunnion.verification.matching.rewind_retracts import find_rewind_retracts
 from trunnion.verification.results import Check
-from trunnion.wording import counted
-
-_TITLE: Final = "surface normals against the contact points"
 
 
 def check_normals(context: ComparedContext) -> list[Check]:
@@ -50,34 +47,26 @@ def check_normals(context: ComparedContext) -> list[Check]:
             right += int(both.sum() - beyond.sum())
             largest = max(largest, float(off[both].max(initial=0.0)))
             faults = (
-                (
-                    np.isfinite(wanted[:, 0]) & np.isnan(actual[:, 0]) & may_have,
-                    "has no surface normal, but the CL file has a contact point",
-                ),
-                (
-                    np.isnan(wanted[:, 0]) & np.isfinite(actual[:, 0]),
-                    "has a surface normal, but the CL file has no contact point",
-                ),
-                (beyond, "the surface normal is off"),
+                (np.isfinite(wanted[:, 0]) & np.isnan(actual[:, 0]) & may_have, "missing"),
+                (np.isnan(wanted[:, 0]) & np.isfinite(actual[:, 0]), "not_asked"),
+                (beyond, "off"),
             )
-            for rows, text in faults:
+            for rows, variant in faults:
                 own = np.where(both, off, 0.0)
                 places = (
-                    context.place_with_cl(
-                        int(nc[k]), float(own[k]), f"{text} by {own[k]:.9f}" if both[k] else text, int(cl[k])
-                    )
+                    context.place_with_cl(int(nc[k]), float(own[k]), Wording("normal", variant, off=own[k]), int(cl[k]))
                     for k in np.flatnonzero(rows)
                 )
                 found.add_rows(int(rows.sum()), places)
     left = np.setdiff1d(run.normals.row, np.concatenate(compared)) if normals else compared[0]
-    text = "has a surface normal, but goes to no contact point"
-    found.add_rows(len(left), (context.place(int(row), 0.0, text) for row in left))
-    summary = f"{counted(right, 'normal')} as the contact points have them, largest difference {largest:.9f}"
+    at_no_point = Wording("normal", "at_no_point")
+    found.add_rows(len(left), (context.place(int(row), 0.0, at_no_point) for row in left))
+    answer = Wording("normal", "good", count=right, largest=largest)
     if not normals:
-        summary = f"{counted(len(run.normals), 'normal')}, and the CL files have no contact points to compare them with"
+        answer = Wording("normal", "no_points", count=len(run.normals))
     if found.count:
-        summary += f", {found.count} are not"
-    return [Check("normal", _TITLE, not found.count, summary, largest, limit or None, "", tuple(found.places))]
+        answer = Wording("normal", "some_wrong", answer=answer, count=found.count)
+    return [Check("normal", not found.count, answer, largest, limit or None, "", tuple(found.places))]
 
 
 def _returns(context: ComparedContext) -> tuple[Ints, Ints]:

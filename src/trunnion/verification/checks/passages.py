@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import RowPositions, Run
 from trunnion.model.toolpath import Kind
@@ -92,7 +93,7 @@ def without_retract(context: Context) -> Iterator[Place]:
         if end > begin or (stated and any(last < change <= first for change in changes)):
             continue
         if not (between and all(row in lawful for row in between)):
-            yield context.place(first, 0.0, f"goes on to the operation {operation} without a retract")
+            yield context.place(first, 0.0, Wording("home", "goes_on", operation=operation))
 
 
 def not_in_turn(context: Context) -> Iterator[Place]:
@@ -111,8 +112,7 @@ def not_in_turn(context: Context) -> Iterator[Place]:
         first_row = context.matching.cl[begin] == section.first and section.kept is None
         from_home = bool(((away > before) & (away <= row)).any())
         if first_row and from_home and run.kind[row] == Kind.RAPID and row > 0 and not _moves_along_tool(run, row):
-            text = "moves axes together on the way from home: one group after the other is wanted (first_approach)"
-            yield context.place(row, 0.0, text)
+            yield context.place(row, 0.0, Wording("modal", "together"))
 
 
 def _moves_along_tool(run: Run, row: int) -> bool:

@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
 from trunnion.verification.expected.holes import Hole
@@ -38,17 +39,15 @@ def peck_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
     yield from _collect_pecks(hole, motions, pecks, between)
     if not hole.cycle.pecks:
         if len(pecks) > 1:
-            text = f"drills in {len(pecks)} pecks, the CL file in one"
-            yield motions.fault(_FIRST_PECK, float(len(pecks)), text)
+            yield motions.fault(_FIRST_PECK, float(len(pecks)), Wording("holes", "pecks", count=len(pecks)))
         return
     yield from (_programmed_pecks if motions.by_motion else _cycle_pecks)(hole, motions, pecks)
     for end, rows in zip(pecks, between[:-1], strict=False):
         top = max((float(motions.height[k]) for k in rows), default=-math.inf)
         full, back = abs(top - hole.cycle.clearance) <= hole.tolerance, top - end
         if not rows or full != ("DEEP" in hole.cycle.mode) or (not full and back > _CHIP_BREAK):
-            how = "not drawn back" if not rows else "drawn back all the way" if full else "drawn back a little"
-            text = f"between pecks the tool is {how}; the CL file says otherwise"
-            yield motions.fault(_FIRST_PECK, top, text)
+            how = "not_back" if not rows else "back_all_the_way" if full else "back_a_little"
+            yield motions.fault(_FIRST_PECK, top, Wording("holes", how))
             break
 
 
@@ -60,7 +59,7 @@ def _collect_pecks(
     for k in range(1, len(motions.row)):
         height, kind = float(motions.height[k]), motions.kind[k]
         if kind == Kind.RAPID and height < deepest - hole.tolerance:
-            yield motions.fault(k, height, "goes at rapid where nothing is drilled yet")
+            yield motions.fault(k, height, Wording("holes", "rapid_in_solid"))
         elif kind == Kind.LINEAR and height < deepest - 1e-9:
             start = float(motions.height[k - 1])
             is_back = bool(pecks) and start >= hole.cycle.clearance - hole.tolerance
@@ -70,7 +69,7 @@ def _collect_pecks(
             pecks.append(height)
             between.append([])
         elif motions.by_motion and kind == Kind.LINEAR and k <= bottom:
-            yield motions.fault(k, height, "goes at a feed where nothing is left to drill")
+            yield motions.fault(k, height, Wording("holes", "feed_in_air"))
         elif between:
             between[-1].append(k)
         deepest = min(deepest, height)
@@ -84,12 +83,11 @@ def _cycle_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterat
     first = min(hole.cycle.pecks[0], begin + hole.cycle.depth)
     pecks = np.abs(np.diff([begin, *(ends or [hole.cycle.clearance])]))
     if abs(pecks[0] - first) > hole.tolerance or (np.diff(pecks) > hole.tolerance).any():
-        found = ", ".join(f"{peck:.4f}" for peck in pecks[:4])
-        text = f"drills in pecks of {found}, not of {first:g} and less"
-        yield motions.fault(_FIRST_PECK, float(pecks[0]), text)
+        said = Wording("holes", "other_pecks", pecks=tuple(f"{peck:.4f}" for peck in pecks[:4]), first=first)
+        yield motions.fault(_FIRST_PECK, float(pecks[0]), said)
     equal = len(hole.cycle.pecks) < 2 or not hole.cycle.pecks[1]
     if equal and len(pecks) > 2 and abs(pecks[:-1] - first).max() > hole.tolerance:
-        yield motions.fault(_FIRST_PECK, float(pecks.min()), f"the pecks are not all {first:g} mm")
+        yield motions.fault(_FIRST_PECK, float(pecks.min()), Wording("holes", "unequal_pecks", first=first))
 
 
 def _programmed_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterator[HoleFault]:
@@ -99,9 +97,8 @@ def _programmed_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> I
         wanted = np.array([hole.cycle.clearance, *_step_heights(hole, begin, rest)])
         if _all_near(found, wanted, hole.tolerance) and _all_near(wanted, found, hole.tolerance):
             return
-    heights = ", ".join(f"{-height:.4f}" for height in found[1:5])
-    text = f"drills to {heights} and so on, which are not the pecks of STEP in the CL file"
-    yield motions.fault(_FIRST_PECK, float(found[-1]), text)
+    depths = tuple(f"{-height:.4f}" for height in found[1:5])
+    yield motions.fault(_FIRST_PECK, float(found[-1]), Wording("holes", "other_heights", depths=depths))
 
 
 def _all_near(heights: Floats, falling: Floats, tolerance: float) -> bool:

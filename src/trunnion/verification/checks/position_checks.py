@@ -22,7 +22,6 @@ from trunnion.verification.expected.arcs import great_circle_points
 from trunnion.verification.kinematics.axis_difference import degrees_apart
 from trunnion.verification.matching.pairs import ArcSegments
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted
 
 #: A point whose three coordinates are off by one each is off by this much.
 _DIAGONAL = math.sqrt(3.0) + 1e-6
@@ -42,14 +41,13 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
     for k, value in deviations.bad:
         row, cl = matching.nc[k], matching.cl[k]
         actual, wanted = run.positions(np.array([row])).tip[0], expected.point(cl).tip
-        axes = [
-            f"{name}{now:.5f} for {then:.5f}"
+        axes = tuple(
+            Wording("tip", "axis_off", axis=name, now=now, then=then)
             for name, now, then in zip("XYZ", actual, wanted, strict=True)
             if not abs(now - then) <= deviations.limit
-        ]
-        inches = " (the program counts in inches here)" if run.state.inches[row] else ""
-        text = f"the tip is {value:.6f} mm off: {', '.join(axes)}{inches}"
-        places.append(context.place_with_cl(row, value, text, cl))
+        )
+        said = Wording("tip", "off_in_inches" if run.state.inches[row] else "off", off=value, axes=axes)
+        places.append(context.place_with_cl(row, value, said, cl))
     if places:
         first = min(matching.nc[k] for k, _ in deviations.bad)
         positioned = None if run.state.tcp[first] else context.rotary_positioning_place(first)
@@ -59,7 +57,7 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
     missing = _depends_on_values(context, nominal)
     count = deviations.count + len(on_arcs) + nominal.count
     places += [*on_arcs, *nominal.places]
-    check = _measured("tip", "tool tip against the CL points", context, deviations, places, count)
+    check = _measured("tip", context, deviations, places, count)
     return replace(check, missing=missing)
 
 
@@ -80,7 +78,7 @@ def _depends_on_values(context: ComparedContext, found: Faults) -> tuple[Wording
         found.add_rows(
             len(moved),
             (
-                context.place_with_cl(tip.row, tip.share, f"the tip is elsewhere with a longer tool: {tip.why}", point)
+                context.place_with_cl(tip.row, tip.share, tip.said, point)
                 for tip, point in zip(moved, points, strict=True)
             ),
         )
@@ -96,8 +94,8 @@ def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[P
     # A point that is off along the arc is off in height too, because the height is that at its own angle.
     limit = _DIAGONAL * tolerances.tip * math.hypot(1.0, arc.slope)
     for k in np.flatnonzero(away > limit + 1e-6 + min(arc.closure_error, _MAX_CLOSURE_ERROR)).tolist():
-        text = f"the tip is {away[k]:.6f} mm off the arc that the CL file asks for"
-        yield context.place_with_cl(int(segments.nc[k]), float(away[k]), text, segments.cl)
+        said = Wording("tip", "off_arc", off=away[k])
+        yield context.place_with_cl(int(segments.nc[k]), float(away[k]), said, segments.cl)
 
 
 def check_axis(context: ComparedContext, deviations: DeviationSummary, accepted: AcceptedDeviations) -> Check:
@@ -105,21 +103,20 @@ def check_axis(context: ComparedContext, deviations: DeviationSummary, accepted:
     matching = context.matching
     places = []
     for k, value in deviations.bad:
-        text = f"the tool axis is off, a rotary axis by {value:.6f} degrees"
-        places.append(context.place_with_cl(matching.nc[k], value, text, matching.cl[k]))
+        said = Wording("axis", "off", off=value)
+        places.append(context.place_with_cl(matching.nc[k], value, said, matching.cl[k]))
     if places:
         positioned = context.rotary_positioning_place(min(matching.nc[k] for k, _ in deviations.bad))
         places += [positioned] if positioned is not None else []
     faults = [*accepted.axis, *misplaced_lean_positions(context.run, context.expected, matching)]
-    named = [context.place_of_cl_row(fault.cl, fault.value, fault.text) for fault in faults[:MAX_PLACES]]
+    named = [context.place_of_cl_row(fault.cl, fault.value, fault.said) for fault in faults[:MAX_PLACES]]
     on_arcs = [place for segments in matching.arc_segments for place in _axes_off_arc(context, segments)]
     count = deviations.count + len(faults) + len(on_arcs)
-    title = "tool axis against the CL points"
-    check = _measured("axis", title, context, deviations, [*named, *places, *on_arcs], count)
+    check = _measured("axis", context, deviations, [*named, *places, *on_arcs], count)
     lean, rows = accepted.lean
     if not rows:
         return check
-    return replace(check, summary=f"{check.summary}; leans by up to {lean:.6f} at {counted(rows, 'row')}")
+    return replace(check, answer=Wording("axis", "leans", measured=check.answer, lean=lean, rows=rows))
 
 
 def _axes_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
@@ -133,24 +130,19 @@ def _axes_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[P
     uncertainty = total * _DIAGONAL * tolerances.tip / max(arc.radius * arc.sweep, 1e-9)
     limit = _DIAGONAL * tolerances.angle + np.degrees(uncertainty) + 1e-6
     for k in np.flatnonzero(away > limit).tolist():
-        text = f"the tool axis is off by {away[k]:.6f} degrees on its way round an arc"
-        yield context.place_with_cl(int(segments.nc[k]), float(away[k]), text, segments.cl)
+        said = Wording("axis", "off_on_arc", off=away[k])
+        yield context.place_with_cl(int(segments.nc[k]), float(away[k]), said, segments.cl)
 
 
 def _measured(
-    key: str,
-    title: str,
-    context: ComparedContext,
-    deviations: DeviationSummary,
-    places: list[Place],
-    count: int,
+    key: str, context: ComparedContext, deviations: DeviationSummary, places: list[Place], count: int
 ) -> Check:
     unit = _UNITS[key]
     if not len(context.matching.nc) and len(context.expected):
-        return Check(key, title, False, "no block goes to any CL point", unit=unit)
-    each = "X, Y or Z" if unit == "mm" else "a rotary axis"
+        return Check(key, False, Wording("all", "no_block_at_points"), unit=unit)
     largest, limit = deviations.largest, deviations.limit
-    summary = f"largest {largest:.6f} {unit} in {each}, rms {deviations.rms:.6f}, allowed {limit:.6f}"
+    answer = Wording(key, "measured", largest=largest, rms=deviations.rms, limit=limit)
     if count:
-        summary += f", {counted(count, 'point')} off, first in {min(places, key=lambda p: p.nc_line).block_name}"
-    return Check(key, title, not count, summary, largest, limit, unit, tuple(places))
+        first = min(places, key=lambda p: p.nc_line).block_name
+        answer = Wording(key, "some_off", measured=answer, count=count, block=first)
+    return Check(key, not count, answer, largest, limit, unit, tuple(places))

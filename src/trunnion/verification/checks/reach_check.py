@@ -5,19 +5,18 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
+from trunnion.messages import Wording
 from trunnion.timing import reached_feeds
 from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.deviations.reached_rows import ReachedRows, longest, reached_rows
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.results import Check
-from trunnion.wording import counted, format_duration
+from trunnion.wording import format_duration
 
 #: Shares by which a feed may be below what is reached, for three digits are printed at least, and above, for the
 #: positions of both runs may be rounded.
 _BELOW: Final = 0.011
 _ABOVE: Final = 0.001
-
-_TITLE: Final = "feeds as the axes reach them"
 
 
 def check_reach(context: ComparedContext, original: ExpectedPath) -> list[Check]:
@@ -41,20 +40,20 @@ def check_reach(context: ComparedContext, original: ExpectedPath) -> list[Check]
     bad = np.flatnonzero(above_most | ((too_high | too_low) & ~kept) | unknown)
     faults = Faults()
     for row in bad.tolist():
-        text = f"has a feed of {feed[row]:g}, and the axes reach {found.feed[row]:.5g} there"
-        if above_most[row]:
-            text = f"has a feed of {feed[row]:g}, more than the {found.most[row]:g} that it may have"
-        elif unknown[row]:
-            text = f"has a feed of {feed[row]:g} in place of {found.most[row]:g}, and what the axes reach is not known"
-        faults.add(context.place_of_cl_row(row, float(feed[row]), text))
+        said = Wording("reach", "above_reached", feed=feed[row], reached=found.feed[row])
+        if above_most[row] or unknown[row]:
+            variant = "above_most" if above_most[row] else "reach_unknown"
+            said = Wording("reach", variant, feed=feed[row], most=found.most[row])
+        faults.add(context.place_of_cl_row(row, float(feed[row]), said))
     now = float(reached_feeds(context.run, np.full(len(context.run), np.nan)).seconds.sum())
-    times = f"{format_duration(now)} of motion, {format_duration(found.seconds)} at the feeds of the CL file"
+    times = {"now": format_duration(now), "own": format_duration(found.seconds)}
     if now > longest(found.seconds):
-        return [Check("reach", _TITLE, False, f"far longer than it may be: {times}", places=tuple(faults.places))]
-    summary = "nothing is cut at a feed per minute"
+        return [Check("reach", False, Wording("reach", "far_longer", **times), places=tuple(faults.places))]
+    good = Wording("reach", "no_feeds")
     if np.isfinite(found.most).any():
-        summary = f"{_summary(context, found, feed, lowered & ~kept, int(np.count_nonzero(kept)))}; {times}"
-    return [faults.check("reach", _TITLE, summary)]
+        how = _lowered(context, found, feed, lowered & ~kept, int(np.count_nonzero(kept)))
+        good = Wording("reach", "good", lowered=how, **times)
+    return [faults.check("reach", good)]
 
 
 def _declared(expected: ExpectedPath) -> tuple[Floats, Floats, Flags]:
@@ -68,13 +67,14 @@ def _declared(expected: ExpectedPath) -> tuple[Floats, Floats, Flags]:
     return np.concatenate(feeds), np.concatenate(digits), declared
 
 
-def _summary(context: ComparedContext, found: ReachedRows, feed: Floats, lowered: Flags, kept: int) -> str:
+def _lowered(context: ComparedContext, found: ReachedRows, feed: Floats, lowered: Flags, kept: int) -> Wording:
     """How many feeds are lower, and by how much."""
     limit = context.settings.feed_limit
     total, count = (int(np.count_nonzero(rows)) for rows in (np.isfinite(found.most), lowered))
-    text = f"lower than {'in the CL file' if limit is None else f'{limit:g} mm/min'} at {count} of"
-    text += f" {counted(total, 'point')}"
+    said = Wording("reach", "below_cl", count=count, points=total)
+    if limit is not None:
+        said = Wording("reach", "below_limit", limit=limit, count=count, points=total)
     if count:
         share = 100.0 * float((1.0 - feed[lowered] / found.most[lowered]).max())
-        text += f", by {share:.0f} % at most"
-    return text + (f"; that of the CL file is kept at {kept}, since the program would take far longer" if kept else "")
+        said = Wording("reach", "at_most", lowered=said, share=share)
+    return Wording("reach", "kept", lowered=said, count=kept) if kept else said

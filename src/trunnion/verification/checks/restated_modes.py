@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trunnion.arrays import Ints
+from trunnion.messages import Wording
 from trunnion.model.run import EventValue, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.coolant_checks import is_builder_coolant
@@ -56,21 +57,22 @@ class RestatedModes:
         """Whether the spindle turns at a place among the events: what the last word for it said."""
         return self._words["spindle"].runs_at(place)
 
-    def unsaid(self, place: int, row: int, wanted_coolant: str) -> str:
-        """Return what runs in the first cut after a stop, and was switched on before it; empty if all was said again.
+    def unsaid(self, place: int, row: int, wanted_coolant: str) -> Wording | None:
+        """Return what is wrong if something runs in the first cut after a stop, and was switched on before it; None if
+        all was said again.
 
         place, row      the stop's place among the events, and the row before which it stands
         wanted_coolant  the CL file's word for coolant in that cut
         """
         cut = int(np.searchsorted(self._cuts, row))
         if cut == len(self._cuts):
-            return ""
+            return None
         first = int(self._cuts[cut])
         if 0 <= self._words["spindle"].last_before(first) < place:
-            return "the spindle"
+            return Wording("stops", "spindle_unsaid")
         if wanted_coolant == "OFF":
-            return ""
+            return None
         coolant = self._words["coolant"].last_before(first)
         if is_builder_coolant(wanted_coolant):
             coolant = max(coolant, self._words["m"].last_before(first))
-        return "coolant" if 0 <= coolant < place else ""
+        return Wording("stops", "coolant_unsaid") if 0 <= coolant < place else None

@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.verification.context import Context
@@ -41,14 +42,14 @@ class RotaryMovesAtPart:
     by_word: int = 0
     distances: list[float] = field(default_factory=list)
 
-    def summary(self) -> str:
-        """How the turns are safe, in words."""
-        ways = [f"{self.at_home} at home along the spindle"] if self.at_home else []
-        ways += [f"{self.by_word} behind a retract"] if self.by_word else []
+    def said(self) -> Wording:
+        """How the turns are safe."""
+        ways = [Wording("turns", "at_home", count=self.at_home)] if self.at_home else []
+        ways += [Wording("turns", "by_word", count=self.by_word)] if self.by_word else []
         if self.distances:
-            least = f"{min(self.distances):.1f} mm or more from the turned part (at least {SAFE_DISTANCE:g})"
-            ways.append(f"{len(self.distances)} {least}")
-        return f"rotary axes turn away from the part{': ' if ways else ''}{', '.join(ways)}"
+            nearest = {"count": len(self.distances), "distance": min(self.distances)}
+            ways.append(Wording("turns", "by_distance", **nearest, least=SAFE_DISTANCE))
+        return Wording("turns", "away_by", ways=tuple(ways)) if ways else Wording("turns", "away")
 
 
 def turn_flags(run: Run, rows: Ints) -> Flags:
@@ -186,10 +187,11 @@ class _Judge:
         if distance is not None and distance >= SAFE_DISTANCE:
             found.distances.append(distance)
             return
-        text = "turns a rotary axis while the tool is at the part"
+        cure = self._cure(distance)
+        said = Wording("turns", "at_part", cure=cure)
         if distance is not None:
-            text += f", {distance:.1f} mm from the turned part and not {SAFE_DISTANCE:g}"
-        found.places.append(self._context.place(row, distance or 0.0, f"{text}: {self._cure(distance)}"))
+            said = Wording("turns", "near_part", distance=distance, least=SAFE_DISTANCE, cure=cure)
+        found.places.append(self._context.place(row, distance or 0.0, said))
 
     def _distance(self, before: Floats, after: Floats) -> float | None:
         """Distance of the tool from the turned part, mm; None if it is not known where the part turns to."""
@@ -212,14 +214,13 @@ class _Judge:
             return True
         return not len(self._frame) and turns_part_alone(machine, before, after, STILL)
 
-    def _cure(self, distance: float | None) -> str:
+    def _cure(self, distance: float | None) -> Wording:
         """Return what to do about a turn at the part."""
-        cure = f"go home in {self._machine.axes[self._along].name} first"
+        cure = Wording("turns", "go_home", axis=self._machine.axes[self._along].name)
         if len(self._retracts) and not len(self._frame):
-            cure = "retract first"
-        if distance is None and self._machine.workpiece_zero is None:
-            cure += ", or say where the workpiece zero is (zero) if the tool is far enough from the turned part"
-        return cure
+            cure = Wording("turns", "retract")
+        unplaced = distance is None and self._machine.workpiece_zero is None
+        return Wording("turns", "or_say_zero", cure=cure) if unplaced else cure
 
 
 def _spindle_slide(machine: Machine) -> tuple[int, float]:

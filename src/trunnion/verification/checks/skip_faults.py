@@ -8,6 +8,7 @@ Out:    the blocks without which the program would do something else than the CL
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 
+from trunnion.messages import Wording
 from trunnion.model.run import RunEvent
 from trunnion.verification.context import ComparedContext
 from trunnion.verification.expected.skipped import SkippedStretch, skipped_stretches
@@ -19,7 +20,7 @@ def skip_faults(context: ComparedContext) -> Iterator[Place]:
     """Yield the blocks with ``/`` that stand neither at nor between points or holes of an OPSKIP."""
     for event, stretches in _skipped_blocks(context):
         if not stretches:
-            yield context.place_of_event(event, 0.0, "may be skipped (/), and the CL file has no OPSKIP there")
+            yield context.place_of_event(event, 0.0, Wording("stops", "skip_not_asked"))
 
 
 def stretch_levels(context: ComparedContext) -> tuple[frozenset[int], ...]:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.verification.context import ComparedContext, Context
 from trunnion.verification.results import Place
 
@@ -24,9 +25,10 @@ def wide_tolerances(context: Context) -> Iterator[Place]:
         if math.isinf(event.value) and not isinstance(context, ComparedContext):
             continue  # a program's own choice, which nothing contradicts
         if event.value > limit:
-            what = "without a limit" if math.isinf(event.value) else f"by {event.value:g} mm"
-            text = f"lets the control round off the path {what}; the work wants at most {limit:g} mm"
-            yield context.place_of_event(event, event.value, text)
+            said = Wording("modal", "rounds_off", tolerance=event.value, limit=limit)
+            if math.isinf(event.value):
+                said = Wording("modal", "rounds_off_freely", limit=limit)
+            yield context.place_of_event(event, event.value, said)
 
 
 def _limit(context: Context, row: int) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.machines import spindle_speed_fault, states_spindle_range
-from trunnion.messages import phrase
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.verification.checks.coverage import coverage_of
 from trunnion.verification.checks.matched_rows import first_wrong_pair
@@ -24,9 +24,6 @@ from trunnion.verification.row_ranges import chunk_bounds
 RPM_TOLERANCE: Final = 0.5 + 1e-6
 
 _SENSES: Final = {"clockwise": 1, "counter-clockwise": -1}
-
-_RANGE = "rpm"
-_RANGE_TITLE = "spindle speeds that the machine has"
 
 
 def check_spindle(context: ComparedContext) -> Check:
@@ -46,12 +43,13 @@ def check_spindle(context: ComparedContext) -> Check:
         if bad is not None:
             row, cl = bad
             actual = ExpectedSpindle(run.state.rpm[row], run.state.spindle[row])
-            text = f"{_words(actual)}; the CL file wants {_words(wanted)}"
-            places.append(context.place_with_cl(row, actual.rpm, text, cl))
+            said = Wording("spindle", "other", has=_words(actual), wanted=_words(wanted))
+            places.append(context.place_with_cl(row, actual.rpm, said, cl))
     places += _foreign_events(context, asked | all_spindles(context.expected)) if asked else ()
     places.sort(key=lambda place: place.nc_line)
-    good = ", ".join(_words(each) for each in sorted(asked, key=lambda each: (each.rpm, each.sense)))
-    return check_from_places("spindle", "spindle as the CL file says", places, good or "the CL file has no SPINDL")
+    speeds = tuple(_words(each) for each in sorted(asked, key=lambda each: (each.rpm, each.sense)))
+    good = Wording("spindle", "good", speeds=speeds) if speeds else Wording("spindle", "none_asked")
+    return check_from_places("spindle", places, good)
 
 
 def _foreign_events(context: ComparedContext, asked: set[ExpectedSpindle]) -> Iterator[Place]:
@@ -60,12 +58,11 @@ def _foreign_events(context: ComparedContext, asked: set[ExpectedSpindle]) -> It
         if event.kind == "spindle":
             sense = _SENSES.get(str(event.value), event.value)
             if isinstance(sense, int | float) and sense and not any(each.sense == sense for each in asked):
-                text = "starts the spindle in a sense that the CL file never asks for"
-                yield context.place_of_event(event, 0.0, text)
+                yield context.place_of_event(event, 0.0, Wording("spindle", "other_sense"))
         elif event.kind == "speed" and isinstance(event.value, float):
             rpm = event.value
             if not any(abs(each.rpm - rpm) <= RPM_TOLERANCE for each in asked):
-                yield context.place_of_event(event, rpm, f"the CL file never asks for S{rpm:g}")
+                yield context.place_of_event(event, rpm, Wording("spindle", "other_speed", speed=rpm))
 
 
 def _stops_after(context: ComparedContext, row: int) -> bool:
@@ -81,17 +78,17 @@ def _differs(run: Run, wanted: ExpectedSpindle, nc: Ints) -> Flags:
     return np.asarray(wrong)
 
 
-def _words(spindle: ExpectedSpindle) -> str:
+def _words(spindle: ExpectedSpindle) -> Wording:
     if spindle.sense == 0:
-        return "spindle off"
-    return f"{spindle.rpm:g} rev/min {'clockwise' if spindle.sense > 0 else 'counterclockwise'}"
+        return Wording("spindle", "off")
+    return Wording("spindle", "clockwise" if spindle.sense > 0 else "counterclockwise", speed=spindle.rpm)
 
 
 def check_spindle_range(context: Context) -> Check:
     """Every speed at which the spindle turns during a motion; a place for each change to a wrong one."""
     run = context.run
     if not states_spindle_range(run.machine):
-        return Check(_RANGE, _RANGE_TITLE, True, "")
+        return Check("rpm", True, None)
     found, seen = Faults(), SeenRows()
     speeds: set[float] = set()
     last = 0.0
@@ -103,9 +100,9 @@ def check_spindle_range(context: Context) -> Check:
                 speeds.add(speed)
                 fault = spindle_speed_fault(run.machine, speed)
                 if fault:
-                    found.add(context.place(start + k, speed, str(fault)))
+                    found.add(context.place(start + k, speed, fault))
         last = float(rpm[-1])
         still = (phrase("left_standing_spindle"), rpm == 0.0)
         seen.add(start, end - start, (still, (phrase("left_no_speed"), ~(rpm > 0.0))))
-    good = f"{min(speeds):g} to {max(speeds):g} rev/min" if speeds else "the spindle does not turn"
-    return replace(found.check(_RANGE, _RANGE_TITLE, good), coverage=coverage_of(context, seen))
+    good = Wording("rpm", "good", low=min(speeds), high=max(speeds)) if speeds else Wording("rpm", "stands")
+    return replace(found.check("rpm", good), coverage=coverage_of(context, seen))

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags
+from trunnion.messages import Wording
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
 from trunnion.verification.checks.restated_modes import RestatedModes
@@ -18,9 +19,9 @@ from trunnion.verification.checks.skip_faults import skip_faults
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted, format_duration
+from trunnion.wording import format_duration
 
-_NAMES: Final = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional stops"}
+_KINDS: Final = ("dwell", "stop", "optional_stop")
 
 #: Dwells are the same if they differ by no more than the shortest that controls print, seconds.
 _TOLERANCE: Final = 1.01e-3
@@ -48,7 +49,8 @@ class _ExpectedStop:
     line: int
     coolant: str
 
-    def __str__(self) -> str:
+    @property
+    def said(self) -> Wording:
         return _words(self.kind, self.amount)
 
 
@@ -70,13 +72,14 @@ def check_stops(context: ComparedContext) -> Check:
         if not _is_within_operation(context, pair):
             asked_for = {stop.place for stop in _asked_for(context.run, found[pair], expected[pair])}
             own += [stop for stop in found[pair] if stop.place not in asked_for]
-    count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _NAMES}
-    good = ", ".join(counted(count[kind], name.removesuffix("s")) for kind, name in _NAMES.items() if count[kind])
-    good = (good or "the CL file has none") + _own_stops(context.run, own)
+    count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _KINDS}
+    asked = tuple(Wording("stops", kind, count=count[kind]) for kind in _KINDS if count[kind])
+    good = Wording("stops", "stops", stops=asked) if asked else Wording("stops", "none_asked")
+    if parts := tuple(_own_stops(context.run, own)):
+        good = Wording("stops", "with_own", asked=good, own=parts)
     places += _missing_between(context, found)
     places += skip_faults(context)
-    title = "stops, dwells and block skip as the CL file says"
-    return check_from_places("stops", title, places, good)
+    return check_from_places("stops", places, good)
 
 
 def _missing_between(context: ComparedContext, found: Mapping[int, list[_FoundStop]]) -> Iterator[Place]:
@@ -87,20 +90,18 @@ def _missing_between(context: ComparedContext, found: Mapping[int, list[_FoundSt
         pair = context.matching.cl.count_before(section.first)
         wanted[pair] += 1
         if sum(stop.event.kind != "dwell" for stop in found.get(pair, ())) < wanted[pair]:
-            yield context.place_of_missing(section.first, "the setting stop_between wants an optional stop before this")
+            yield context.place_of_missing(section.first, Wording("stops", "stop_between"))
 
 
-def _own_stops(run: Run, stops: list[_FoundStop]) -> str:
-    """Return what is known of the stops and dwells of the program's own, between operations; empty if there
-    are none.
-    """
-    parts = []
-    for kind, name in _NAMES.items():
+def _own_stops(run: Run, stops: list[_FoundStop]) -> Iterator[Wording]:
+    """Yield how many stops and dwells of its own the program has between operations, and how long the dwells take."""
+    for kind in _KINDS:
         of_kind = [stop.event for stop in stops if stop.event.kind == kind]
         seconds = sum(_seconds(_amount(event), _rpm(run, event)) for event in of_kind) if kind == "dwell" else 0.0
-        if of_kind:
-            parts.append(f"{len(of_kind)} {name}" + (f" of {format_duration(seconds)}" if seconds else ""))
-    return f"; {' and '.join(parts)} of the program's own between operations" if parts else ""
+        if seconds:
+            yield Wording("stops", "dwells_of", count=len(of_kind), time=format_duration(seconds))
+        elif of_kind:
+            yield Wording("stops", kind, count=len(of_kind))
 
 
 def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_ExpectedStop]]:
@@ -126,7 +127,7 @@ def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_Expected
 
 def _stops_outside_holes(context: ComparedContext) -> list[_FoundStop]:
     """Dwells of the program itself, without those that belong to a hole, and all its stops: a hole may have none."""
-    stops = [_FoundStop(place, event) for place, event in enumerate(context.run.events) if event.kind in _NAMES]
+    stops = [_FoundStop(place, event) for place, event in enumerate(context.run.events) if event.kind in _KINDS]
     inside = _in_holes(context, [stop.event for stop in stops]).tolist()
     return [stop for stop, in_hole in zip(stops, inside, strict=True) if not in_hole or stop.event.kind != "dwell"]
 
@@ -136,7 +137,7 @@ def _changes_in_holes(context: ComparedContext) -> Iterator[Place]:
     changes = [event for event in context.run.events if event.kind == "tool_change"]
     for event, in_hole in zip(changes, _in_holes(context, changes).tolist(), strict=True):
         if in_hole:
-            yield context.place_of_event(event, 0.0, "changes the tool in a hole")
+            yield context.place_of_event(event, 0.0, Wording("stops", "change_in_hole"))
 
 
 def _in_holes(context: ComparedContext, events: Sequence[RunEvent]) -> Flags:
@@ -162,16 +163,16 @@ def _compare(
     for wanted, stop in zip_longest(expected, stops):
         if wanted is None:
             if not _follows_insert(context, pair):
-                text = f"{_words(stop.event.kind, _amount(stop.event))}, which the CL file does not ask for"
-                yield context.place_of_event(stop.event, 0.0, text)
+                said = Wording("stops", "not_asked", stop=_words(stop.event.kind, _amount(stop.event)))
+                yield context.place_of_event(stop.event, 0.0, said)
         elif stop is None:
             row = min(wanted.row, len(context.expected) - 1)
-            place = context.place_of_missing(row, f"the CL file wants {wanted} before this")
+            place = context.place_of_missing(row, Wording("stops", "missing", stop=wanted.said))
             yield replace(place, cl_file=wanted.file, cl_line=wanted.line)
         else:
-            text = _fault(run, restarts, wanted, stop)
-            if text:
-                place = context.place_of_event(stop.event, 0.0, text)
+            fault = _fault(run, restarts, wanted, stop)
+            if fault is not None:
+                place = context.place_of_event(stop.event, 0.0, fault)
                 yield replace(place, cl_file=wanted.file, cl_line=wanted.line)
 
 
@@ -183,8 +184,8 @@ def _at_the_part(context: ComparedContext, stops: list[_FoundStop]) -> Iterator[
             continue
         away = away or stands_away(context)
         if not away(stop.place):
-            text = f"{_words(stop.event.kind, 0.0)} at the part, which the CL file does not ask for: retract first"
-            yield context.place_of_event(stop.event, 0.0, text)
+            said = Wording("stops", "at_part", stop=_words(stop.event.kind, 0.0))
+            yield context.place_of_event(stop.event, 0.0, said)
 
 
 def _asked_for(run: Run, stops: list[_FoundStop], expected: list[_ExpectedStop]) -> list[_FoundStop]:
@@ -205,18 +206,14 @@ def _is_in(values: list[float], value: float) -> bool:
     return k < len(values) and values[k] <= value + _TOLERANCE
 
 
-def _fault(run: Run, restarts: RestatedModes, wanted: _ExpectedStop, stop: _FoundStop) -> str:
-    """Return what is wrong with a stop or dwell in the place of one that the CL file wants; empty if it is right."""
+def _fault(run: Run, restarts: RestatedModes, wanted: _ExpectedStop, stop: _FoundStop) -> Wording | None:
+    """Return what is wrong with a stop or dwell in the place of one that the CL file wants; None if it is right."""
     event = stop.event
     if event.kind == "stop" and restarts.spindle_turns(stop.place):
-        return "stops while the spindle turns: at a STOP of the CL file it stands (M5 before it)"
+        return Wording("stops", "while_turning")
     if not _same(run, event, wanted):
-        return f"{_words(event.kind, _amount(event))}; the CL file wants {wanted}"
-    if event.kind != "dwell":
-        unsaid = restarts.unsaid(stop.place, event.before_row, wanted.coolant)
-        if unsaid:
-            return f"the machine may switch {unsaid} off here, and it is not switched on again before the next cut"
-    return ""
+        return Wording("stops", "other", stop=_words(event.kind, _amount(event)), wanted=wanted.said)
+    return None if event.kind == "dwell" else restarts.unsaid(stop.place, event.before_row, wanted.coolant)
 
 
 def _is_within_operation(context: ComparedContext, pair: int) -> bool:
@@ -251,7 +248,7 @@ def _seconds(amount: float, rpm: float) -> float:
     return amount if amount >= 0.0 else -60.0 * amount / max(rpm, 1e-9)
 
 
-def _words(kind: str, amount: float) -> str:
+def _words(kind: str, amount: float) -> Wording:
     if kind == "dwell":
-        return f"a dwell of {amount:g} s" if amount >= 0.0 else f"a dwell of {-amount:g} turns"
-    return "a stop" if kind == "stop" else "an optional stop"
+        return Wording("stops", "of_seconds" if amount >= 0.0 else "of_turns", amount=abs(amount))
+    return Wording("stops", "a_stop" if kind == "stop" else "an_optional_stop")

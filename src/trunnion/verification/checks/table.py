@@ -83,7 +83,7 @@ class CheckEntry:
     run      makes it, or none where it is no question of the program
     bases    what somebody has to state; without one of them it is not checked, or only in part
     kinds    values of the definition that its answer stands on
-    title    of one that is always made, where there is nothing to compare with
+    is_named  in results that compare with no CL file, too: as not checked
     """
 
     key: str
@@ -91,7 +91,7 @@ class CheckEntry:
     run: Callable[[Any], Iterable[Check]]
     bases: tuple[Basis, ...] = ()
     kinds: tuple[ValueKind, ...] = ()
-    title: str = ""
+    is_named: bool = True
 
     def checks(self, seen: Measured, unmeasured: Iterable[MarkedValue]) -> Iterator[Check]:
         """Make the check, as far as what it needs is there; ``unmeasured`` values matter to the program."""
@@ -101,32 +101,16 @@ class CheckEntry:
             for check in self.run(seen):
                 answer = replace(check, missing=(*missing, *check.missing))
                 # What was not answered stands on nothing.
-                yield replace(answer, stands_on=tuple(map(str, values))) if check.summary else answer
-        elif self.title:
-            yield Check(self.key, self.title, True, "", missing=(phrase("no_cl_file"),))
+                yield replace(answer, stands_on=tuple(map(str, values))) if check.answer else answer
+        elif self.is_named:
+            yield Check(self.key, True, None, missing=(phrase("no_cl_file"),))
 
 
 def _check(
     key: str, needs: type[_Needed], run: Callable[[_Needed], Check], *bases: Basis, on: tuple[ValueKind, ...] = ()
 ) -> CheckEntry:
-    return CheckEntry(key, needs, lambda seen: (run(seen),), bases, on, _TITLES.get(key, ""))
+    return CheckEntry(key, needs, lambda seen: (run(seen),), bases, on)
 
-
-#: Of checks that compare with CL files, where there are none.
-_TITLES: Final = {
-    "order": "every CL point has its block, every block its point",
-    "tip": "tool tip against the CL points",
-    "axis": "tool axis against the CL points",
-    "kind": "rapid, line or circle as the CL file says",
-    "feed": "feeds as the CL file says",
-    "spindle": "spindle as the CL file says",
-    "tool": "tools as the CL file says",
-    "coolant": "coolant as the CL file says",
-    "compensation": "radius compensation as the CL file says",
-    "stops": "stops, dwells and block skip as the CL file says",
-    "home": "retracts to the machine's home",
-    "holes": "holes as the cycles of the CL file ask",
-}
 
 CHECKS: Final = (
     _check("order", Compared, lambda seen: check_order(seen.context)),
@@ -142,8 +126,8 @@ CHECKS: Final = (
     _check("offset", Measured, lambda seen: check_work_offset(seen.context)),
     _check("home", Compared, lambda seen: check_home(seen.context), on=(ValueKind.HOME,)),
     _check("holes", Compared, lambda seen: check_holes(seen.context)),
-    CheckEntry("normal", Compared, lambda seen: check_normals(seen.context)),
-    CheckEntry("reach", Compared, lambda seen: check_reach(seen.context, seen.original)),
+    CheckEntry("normal", Compared, lambda seen: check_normals(seen.context), is_named=False),
+    CheckEntry("reach", Compared, lambda seen: check_reach(seen.context, seen.original), is_named=False),
     _check("span", Measured, lambda seen: check_between_points(seen.context, seen.motion, seen.errors)),
     _check(
         "travel", Measured, lambda seen: check_travel(seen.context, seen.motion), TRAVEL, ZERO, TOOL_LENGTH,

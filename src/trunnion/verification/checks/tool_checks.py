@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.compensation.stretches import ADDED_RADII, RegisterValue
+from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.tool_additions import LENGTHS, REPLACED
@@ -46,8 +47,9 @@ def check_tool(context: ComparedContext) -> Check:
     unnumbered = next((state.first for state in states if state.value.is_known), 0)
     places += _foreign_changes(context, asked, unnumbered) if asked else ()
     places += _foreign_deltas(context)
-    good = ", ".join(dict.fromkeys(f"tool {names[0]}" for names in asked)) or "the CL file names no tool"
-    return check_from_places("tool", "tools as the CL file says", sorted(places, key=lambda p: p.nc_line), good)
+    tools = tuple(Wording("tool", "named", tool=name) for name in dict.fromkeys(names[0] for names in asked))
+    good = Wording("tool", "good", tools=tools) if tools else Wording("tool", "none_asked")
+    return check_from_places("tool", sorted(places, key=lambda p: p.nc_line), good)
 
 
 def _holds_other_tool(run: Run, names: tuple[str, ...], nc: Ints) -> Flags:
@@ -58,11 +60,11 @@ def _holds_other_tool(run: Run, names: tuple[str, ...], nc: Ints) -> Flags:
 def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, ...]) -> Iterator[Place]:
     """Yield the row with a wrong tool, and the last word that called it."""
     run = context.run
-    text = tool_fault(run.tools[run.state.tool[row]], names)
-    yield context.place_with_cl(row, 0.0, text, cl)
+    fault = tool_fault(run.tools[run.state.tool[row]], names)
+    yield context.place_with_cl(row, 0.0, fault, cl)
     calls = [event for event in run.events if event.kind in ("tool", "tool_change") and event.before_row <= row]
     if calls:
-        yield context.place_of_event(calls[-1], 0.0, f"{text}: this is the last block that calls a tool")
+        yield context.place_of_event(calls[-1], 0.0, Wording("tool", "last_call", fault=fault))
 
 
 def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unnumbered: int) -> Iterator[Place]:
@@ -77,8 +79,7 @@ def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unn
         if event.kind == "tool_change":
             tool = str(event.value or "")
             if tool and tool != "0" and not any(names_tool(tool, names) for names in asked):
-                text = f"changes to tool {tool}, which the CL file never asks for"
-                yield context.place_of_event(event, 0.0, text)
+                yield context.place_of_event(event, 0.0, Wording("tool", "never_asked", tool=tool))
 
 
 def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
@@ -89,10 +90,10 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
         name, value = str(event.value[0]), float(event.value[1] or 0.0)
         asked = [*context.settings.tool_deltas.get(name, ()), *_radii_taken_off(context, event, name)]
         if value and not any(abs(value - wanted) <= _DELTA for wanted in asked):
-            does = "puts {:g} mm in the place of the tool's length" if name in REPLACED else "adds {:g} mm to the tool"
-            repeat = context.settings.repeat(_DELTA_SETTINGS.get(name, ""), f"{value:g}")
-            text = f"{name} {does.format(value)}, which nothing asks for{repeat}"
-            yield context.place_of_event(event, value, text)
+            does = "replaces_length" if name in REPLACED else "adds_to_tool"
+            said = Wording("tool", does, word=name, value=value)
+            said = context.settings.repeated(said, _DELTA_SETTINGS.get(name, ""), f"{value:g}")
+            yield context.place_of_event(event, value, said)
 
 
 def _radii_taken_off(context: ComparedContext, event: RunEvent, name: str) -> Iterator[float]:
@@ -103,9 +104,10 @@ def _radii_taken_off(context: ComparedContext, event: RunEvent, name: str) -> It
             yield -radius
 
 
-def tool_fault(has: str, names: tuple[str, ...]) -> str:
+def tool_fault(has: str, names: tuple[str, ...]) -> Wording:
     """Return what is wrong with the tool in the spindle, empty for none, where one of some names is expected."""
-    return f"{f'tool {has}' if has else 'no tool'} is in the spindle; the CL file wants {names[0]}"
+    wanted = names[0]
+    return Wording("tool", "other_tool", has=has, wanted=wanted) if has else Wording("tool", "no_tool", wanted=wanted)
 
 
 def _wrong_edges(context: ComparedContext) -> Iterator[Place]:
@@ -127,21 +129,23 @@ def _wrong_edges(context: ComparedContext) -> Iterator[Place]:
         )
         if bad is not None:
             row, cl = bad
-            has = f"with D{used[row]}" if used[row] >= 0 else "without a D word"
-            text = f"works {has}, not with D{edge}{_by_register(context, int(used[row]), registers)}"
-            yield context.place_with_cl(row, 0.0, text, cl)
+            has, said = int(used[row]), Wording("tool", "no_edge", wanted=edge)
+            if has >= 0:
+                said = Wording("tool", "other_edge", has=has, wanted=edge)
+            yield context.place_with_cl(row, 0.0, _by_register(said, context, has, registers), cl)
     rows = context.run.state.machine_frame.rows_with(True)
     edges = used.at(rows)
     others = rows[(edges > 0) & ~np.isin(edges, known)]
     if len(others):
         row = int(others[0])
-        repeat = _by_register(context, int(used[row]), registers)
-        yield context.place(row, 0.0, f"D{used[row]} is not the edge of this tool, D{known[0]}{repeat}")
+        said = Wording("tool", "edge_on_way_home", has=int(used[row]), wanted=known[0])
+        yield context.place(row, 0.0, _by_register(said, context, int(used[row]), registers))
 
 
-def _by_register(context: ComparedContext, edge: int, registers: Mapping[int, int]) -> str:
-    """Return the setting to tell again where a wrong edge is the register of a tool; empty elsewhere."""
-    return context.settings.repeat("edge_from", "adjust") if edge > 0 and edge in registers.values() else ""
+def _by_register(fault: Wording, context: ComparedContext, edge: int, registers: Mapping[int, int]) -> Wording:
+    """Return a wrong edge with the setting that would explain it where it is the register of a tool."""
+    is_register = edge > 0 and edge in registers.values()
+    return context.settings.repeated(fault, "edge_from", "adjust") if is_register else fault
 
 
 def _has_other_edge(used: StepColumn, edge: int, nc: Ints) -> Flags:
@@ -166,7 +170,8 @@ def _has_other_length(run: Run, numbers: tuple[int, ...], nc: Ints) -> Flags:
     return ~np.isin(run.state.edge.at(nc), numbers)
 
 
-def length_fault(number: int, allowed: tuple[int, ...]) -> str:
+def length_fault(number: int, allowed: tuple[int, ...]) -> Wording:
     """Return what is wrong with a length number, -1 for none, that is not allowed."""
-    has = "without a tool length" if number < 0 else f"with the length of H{number}"
-    return f"works {has}; the CL file wants H{allowed[0]}"
+    if number < 0:
+        return Wording("tool", "no_length", wanted=allowed[0])
+    return Wording("tool", "other_length", has=number, wanted=allowed[0])

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run, RunEvent
 from trunnion.verification.checks.rotary_moves_at_part import STILL, rotary_moves_at_part, turn_flags
 from trunnion.verification.context import ComparedContext, Context, Faults
 from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,8 +49,8 @@ def check_turns(context: Context) -> Check:
     unplaced = _turned_without_plane(context) if isinstance(context, ComparedContext) else Faults()
     found = Faults(sorted([*places, *unplaced.places], key=lambda place: place.nc_line), len(places) + unplaced.count)
     on = sum(change.on for change in changes)
-    good = turns.summary() + (f"; {counted(on, 'tilted plane')}, each off before the next turn" if on else "")
-    return found.check("turns", "turns and planes in a safe order", good)
+    good = Wording("turns", "with_planes", turns=turns.said(), planes=on) if on else turns.said()
+    return found.check("turns", good)
 
 
 def _plane_changes(run: Run) -> list[_PlaneChange]:
@@ -102,8 +102,7 @@ def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> Iterator
         for row in rows[turn_flags(run, rows)].tolist():
             same_block = run.lines[row] == event.line and run.state.file[row] == event.file
             if not (same_block and row == event.before_row):
-                text = "turns a rotary axis in a tilted plane: switch the plane off first"
-                yield context.place(row, 0.0, text)
+                yield context.place(row, 0.0, Wording("turns", "in_plane"))
 
 
 def _turned_without_plane(context: ComparedContext) -> Faults:
@@ -116,7 +115,7 @@ def _turned_without_plane(context: ComparedContext) -> Faults:
     found = Faults()
     if run.machine.workpiece_zero is not None:
         return found
-    text = "works under turned rotary axes with TCP off and in no plane: say where the workpiece zero is (zero)"
+    said = Wording("turns", "no_plane")
     for nc, cl in context.matching.pair_chunks():
         turned = ~run.state.xyz_is_tip.at(nc)
         if not turned.any():  # with TCP, as most are
@@ -124,7 +123,7 @@ def _turned_without_plane(context: ComparedContext) -> Faults:
         # Whole turns leave everything where it was.
         turned &= (np.abs(run.rotary[nc] - 360.0 * np.rint(run.rotary[nc] / 360.0)) > STILL).any(axis=1)
         turned &= ~only_positions_rotary_axes(run, nc)  # on the way from plane to plane
-        places = (context.place_with_cl(int(nc[k]), 0.0, text, int(cl[k])) for k in np.flatnonzero(turned))
+        places = (context.place_with_cl(int(nc[k]), 0.0, said, int(cl[k])) for k in np.flatnonzero(turned))
         found.add_rows(int(turned.sum()), places)
     return found
 
@@ -139,10 +138,9 @@ def _planes_left_on(context: Context, changes: list[_PlaneChange]) -> Iterator[P
             continue
         tilted = last.on and not last.level
         if tilted or last.shifted:
-            what = "changes the tool" if event.kind == "tool_change" else "ends the program"
-            state = "in a tilted plane" if tilted else "with a frame on"
-            text = f"{what} {state}, which was switched on in line {last.source.line}"
-            yield context.place_of_event(event, 0.0, text)
+            change, end = ("change_in_plane", "end_in_plane") if tilted else ("change_in_frame", "end_in_frame")
+            said = Wording("turns", change if event.kind == "tool_change" else end, line=last.source.line)
+            yield context.place_of_event(event, 0.0, said)
 
 
 def _other_swivel_data(context: Context) -> Iterator[Place]:
@@ -153,7 +151,5 @@ def _other_swivel_data(context: Context) -> Iterator[Place]:
     for event in context.run.events:
         name = str(event.value).split(",")[1:2] if event.kind == "cycle800" else []
         if name and name[0] not in ("", '"0"', *known):
-            text = (
-                f"CYCLE800 with the swivel data set {name[0]}, where the setting swivel_data has {' or '.join(known)}"
-            )
-            yield context.place_of_event(event, 0.0, text)
+            said = Wording("turns", "other_swivel_data", has=name[0], wanted=tuple(known))
+            yield context.place_of_event(event, 0.0, said)

@@ -12,8 +12,6 @@ from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, 
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.results import Check, Place
 
-_TITLE: Final = "every word known"
-
 #: The code of words that belong to the machine.
 _OF_MACHINE: Final = "NC225"
 
@@ -28,30 +26,29 @@ def check_words(context: Context) -> Check:
         errors = _compared_errors(context.expected, context.run, errors)
     remarks = len(diagnostics) - len(errors)
     others = remarks - sum(each.code == _OF_MACHINE for each in diagnostics)
-    good = _known(diagnostics) + (f"; {others} remarks" if others else "")
+    good = _known(diagnostics)
+    if others:
+        good = Wording("words", "with_remarks", known=good, count=others)
     if not errors and remarks:
-        return Check(
-            "words", _TITLE, True, good, places=tuple(_place(context, each) for each in diagnostics[:MAX_PLACES])
-        )
-    return check_from_places("words", _TITLE, [_place(context, error) for error in errors], good)
+        return Check("words", True, good, places=tuple(_place(context, each) for each in diagnostics[:MAX_PLACES]))
+    return check_from_places("words", [_place(context, error) for error in errors], good)
 
 
-def _known(diagnostics: Sequence[Diagnostic]) -> str:
-    """Return what is known in words: every word, or all but those of the machine's builder that the definition leaves
-    out.
-    """
+def _known(diagnostics: Sequence[Diagnostic]) -> Wording:
+    """Return what is known: every word, or all but those of the machine's builder that the definition leaves out."""
     own = [each.text for each in diagnostics if each.code == _OF_MACHINE]
     names = list(dict.fromkeys(text.partition(" ")[0] for text in own))
     if not names:
-        return "every word is known"
-    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
-    return f"every word is known but those of the machine: {', '.join(names[:_MOST_NAMED])}{more}"
+        return Wording("words", "known")
+    if len(names) > _MOST_NAMED:
+        return Wording("words", "known_but_more", names=tuple(names[:_MOST_NAMED]), count=len(names) - _MOST_NAMED)
+    return Wording("words", "known_but", names=tuple(names))
 
 
 def _place(context: Context, diagnostic: Diagnostic) -> Place:
     of_subprogram = diagnostic.file in context.run.files[1:]
     nc_file = diagnostic.file if of_subprogram else ""
-    return Place(diagnostic.line, -1, 0.0, diagnostic.text, nc_file=nc_file, code=diagnostic.code)
+    return Place(diagnostic.line, -1, 0.0, diagnostic.wording.with_cure(), nc_file=nc_file, code=diagnostic.code)
 
 
 def _compared_errors(expected: ExpectedPath, run: Run, errors: list[Diagnostic]) -> list[Diagnostic]:

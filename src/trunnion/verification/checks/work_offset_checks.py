@@ -2,11 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
-from trunnion.messages import phrase
+from trunnion.messages import Wording, phrase
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -15,8 +14,6 @@ from trunnion.verification.kinematics.positioning_moves import first_workpiece_p
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import CHUNK, RowRanges, chunk_bounds
 
-_TITLE: Final = "work offsets"
-
 
 def check_work_offset(context: Context) -> Check:
     """One work offset for each operation, and none that the control has cleared before the tool works."""
@@ -24,7 +21,7 @@ def check_work_offset(context: Context) -> Check:
     if not lost:
         return check
     places = [*([] if check.passed else check.places), *lost]
-    return check_from_places("offset", _TITLE, places, "")
+    return check_from_places("offset", places, None)
 
 
 def _lost_offsets(context: Context) -> Iterator[Place]:
@@ -36,8 +33,8 @@ def _lost_offsets(context: Context) -> Iterator[Place]:
         row = first_workpiece_position(run, event.before_row, end) if isinstance(event.value, str) else None
         if row is not None:
             name = _name(context, int(run.state.work_offset[row]))
-            what = f"clears {name}, and {context.block_name(row)} works before it is selected again"
-            yield context.place_of_event(event, 0.0, f"{event.value} {what}: write {name} after it")
+            said = Wording("offset", "lost", word=event.value, offset=name, block=context.block_name(row))
+            yield context.place_of_event(event, 0.0, said)
 
 
 def _check_selected(context: Context) -> Check:
@@ -50,7 +47,7 @@ def _check_selected(context: Context) -> Check:
         return _check_changes(context, _workpiece_frame_rows(context.run))
     stretches = list(_stretches(context))
     if not stretches:
-        return Check("offset", _TITLE, True, "nothing moves")
+        return Check("offset", True, Wording("offset", "nothing_moves"))
     used, tcp = context.run.state.work_offset, context.run.state.tcp
     compared = isinstance(context, ComparedContext)
     found = Faults()
@@ -62,20 +59,21 @@ def _check_selected(context: Context) -> Check:
                 continue
             wrong = here != wanted if compared else (here != wanted) & ~((here == 0) & ~tcp.at(part))
             at = (
-                (int(row), f"works in {_name(context, used[int(row)])}, not in {_name(context, wanted)}")
+                (int(row), {"has": _name(context, used[int(row)]), "wanted": _name(context, wanted)})
                 for row in part[wrong]
             )
-            found.add_rows(int(wrong.sum()), (context.place(row, 0.0, text) for row, text in at))
+            places = (context.place(row, 0.0, Wording("offset", "other", **names)) for row, names in at)
+            found.add_rows(int(wrong.sum()), places)
     if compared:
         found.add(*_turned_in_others(context, stretches))
     known = list(dict.fromkeys(wanted for _, wanted in stretches))
     others = set(used.distinct().tolist()) - {0, *known}
     if others and not found.count:
         row = min(int(used.rows_with(code)[0]) for code in others)
-        found.add(context.place(row, 0.0, f"{_name(context, used[row])} is not the offset of this program"))
-    names = [_name(context, code) for code in known]
-    good = f"{names[0]} throughout" if len(names) == 1 else ", ".join(names)
-    return found.check("offset", _TITLE, good)
+        found.add(context.place(row, 0.0, Wording("offset", "of_another", offset=_name(context, used[row]))))
+    names = tuple(_name(context, code) for code in known)
+    good = Wording("offset", "several", offsets=names)
+    return found.check("offset", Wording("offset", "throughout", offset=names[0]) if len(names) == 1 else good)
 
 
 def _turned_in_others(context: Context, stretches: Sequence[tuple[RowRanges, int]]) -> Iterator[Place]:
@@ -97,8 +95,8 @@ def _turned_in_others(context: Context, stretches: Sequence[tuple[RowRanges, int
             axes = int(run.programmed[row]) & int(ROTARY_WORDS)
             code = int(run.state.work_offset[row])
             if code not in (0, wanted) and axes & ~again:
-                what = f"turns in {_name(context, code)} for motion in {_name(context, wanted)}"
-                yield context.place(row, 0.0, f"{what}: write {_name(context, wanted)} before it")
+                said = Wording("offset", "turns_in_other", has=_name(context, code), wanted=_name(context, wanted))
+                yield context.place(row, 0.0, said)
             again = again | axes if k < inside else 0
         before = rows[-1] + 1
 
@@ -107,7 +105,7 @@ def _check_changes(context: Context, rows: RowRanges) -> Check:
     """Return the work offsets that a program chooses by itself."""
     run = context.run
     if not len(rows):
-        return Check("offset", _TITLE, True, "nothing moves")
+        return Check("offset", True, Wording("offset", "nothing_moves"))
     used = run.state.work_offset
     codes: list[int] = []
     places: list[Place] = []
@@ -118,17 +116,17 @@ def _check_changes(context: Context, rows: RowRanges) -> Check:
         for k in np.flatnonzero(np.diff(here, prepend=last)).tolist():
             row, code = int(part[k]), int(here[k])
             if codes and codes[-1] and run.kind[row] != Kind.RAPID:
-                what = f"changes from {_name(context, codes[-1])} to {_name(context, code)} in a cut"
-                places.append(context.place(row, 0.0, f"{what}: go there at rapid first"))
+                offsets = {"before": _name(context, codes[-1]), "offset": _name(context, code)}
+                places.append(context.place(row, 0.0, Wording("offset", "changes_in_cut", **offsets)))
             elif code == 0 and run.state.tcp[row] and used.distinct().any():
-                places.append(context.place(row, 0.0, "works in no work offset"))
+                places.append(context.place(row, 0.0, Wording("offset", "works_in_none")))
             codes.append(code)
         last = int(here[-1])
-    names = list(dict.fromkeys(_name(context, code) for code in codes if code)) or [_name(context, 0)]
+    names = tuple(dict.fromkeys(_name(context, code) for code in codes if code)) or (_name(context, 0),)
     if len(names) == 1:
-        return check_from_places("offset", _TITLE, places, f"{names[0]} throughout")
-    check = check_from_places("offset", _TITLE, places, f"{', then '.join(names)}, each as the program chooses")
-    return replace(check, missing=(phrase("offsets_chosen", names=tuple(sorted(names))),))
+        return check_from_places("offset", places, Wording("offset", "throughout", offset=names[0]))
+    check = check_from_places("offset", places, Wording("offset", "chosen", offsets=names))
+    return replace(check, missing=(phrase("offsets_chosen", names=tuple(sorted(map(str, names)))),))
 
 
 def _stretches(context: Context) -> Iterator[tuple[RowRanges, int]]:
@@ -155,6 +153,6 @@ def _workpiece_frame_rows(run: Run) -> RowRanges:
     return RowRanges.from_flags((start, ~frame.part(start, end)) for start, end in chunk_bounds(len(run)))
 
 
-def _name(context: Context, code: int) -> str:
+def _name(context: Context, code: int) -> Wording | str:
     """Return a work offset as programs of this control call it."""
-    return "no work offset" if code == 0 else context.run.work_offset_name(code)
+    return context.run.work_offset_name(code) if code else Wording("offset", "none")

@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, forward
+from trunnion.messages import Wording
 from trunnion.model.deviations import Deviations
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -39,7 +40,7 @@ class DeviationFault:
 
     cl: int
     value: float
-    text: str
+    said: Wording
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,16 +95,16 @@ def _declared_axes(declared: Deviations, machine: Machine) -> Floats:
 
 def _excessive_leans(section: Section, declared: Deviations, leans: Floats) -> Iterator[DeviationFault]:
     for k in np.flatnonzero(~(leans <= declared.max_lean + _NOISE)).tolist():
-        lean = f"the tool axis is declared to lean by {leans[k]:.6f} degrees"
-        text = f"{lean}, more than the {declared.max_lean:g} asked for"
-        yield DeviationFault(section.first + int(declared.leaned_rows[k]), float(leans[k]), text)
+        said = Wording("axis", "leans_too_far", lean=leans[k], most=declared.max_lean)
+        yield DeviationFault(section.first + int(declared.leaned_rows[k]), float(leans[k]), said)
 
 
 def _feeds_not_lowered(section: Section, declared: Deviations) -> Iterator[DeviationFault]:
     own = section.operation.moves.feed[declared.slowed_rows]
     for k in np.flatnonzero(~((declared.slowed_feed > 0.0) & (declared.slowed_feed <= own))).tolist():
-        text = f"a feed of {declared.slowed_feed[k]:g} is declared as lowered, but is not below that of the CL file"
-        yield DeviationFault(section.first + int(declared.slowed_rows[k]), float(declared.slowed_feed[k]), text)
+        feed = float(declared.slowed_feed[k])
+        said = Wording("feed", "not_lowered", feed=feed)
+        yield DeviationFault(section.first + int(declared.slowed_rows[k]), feed, said)
 
 
 def _feeds_not_reached(section: Section, declared: Deviations) -> Iterator[DeviationFault]:
@@ -111,8 +112,8 @@ def _feeds_not_reached(section: Section, declared: Deviations) -> Iterator[Devia
     moves, rows = section.operation.moves, declared.reached_rows
     other = (moves.kind[rows] == Kind.RAPID) | moves.per_rev[rows] | ~(declared.reached_feed > 0.0)
     for k in np.flatnonzero(other).tolist():
-        text = f"a feed of {declared.reached_feed[k]:g} is declared as what the axes reach, where there can be none"
-        yield DeviationFault(section.first + int(rows[k]), float(declared.reached_feed[k]), text)
+        feed = float(declared.reached_feed[k])
+        yield DeviationFault(section.first + int(rows[k]), feed, Wording("feed", "not_reached", feed=feed))
 
 
 def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matching) -> list[DeviationFault]:
@@ -129,8 +130,8 @@ def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matchin
                 off[:, r] -= 360.0 * np.rint(off[:, r] / 360.0)
         worst = np.where(by_vector[nc[here]], 0.0, np.abs(off).max(axis=1))
         for bad in np.flatnonzero(~(worst <= section.tolerances.angle)).tolist():
-            text = f"a rotary axis is {worst[bad]:.6f} degrees from where it was declared to be near the pole"
-            faults.append(DeviationFault(int(cl[here[bad]]), float(worst[bad]), text))
+            said = Wording("axis", "not_as_declared", off=worst[bad])
+            faults.append(DeviationFault(int(cl[here[bad]]), float(worst[bad]), said))
     return faults
 
 
@@ -159,11 +160,9 @@ def needlessly_lowered_feeds(run: Run, expected: ExpectedPath, matching: Matchin
         with np.errstate(divide="ignore", invalid="ignore"):
             share = (turned / rapid).max(axis=1) * feed / length
         for bad in np.flatnonzero(~(share >= _NEEDED) & (length > 0.0)).tolist():
-            text = (
-                f"the feed is lowered to {declared.slowed_feed[k[bad]]:g}, and the rotary axes need no more than"
-                f" {100.0 * share[bad]:.0f} % of their rapid speed there"
-            )
-            faults.append(DeviationFault(int(cl[here[bad]]), float(declared.slowed_feed[k[bad]]), text))
+            lowered = float(declared.slowed_feed[k[bad]])
+            said = Wording("feed", "lowered_too_far", feed=lowered, share=100.0 * share[bad])
+            faults.append(DeviationFault(int(cl[here[bad]]), lowered, said))
     return faults
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, Mount, forward
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.run_columns import BY_PARAMETER
 
@@ -30,11 +31,11 @@ _NAMES: Final = "XYZ"
 
 @dataclass(frozen=True, slots=True)
 class MovedTip:
-    """A row whose tip moves with the length of the tool: ``share`` of it; ``why`` in words."""
+    """A row whose tip moves with the length of the tool: ``share`` of it."""
 
     row: int
     share: float
-    why: str
+    said: Wording
 
 
 def with_linear_positions(run: Run, rows: Ints) -> Ints:
@@ -55,7 +56,7 @@ def moved_tips(run: Run, rows: Ints) -> list[MovedTip]:
         return []
     rows, axes = rows[suspects], axes[suspects]
     moved = zip(rows.tolist(), axes.tolist(), _moved(run, rows, axes).tolist(), strict=True)
-    return [MovedTip(row, share, _why(axis, _NAMES[along])) for row, axis, share in moved if share > _STILL]
+    return [MovedTip(row, share, _said(axis, _NAMES[along])) for row, axis, share in moved if share > _STILL]
 
 
 def depends_on_length(run: Run, rows: Ints) -> bool:
@@ -96,11 +97,10 @@ def _moved(run: Run, rows: Ints, axes: Ints) -> Floats:
     return np.asarray(np.linalg.norm(away, axis=1) / _LONGER)
 
 
-def _why(axis: int, along: str) -> str:
+def _said(axis: int, along: str) -> Wording:
     if axis < 0:
-        return f"no tool length counts here, and elsewhere one counts along {along}"
-    name = _NAMES[axis % BY_PARAMETER]
+        return Wording("tip", "no_length_here", along=along)
+    variant = "length_along_other"
     if axis >= BY_PARAMETER:
-        which = "; state length_along_z = true under [control.reading] if it is Z" if along == "Z" else ""
-        return f"its length counts along {name} or {along}, as a parameter of the control says{which}"
-    return f"its length counts along {name} here, and the tool lies along {along}"
+        variant = "length_by_parameter_or_z" if along == "Z" else "length_by_parameter"
+    return Wording("tip", variant, axis=_NAMES[axis % BY_PARAMETER], along=along)

@@ -14,11 +14,11 @@ class SeenRows:
     """Counts rows, chunk by chunk.
 
     checked   how many the question is answered of
-    left_out  of the others the first row for each reason, by the text of the reason
+    left_out  of the others the first row for each reason, by its reason
     """
 
     checked: int = 0
-    left_out: dict[str, int] = field(default_factory=dict)
+    left_out: dict[Wording, int] = field(default_factory=dict)
 
     def add(self, first: int, count: int, left_out: Iterable[tuple[Wording, Flags]]) -> None:
         """Add ``count`` rows from ``first`` on; of several reasons the first one counts."""
@@ -26,6 +26,6 @@ class SeenRows:
         for why, which in left_out:
             here = seen & which
             if here.any():
-                self.left_out.setdefault(why.what, first + int(np.argmax(here)))
+                self.left_out.setdefault(why, first + int(np.argmax(here)))
                 seen &= ~which
         self.checked += int(np.count_nonzero(seen))

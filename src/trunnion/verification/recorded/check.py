@@ -10,15 +10,14 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.recording import Mark
-from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.context import MAX_PLACES, Context, Faults
 from trunnion.verification.recorded.compared import RecordedComparison
 from trunnion.verification.recorded.course import Coverage, Fault, coverage, faults, longest_stand
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted
 
 KEY = "recorded"
-TITLE = "the machine as it was recorded"
 
 #: Seconds for which a recording that stands at one place is told.
 _LONG_STAND: Final = 10.0
@@ -31,9 +30,9 @@ def check_recorded(context: Context, compared: RecordedComparison) -> Check:
     """Judge a recording; the places are the worst blocks, worst first."""
     at = compared.compared
     if not len(at):
-        why = _not_compared(compared) or "it is empty"
-        summary = f"no position of {compared.recording.name} is on the path of this program: {why}"
-        return Check(KEY, TITLE, False, summary, None, compared.tolerance, "mm")
+        why = _not_compared(compared) or Wording("recorded", "empty")
+        nothing = Wording("recorded", "nothing_on_path", recording=compared.recording.name, why=why)
+        return Check(KEY, False, nothing, None, compared.tolerance, "mm")
     run = context.run
     wrong = [_fault_place(context, compared, fault) for fault in faults(run, compared)]
     found = coverage(run, compared)
@@ -44,11 +43,12 @@ def check_recorded(context: Context, compared: RecordedComparison) -> Check:
     off = [_place(context, compared, row) for row in rows[:MAX_PLACES]]
     places = [*wrong, *beyond, *off, *holes] if bad else [*wrong, *beyond, *holes, *off]
     worst = float(compared.tip_off[at].max())
+    seen = {"seen": int((compared.positions > 0).sum()), "motions": len(context.run)}
     parts = [
-        _named(compared),
+        Wording("recorded", "calls_program", name=compared.name) if compared.name else None,
         _part(context, found),
-        f"tip at most {worst:.4f} mm off the path, tool axis {float(compared.axis_off[at].max()):.4f} degrees",
-        f"{counted(len(at), 'position')} in {int((compared.positions > 0).sum())} of {len(context.run)} motions",
+        Wording("recorded", "at_most", off=worst, angle=compared.axis_off[at].max()),
+        Wording("recorded", "positions", count=len(at), **seen),
         _apart(context, compared),
         _stood(context, compared),
         _not_compared(compared),
@@ -56,20 +56,25 @@ def check_recorded(context: Context, compared: RecordedComparison) -> Check:
     ]
     fails = bool(wrong or holes or bad or beyond)
     if fails:
-        first = places[0]
-        more = len(wrong) + len(holes) + len(bad) + len(beyond) - 1
-        text = first.text if first in (*wrong, *holes) else f"{first.block_name}: {first.text}"
-        parts.insert(0, text + (f", and {counted(more, 'more place')}" if more else ""))
-    return Check(
-        KEY, TITLE, not fails, "; ".join(filter(None, parts)), worst, compared.tolerance, "mm",
-        tuple(places[:MAX_PLACES]),
-    )  # fmt: skip
+        count = len(wrong) + len(holes) + len(bad) + len(beyond)
+        first = places[0].wording if places[0] in (*wrong, *holes) else Faults(places, 1).answer()
+        parts.insert(0, first.within("and_more_places", count=count - 1) if count > 1 else first)
+    answer = Wording("recorded", "answer", parts=tuple(filter(None, parts)))
+    return Check(KEY, not fails, answer, worst, compared.tolerance, "mm", tuple(places[:MAX_PLACES]))
 
 
 def _fault_place(context: Context, compared: RecordedComparison, fault: Fault) -> Place:
     row = fault.row if fault.row >= 0 else _row_near(compared, fault.at)
-    text = f"{fault.text} (line {fault.at + 2} of {compared.recording.name})"
-    return context.place(row, math.nan, f"{context.block_name(row)}: {text}" if fault.row >= 0 else text)
+    found = {"fault": fault.said, **_line(compared, fault.at)}
+    said = Wording("recorded", "fault", **found)
+    if fault.row >= 0:
+        said = Wording("recorded", "fault_in_block", **found, block=context.block_name(row))
+    return context.place(row, math.nan, said)
+
+
+def _line(compared: RecordedComparison, at: int) -> dict[str, object]:
+    """Return the line of a row of the recording, which has a heading, and its name."""
+    return {"line": at + 2, "recording": compared.recording.name}
 
 
 def _row_near(compared: RecordedComparison, at: int) -> int:
@@ -85,31 +90,29 @@ def _hole_places(context: Context, found: Coverage) -> list[Place]:
     return [context.place(int(part[0]), math.nan, _missing(context, part)) for part in parts]
 
 
-def _missing(context: Context, rows: Ints) -> str:
-    one, last = context.block_name(int(rows[0])), context.block_name(int(rows[-1]))
-    names = one if len(rows) == 1 else f"{one} to {last}, {counted(len(rows), 'motion')},"
-    return f"{names} {'was' if len(rows) == 1 else 'were'} not recorded"
+def _missing(context: Context, rows: Ints) -> Wording:
+    first, last = context.block_name(int(rows[0])), context.block_name(int(rows[-1]))
+    if len(rows) == 1:
+        return Wording("recorded", "block_missing", block=first)
+    return Wording("recorded", "blocks_missing", first=first, last=last, count=len(rows))
 
 
-def _named(compared: RecordedComparison) -> str:
-    return f"the machine calls the program {compared.name}" if compared.name else ""
-
-
-def _part(context: Context, found: Coverage) -> str:
+def _part(context: Context, found: Coverage) -> Wording:
     """Which part of the program was recorded."""
     if found.share > 0.99995 and not len(found.holes) and not len(found.gaps):
-        return "all of the path was recorded"
-    share = f"{min(100.0 * found.share, 99.9):.1f} % of the path was recorded"
-    whole = f"ONLY {share}, from {context.block_name(found.first)} to {context.block_name(found.last)}"
-    gaps = f"; {counted(len(found.gaps), 'motion')} while the connection was broken" if len(found.gaps) else ""
-    return f"{whole}{gaps}"
+        return Wording("recorded", "all_recorded")
+    ends = {"first": context.block_name(found.first), "last": context.block_name(found.last)}
+    share = min(100.0 * found.share, 99.9)
+    if not len(found.gaps):
+        return Wording("recorded", "only_part", share=share, **ends)
+    return Wording("recorded", "only_part_with_gaps", share=share, count=len(found.gaps), **ends)
 
 
-def _stood(context: Context, compared: RecordedComparison) -> str:
+def _stood(context: Context, compared: RecordedComparison) -> Wording | None:
     seconds, at = longest_stand(compared)
     if seconds < _LONG_STAND:
-        return ""
-    return f"it shows one place for {seconds:.0f} s at {context.block_name(int(compared.row[at]))}"
+        return None
+    return Wording("recorded", "stood", seconds=seconds, block=context.block_name(int(compared.row[at])))
 
 
 def _bad_rows(compared: RecordedComparison) -> list[int]:
@@ -129,53 +132,48 @@ def _place(context: Context, compared: RecordedComparison, row: int) -> Place:
     of_row = np.flatnonzero(compared.row == row)
     tip_off = compared.tip_off
     k = int(of_row[np.argmax(np.maximum(tip_off[of_row], compared.axis_off[of_row]))])
-    text = f"the machine was {tip_off[k]:.4f} mm off the path"
+    found = {"off": tip_off[k], "angle": compared.axis_off[k], **_line(compared, k)}
+    said = Wording("recorded", "off_path", **found)
     if tip_off[k] > compared.tolerance:
-        shares = ", ".join(f"{name}{part:+.4f}" for name, part in zip("XYZ", compared.off[k], strict=True))
-        text = f"{text} ({shares})"
-    text = f"{text}, its tool axis {compared.axis_off[k]:.4f} degrees (line {k + 2} of {compared.recording.name})"
-    return context.place(row, float(max(tip_off[k], compared.axis_off[k])), text)
+        shares = tuple(f"{name}{part:+.4f}" for name, part in zip("XYZ", compared.off[k], strict=True))
+        said = Wording("recorded", "far_off_path", **found, shares=shares)
+    return context.place(row, float(max(tip_off[k], compared.axis_off[k])), said)
 
 
-def _apart(context: Context, compared: RecordedComparison) -> str:
+def _apart(context: Context, compared: RecordedComparison) -> Wording | None:
     """How far the machine went without being looked at."""
     at = compared.compared
     tips = compared.tips[at]
     if len(at) < 2:
-        return ""
+        return None
     between = at[1:] - at[:-1] - 1 - compared.recording.marked(Mark.GAP)[np.minimum(at[:-1] + 1, len(compared.row) - 1)]
     steps = np.where(between == 0, np.linalg.norm(np.diff(tips, axis=0), axis=1), 0.0)
     k = int(np.argmax(steps))
     block = context.block_name(int(compared.row[at[k + 1]]))
-    return f"between positions the tip went up to {steps[k]:.3f} mm unseen ({block})" if steps[k] > 0.0 else ""
+    return Wording("recorded", "unseen", step=steps[k], block=block) if steps[k] > 0.0 else None
 
 
-def _not_compared(compared: RecordedComparison) -> str:
+def _not_compared(compared: RecordedComparison) -> Wording | None:
     """Which positions were not compared."""
-    parts = [
-        f"{counted(compared.foreign, 'position')} in other programs" if compared.foreign else "",
-        f"{counted(compared.outside, 'position')} outside it or where nobody knows the tool"
-        if compared.outside
-        else "",
-        f"{counted(compared.incomplete, 'row')} without all axes" if compared.incomplete else "",
-    ]
-    told = ", ".join(filter(None, parts))
-    return f"not compared: {told}" if told else ""
+    counts = {"in_other_programs": compared.foreign, "outside": compared.outside, "incomplete": compared.incomplete}
+    parts = tuple(Wording("recorded", variant, count=count) for variant, count in counts.items() if count)
+    return Wording("recorded", "not_compared", parts=parts) if parts else None
 
 
-def _travel(context: Context, compared: RecordedComparison) -> str:
+def _travel(context: Context, compared: RecordedComparison) -> Wording | None:
     """Return the axis that came nearest to its limit."""
-    texts: dict[float, str] = {}
+    said: dict[float, Wording] = {}
     for k, low, high in _used(compared, context.run.machine):
         axis = context.run.machine.axes[k]
         room, whole = min(low - axis.low, axis.high - high), axis.high - axis.low
         if context.run.machine.is_placed(k):
             share = room / whole if np.isfinite(whole) else 1.0
-            texts.setdefault(share, f"{axis.name} used {low:.3f} to {high:.3f} of {axis.low:g} to {axis.high:g}")
+            used = {"low": low, "high": high, "least": axis.low, "most": axis.high}
+            said.setdefault(share, Wording("recorded", "used_range", axis=axis.name, **used))
         elif np.isfinite(whole):
-            used = high - low
-            texts.setdefault((whole - used) / whole, f"{axis.name} used {used:.3f} mm of the {whole:g} of its travel")
-    return texts[min(texts)] if texts else ""
+            share = (whole - (high - low)) / whole
+            said.setdefault(share, Wording("recorded", "used_travel", axis=axis.name, used=high - low, travel=whole))
+    return said[min(said)] if said else None
 
 
 def _used(compared: RecordedComparison, machine: Machine) -> Iterator[tuple[int, float, float]]:
@@ -195,18 +193,18 @@ def _beyond_travel(context: Context, compared: RecordedComparison) -> Iterator[P
         assert joints is not None
         if not machine.is_placed(k):
             if high - low > axis.high - axis.low + _ROUNDING:
-                text = f"axis {axis.name} used {high - low:.4f} mm, more than its travel of {axis.high - axis.low:g}"
-                yield _place_of_value(context, compared, joints[:, k], high, high - low - axis.high + axis.low, text)
+                at, travel = _row_of_value(joints[:, k], high), axis.high - axis.low
+                used = {"axis": axis.name, "used": high - low, "travel": travel}
+                said = Wording("recorded", "beyond_travel", **used, **_line(compared, at))
+                yield context.place(_row_near(compared, at), high - low - travel, said)
             continue
         for value, limit, over in ((low, axis.low, axis.low - low), (high, axis.high, high - axis.high)):
             if over > _ROUNDING:
-                text = f"axis {axis.name} stood at {value:.4f}, beyond its limit of {limit:g}"
-                yield _place_of_value(context, compared, joints[:, k], value, over, text)
+                at, stood = _row_of_value(joints[:, k], value), {"at": value, "limit": limit}
+                said = Wording("recorded", "beyond_limit", axis=axis.name, **stood, **_line(compared, at))
+                yield context.place(_row_near(compared, at), over, said)
 
 
-def _place_of_value(
-    context: Context, compared: RecordedComparison, column: Floats, value: float, over: float, text: str
-) -> Place:
-    """Return the place of the first row of the recording with a value."""
-    at = int(np.flatnonzero(column == value)[0])
-    return context.place(_row_near(compared, at), over, f"{text} (line {at + 2} of {compared.recording.name})")
+def _row_of_value(column: Floats, value: float) -> int:
+    """Return the first row of the recording with a value."""
+    return int(np.flatnonzero(column == value)[0])

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.recording import NO_TIME, SPINDLE, Mark
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -38,7 +39,7 @@ class Fault:
 
     at: int
     row: int
-    text: str
+    said: Wording
 
 
 def faults(run: Run, compared: RecordedComparison) -> Iterator[Fault]:
@@ -46,22 +47,24 @@ def faults(run: Run, compared: RecordedComparison) -> Iterator[Fault]:
     recording = compared.recording
     stated = np.flatnonzero(recording.source != NO_TIME)
     if len(recording) and not len(stated):
-        yield Fault(0, -1, "no row of the recording says when it was")
+        yield Fault(0, -1, Wording("recorded", "no_time"))
     # What is read first after a gap may be older than the gap: values that have not changed since.
     marks = np.cumsum(recording.marked(Mark.BACK, Mark.GAP))[stated]
     falls = stated[1:][(np.diff(recording.source[stated]) < 0) & (np.diff(marks) == 0)]
     if len(falls):
-        text = f"its time falls {len(falls)} times" if len(falls) > 1 else "its time falls"
-        yield Fault(int(falls[0]), int(compared.row[falls[0]]), f"{text}, and no row is marked back")
+        many = Wording("recorded", "time_falls_often", count=len(falls))
+        said = many if len(falls) > 1 else Wording("recorded", "time_falls")
+        yield Fault(int(falls[0]), int(compared.row[falls[0]]), said)
     if len(compared.strange):
         at = int(compared.strange[0])
         line = recording.values["line"][at]
-        text = f"{len(compared.strange)} rows tell lines" if len(compared.strange) > 1 else "a row tells a line"
-        yield Fault(at, -1, f"{text} that the program does not have, the first is {line:g}")
+        many = Wording("recorded", "strange_lines", count=len(compared.strange), line=line)
+        yield Fault(at, -1, many if len(compared.strange) > 1 else Wording("recorded", "strange_line", line=line))
     if len(compared.back):
         at = int(compared.back[0])
-        more = f", and {len(compared.back) - 1} times more" if len(compared.back) > 1 else ""
-        yield Fault(at, int(compared.row[at]), f"the machine went back in the program{more}")
+        many = Wording("recorded", "went_back_often", count=len(compared.back) - 1)
+        said = many if len(compared.back) > 1 else Wording("recorded", "went_back")
+        yield Fault(at, int(compared.row[at]), said)
     yield from _spindle(run, compared)
 
 
@@ -82,8 +85,8 @@ def _spindle(run: Run, compared: RecordedComparison) -> Iterator[Fault]:
             continue
         told, was = float(wanted[part[0]]), float(np.median(np.abs(turned[at[part]])))
         if abs(was - told) > SPINDLE_SHARE * told + SPINDLE_SLACK:
-            text = f"the spindle turned at {was:.0f} rev/min, programmed are {told:.0f}"
-            yield Fault(int(at[part[0]]), int(rows[part[0]]), text)
+            said = Wording("recorded", "other_speed", speed=was, wanted=told)
+            yield Fault(int(at[part[0]]), int(rows[part[0]]), said)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

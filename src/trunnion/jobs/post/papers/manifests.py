@@ -28,7 +28,7 @@ from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
 from trunnion.reporting.text import clean
 from trunnion.results import FIRST, Figure, as_json, to_data
-from trunnion.verification import State, Verification, durations
+from trunnion.verification import Check, State, Verification, durations
 
 if TYPE_CHECKING:
     from trunnion.jobs.result_output import Target
@@ -182,15 +182,17 @@ def inputs_of(files: Iterable[FilePath]) -> list[ManifestEntry]:
     return list(found.values())
 
 
+def _clean(check: Check) -> Check:
+    return replace(check, answer=check.answer and check.answer.changed(clean))
+
+
 def _proof(verification: Verification | None) -> dict[str, object]:
     """Return the result of the proof, and the times that it found."""
     if verification is None:
         return {"checks": [], "seconds": None, "operations": []}
     seconds, _ = durations(verification)
     return {
-        "checks": [
-            to_data(replace(check, summary=clean(check.summary)), only=_OF_CHECK) for check in verification.checks
-        ],
+        "checks": [to_data(_clean(check), only=_OF_CHECK) for check in verification.checks],
         "seconds": float(seconds.sum()),
         "operations": [
             _Operation(clean(own.name), clean(own.tool), float(seconds[own.first : own.end].sum()))

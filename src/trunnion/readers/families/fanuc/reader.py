@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from trunnion.readers.families.fanuc.control import FanucControl
 from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
 from trunnion.readers.families.fanuc.settings import settings_of
 from trunnion.readers.families.fanuc.words import TABLE, is_own_word
@@ -35,5 +36,6 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     offsets_of=offsets_of,
     words_of=lambda machine: TABLE.without_path_by(settings_of(machine).words),
+    compensation_style=FanucControl.compensation_style,
     check_reading=settings_of,
 )

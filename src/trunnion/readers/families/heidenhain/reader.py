@@ -3,6 +3,7 @@
 import re
 from typing import Final
 
+from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.readers.families.heidenhain.own_words import is_own_word
 from trunnion.readers.families.heidenhain.settings import variables_of
@@ -55,5 +56,6 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     smoothing=re.compile(r"CYCL[ \t]+DEF[ \t]+32(?![0-9])"),
     lost_smoothing={"cycle32": ("cycle 32", "see the setting tolerance=…")},
+    compensation_style=HeidenhainControl.compensation_style,
     check_reading=variables_of,
 )

@@ -3,7 +3,7 @@
 import re
 from typing import Final
 
-from trunnion.readers.families.linuxcnc.control import settings_of
+from trunnion.readers.families.linuxcnc.control import LinuxcncControl, settings_of
 from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.readers.families.linuxcnc.words import TABLE, is_own_word
 from trunnion.readers.program.family_reader import FamilyReader
@@ -42,5 +42,6 @@ READER: Final = FamilyReader(
     uses_length_numbers=True,
     raw_words=RAW_WORDS,
     words_of=lambda machine: TABLE.without_path_by(settings_of(machine)[1]),
+    compensation_style=LinuxcncControl.compensation_style,
     check_reading=settings_of,
 )

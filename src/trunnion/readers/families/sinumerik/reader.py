@@ -3,6 +3,7 @@
 import re
 from typing import Final
 
+from trunnion.readers.families.sinumerik.control import SinumerikControl
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.readers.families.sinumerik.own_words import is_own_word
 from trunnion.readers.families.sinumerik.settings import settings_of
@@ -54,5 +55,6 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     smoothing=re.compile(r"ORI[A-Z]+|CYCLE832"),
     lost_smoothing={"cycle832": ("CYCLE832", "see setting cycle832=… and tolerance=…")},
+    compensation_style=SinumerikControl.compensation_style,
     check_reading=settings_of,
 )
