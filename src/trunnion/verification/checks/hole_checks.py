@@ -121,8 +121,8 @@ def _slanted_rapids(context: ComparedContext, before: _Drilled | None, now: _Dri
     still = np.abs(np.diff(positions.axis, axis=0)).max(axis=1) <= _SAME_AXIS
     slanted = still & (rise < -_SLANT) & (aside > _SLANT) & ~context.run.state.machine_frame.at(rows)
     for k in np.flatnonzero(slanted)[:1].tolist():
-        text = f"goes {aside[k]:.4f} mm sideways and {-rise[k]:.4f} mm down at once: a rapid between holes is missing"
-        yield HoleFault(int(rows[k]), float(aside[k]), text)
+        side, down = float(aside[k]), -float(rise[k])
+        yield HoleFault(int(rows[k]), side, Wording("holes", "slanted", aside=side, down=down))
 
 
 def _has_pair_between(matching: Matching, first: int, last: int) -> bool:

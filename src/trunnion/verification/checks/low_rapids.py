@@ -64,8 +64,9 @@ def skipped_retracts(context: Context) -> Iterator[Place]:
         for row, point in zip(nc.tolist(), cl.tolist(), strict=True):
             line = (expected.section_at(point).file, expected.point(point).line)
             if line in expected.without_retract:
-                how = "at rapid" if context.run.kind[row] == Kind.RAPID else "at a feed"
-                yield context.place(row, 0.0, f"leaves the cut sideways {how}: OPSKIP of the CL file skips its retract")
+                is_rapid = context.run.kind[row] == Kind.RAPID
+                how = "retract_skipped_at_rapid" if is_rapid else "retract_skipped_at_feed"
+                yield context.place(row, 0.0, Wording("modal", how))
 
 
 def _height_left_at(run: Run, row: int, axis: Floats, entry: float) -> float | None:

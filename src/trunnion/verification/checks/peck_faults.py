@@ -64,8 +64,7 @@ def _collect_pecks(
             start = float(motions.height[k - 1])
             is_back = bool(pecks) and start >= hole.cycle.clearance - hole.tolerance
             if motions.by_motion and is_back and start - deepest > _MOST_AT_FEED:
-                text = f"feeds {start - deepest:.4f} mm where nothing is left to drill: the rapid back is missing"
-                yield motions.fault(k, height, text)
+                yield motions.fault(k, height, Wording("holes", "no_rapid_back", way=start - deepest))
             pecks.append(height)
             between.append([])
         elif motions.by_motion and kind == Kind.LINEAR and k <= bottom:
