@@ -92,12 +92,12 @@ def view_content(
     run = rows.run
     cl_files = {name: k for k, name in enumerate(cl_texts)}
     seconds = rows.seconds(durations(verification)[0] if len(verification.seconds) else np.zeros(0))
-    lengths = {k: _length(tools.get(name), machine) for k, name in enumerate(run.tools)}
+    lengths = {k: _length(tools.get(name), run.length_of(name)) for k, name in enumerate(run.tools)}
     motion = motion_columns(run, seconds, lengths)
     bodies = [*machine_bodies(machine), *clamped]
     for k, name in enumerate(run.tools):
         shape = tools.get(name)
-        bodies += _needle(machine, name) if shape is None else tool_bodies(shape, machine, name, lengths[k])
+        bodies += _needle(machine, name, lengths[k]) if shape is None else tool_bodies(shape, machine, name, lengths[k])
     columns: dict[str, Column] = {
         "row": motion.row.astype(np.int32),
         "seconds": motion.seconds.astype(np.float32),
@@ -215,25 +215,25 @@ def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
     return np.nan_to_num(feed, nan=-1.0, posinf=-1.0).astype(np.float32)
 
 
-def _length(shape: ToolShape | None, machine: Machine) -> float:
+def _length(shape: ToolShape | None, stated: float | None) -> float:
     """From tip to gauge point, mm: that of the definition or the command, else of the tool; 0 if nothing states it.
 
     What is only drawn counts for no length: tips and axis values are those of a control without one.
     """
-    if machine.tool_length is not None:
-        return machine.tool_length
+    if stated is not None:
+        return stated
     if shape is None or shape.is_drawn_only:
         return 0.0
     return shape.length or shape.top
 
 
-def _needle(machine: Machine, name: str) -> Iterable[Body]:
+def _needle(machine: Machine, name: str, length: float) -> Iterable[Body]:
     """Yield what stands for a tool of unknown form; nothing for no tool."""
     if name in _NO_TOOL:
         return
     diameter, length = _NEEDLE
     shape = parse_tool(f"1=flat:{diameter},length={length},flutes={length}", {})
-    yield from tool_bodies(shape, machine, name, _length(None, machine))
+    yield from tool_bodies(shape, machine, name, length)
 
 
 def machine_scene(machine: Machine) -> dict[str, Any]:
