@@ -92,7 +92,7 @@ def words_that_count(dialect: Dialect) -> frozenset[str]:
 
 
 class Suspicion(NamedTuple):
-    """Why a statement may have changed the machine; ``meant``: the words that it may be; none: it looks like no other."""
+    """Why a statement may have changed the machine; ``meant``: the words that it may be, if any."""
 
     why: str
     meant: tuple[str, ...] = ()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Lines
+from trunnion.compensation.centre_runs import CentreRun
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
@@ -193,6 +194,7 @@ class Verification:
 
     ``operations`` divide the rows among them; there are none without CL files. ``recorded`` compares the machine as it
     was recorded; None: it was not. ``remarks`` are the warnings that were given on the way.
+    ``driven`` is the run of the tool's centre where the control compensates its radius; None: it goes as programmed.
     ``skip_levels`` has the levels of block skip (``/``) that each OPSKIP of the CL files has in the program.
     ``lost_skips`` are the places, by their numbers, of those of which no block has ``/``.
     """
@@ -211,6 +213,7 @@ class Verification:
     remarks: tuple[Problem, ...] = ()
     skip_levels: tuple[frozenset[int], ...] = ()
     lost_skips: Mapping[int, Place] = field(default_factory=dict)
+    driven: CentreRun | None = None
 
     @property
     def passed(self) -> bool:
