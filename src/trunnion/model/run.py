@@ -246,6 +246,10 @@ class Run:
         """Return the machine with the tool and the work offset of a row; -1: those of the first."""
         return self.machine if self.setups is None else self.setups.at(row).machine
 
+    def length_of(self, tool: str) -> float | None:
+        """Return the length of a tool as the machine is set up, mm; None: nobody has stated it."""
+        return self.machine.tool_length if self.setups is None else self.setups.length_of(tool)
+
     def by_machine(self, rows: Ints) -> Iterator[tuple[Machine, Ints]]:
         """Yield the machines that rows run on, each with the indices of its rows."""
         if self.setups is None:

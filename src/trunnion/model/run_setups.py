@@ -46,6 +46,11 @@ class RunSetups:
         for number in np.unique(numbers).tolist():
             yield self.each[number].machine, np.flatnonzero(numbers == number)
 
+    def length_of(self, tool: str) -> float | None:
+        """Return the length of a tool, mm; None: it is not known. Of several that a program gives it, the first."""
+        lengths = (setup.machine.tool_length for setup in self.each if setup.tool == tool)
+        return next((length for length in lengths if length is not None), None)
+
     def divided(self, first: int, end: int) -> list[tuple[int, int]]:
         """Return the bounds of consecutive rows, divided where another machine comes into force."""
         changes = [row for row in self.number.rows.tolist() if first < row < end]

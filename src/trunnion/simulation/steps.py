@@ -255,6 +255,7 @@ def _collisions(
 
 def _lengths_known(program: SimulatedProgram) -> bool:
     """Whether the length of every tool that the program calls is known, from its tip to the gauge point."""
-    used = [program.run.tools[int(index)] for index in program.run.state.tool.distinct()]
-    known = program.run.machine.tool_length is not None
-    return all(known or program.tools[name].length for name in used if name in program.tools)
+    run = program.run
+    used = [run.tools[int(index)] for index in run.state.tool.distinct()]
+    known = [run.length_of(name) is not None or program.tools[name].length for name in used if name in program.tools]
+    return all(known)

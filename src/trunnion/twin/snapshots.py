@@ -126,7 +126,7 @@ class TwinProgram:
         joints = state.joints.copy()
         joints[is_end] = run.positions(ended[is_end]).joints
         of_row = run.positions(row)
-        tip = forward(self.machine, joints)[0]
+        tip, _ = run.forward_at(row, joints)
         tip[is_end] = of_row.tip[is_end]
         remaining, to_go = of_row.joints - joints, of_row.tip - tip
         before = row < 0

@@ -23,10 +23,10 @@ from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification import stand_lines
 from trunnion.verification.comparison import Alignment
+from trunnion.verification.driven_rows import DrivenRows
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
 from trunnion.viewer.shown import Mark, checks_data
-from trunnion.viewer.shown_rows import ShownRows
 from trunnion.viewer.stock import StockView
 
 Column = NDArray[np.float32] | NDArray[np.int32]
@@ -64,7 +64,7 @@ class ViewContent:
     scene: Mapping[str, Any]
     columns: Mapping[str, Column]
     texts: tuple[bytes, ...]
-    rows: ShownRows
+    rows: DrivenRows
     stock: StockView | None = None
 
 
@@ -74,7 +74,7 @@ def view_content(
     cl_texts: Mapping[str, str],
     tools: Mapping[str, ToolShape],
     clamped: Sequence[Body] = (),
-    rows: ShownRows | None = None,
+    rows: DrivenRows | None = None,
 ) -> ViewContent:
     """Put together what a page shows.
 
@@ -88,16 +88,16 @@ def view_content(
     Raises ``InputError`` if a mesh of the machine cannot be used.
     """
     machine = verification.machine
-    rows = rows or ShownRows(verification.run, np.arange(len(verification.run)))
+    rows = rows or DrivenRows(verification.run, np.arange(len(verification.run)))
     run = rows.run
     cl_files = {name: k for k, name in enumerate(cl_texts)}
     seconds = rows.seconds(durations(verification)[0] if len(verification.seconds) else np.zeros(0))
-    lengths = {k: _length(tools.get(name), machine) for k, name in enumerate(run.tools)}
+    lengths = {k: _length(tools.get(name), run.length_of(name)) for k, name in enumerate(run.tools)}
     motion = motion_columns(run, seconds, lengths)
     bodies = [*machine_bodies(machine), *clamped]
     for k, name in enumerate(run.tools):
         shape = tools.get(name)
-        bodies += _needle(machine, name) if shape is None else tool_bodies(shape, machine, name, lengths[k])
+        bodies += _needle(machine, name, lengths[k]) if shape is None else tool_bodies(shape, machine, name, lengths[k])
     columns: dict[str, Column] = {
         "row": motion.row.astype(np.int32),
         "seconds": motion.seconds.astype(np.float32),
@@ -149,7 +149,11 @@ def with_phases(content: ViewContent, verification: Verification, toolpaths: Seq
 def proof_scene(verification: Verification) -> dict[str, Any]:
     """Return what the page says of the proof."""
     stands = list(stand_lines(verification.checks))
-    return {"checks": checks_data(verification.checks), "standing": verification.standing.told, "stands": stands}
+    standing = verification.standing
+    return {
+        "checks": checks_data(verification.checks), "standing": standing.told, "verdict": standing.verdict,
+        "stands": stands,
+    }  # fmt: skip
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
@@ -211,25 +215,25 @@ def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
     return np.nan_to_num(feed, nan=-1.0, posinf=-1.0).astype(np.float32)
 
 
-def _length(shape: ToolShape | None, machine: Machine) -> float:
+def _length(shape: ToolShape | None, stated: float | None) -> float:
     """From tip to gauge point, mm: that of the definition or the command, else of the tool; 0 if nothing states it.
 
     What is only drawn counts for no length: tips and axis values are those of a control without one.
     """
-    if machine.tool_length is not None:
-        return machine.tool_length
+    if stated is not None:
+        return stated
     if shape is None or shape.is_drawn_only:
         return 0.0
     return shape.length or shape.top
 
 
-def _needle(machine: Machine, name: str) -> Iterable[Body]:
+def _needle(machine: Machine, name: str, length: float) -> Iterable[Body]:
     """Yield what stands for a tool of unknown form; nothing for no tool."""
     if name in _NO_TOOL:
         return
     diameter, length = _NEEDLE
     shape = parse_tool(f"1=flat:{diameter},length={length},flutes={length}", {})
-    yield from tool_bodies(shape, machine, name, _length(None, machine))
+    yield from tool_bodies(shape, machine, name, length)
 
 
 def machine_scene(machine: Machine) -> dict[str, Any]:
@@ -282,7 +286,7 @@ def _rewinds(run: Run) -> list[Mark]:
     return [Mark.at(run, "rewind", row) for row in rows.tolist()]
 
 
-def _findings(checks: Sequence[Check], rows: ShownRows) -> Iterator[Mark]:
+def _findings(checks: Sequence[Check], rows: DrivenRows) -> Iterator[Mark]:
     """Yield the places of the checks that have not passed, as rows."""
     run = rows.run
     numbers = {name: k for k, name in enumerate(run.files)}

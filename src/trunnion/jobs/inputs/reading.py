@@ -47,6 +47,9 @@ _NO_CONTENT: Final = {
     "files",
     "workpiece_zero",
     "tool_length",
+    "zeros",
+    "tool_lengths",
+    "length_sources",
     "control",
     "cl_words",
     "bodies",
@@ -253,10 +256,26 @@ def as_run(
         raise InputError(
             Problem(nc.files[0], 0, Wording("ARG170", "read_for_other_machine", machine=own.key, asked=machine.key))
         )
-    given = ((machine.workpiece_zero, own.workpiece_zero), (machine.tool_length, own.tool_length))
-    if any(new is not None and new != old for new, old in given):
+    if not _is_set_up_so(nc, machine):
         raise InputError(Problem(nc.files[0], 0, Wording("ARG170", "read_with_other_setup")))
     return nc
+
+
+def _is_set_up_so(run: Run, machine: Machine) -> bool:
+    """Whether a run was read with the zeros and lengths that a machine states; those that it does not state may be any.
+
+    A length that the program gives is none of the machine. The machine of a run is its own, whatever its tools.
+    """
+    if machine is run.machine:
+        return True
+    setups = () if run.setups is None else run.setups.each
+    pairs = [
+        (machine.set_up_for(each.tool, each.work_offset), each.machine, bool(each.length_source)) for each in setups
+    ] or [(machine, run.machine, False)]
+    return (run.setups is not None or not machine.has_single_values) and all(
+        new.workpiece_zero in (None, old.workpiece_zero) and (is_given or new.tool_length in (None, old.tool_length))
+        for new, old, is_given in pairs
+    )
 
 
 def _are_defined_alike(one: Machine, other: Machine) -> bool:

@@ -29,10 +29,12 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.model.clamped_toolpaths import toolpaths_clamped
 from trunnion.model.clamping import Clamping
+from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION
+from trunnion.simulation.offset_places import cuts_at_unknown_places
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import NO_CALL
@@ -64,6 +66,9 @@ def prepare_setup(
     runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
     _check_programs(runs, machine)
     remarks += _without_motion(runs)
+    frame = _frame_of_stock(runs, given, machine)
+    remarks += cuts_at_unknown_places(frame, runs)
+    runs = frame.runs(runs)
     remarks += _cuts_from_unknown_places(runs)
     for program in programs:
         if not isinstance(program, Run):
@@ -92,12 +97,21 @@ def skipping_setup(
     rapid_feed = rapid_feed_of(own.machine)
     runs = tuple(restore_rapids(run.with_skips(levels), rapid_feed) for run in own.runs)
     remarks += _without_motion(runs)
+    frame = _frame_of_stock(own.runs, given, own.machine)
+    remarks += cuts_at_unknown_places(frame, runs)
+    runs = frame.runs(runs)
     remarks += _cuts_from_unknown_places(runs)
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, own.machine)
     if NO_CALL not in own.tools and any(_cuts_without_call(run) for run in runs):
         raise InputError(argument_problem("tools", Wording("SIM150", "cuts_before_first_tool")))
     return replace(own, runs=runs, until_line=own.line_of_end(), until=None)
+
+
+def _frame_of_stock(runs: Sequence[Run], given: SetupInput, machine: Machine) -> WorkpieceFrame:
+    """Return the frame of the set-up's own work offset, or of the first that its programs use."""
+    stated = None if given.work_offset is None else work_offset_setting(given.work_offset, machine)
+    return frame_of_offset(runs, stated)
 
 
 def _tools(runs: Sequence[Run], known: KnownTools) -> dict[str, ToolShape]:

@@ -24,6 +24,7 @@ from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike, set_up_machi
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.result_output import check_output_name
 from trunnion.messages import Wording, phrase
+from trunnion.model.one_frame import frame_of_offset
 from trunnion.model.run import Run
 from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run
@@ -177,6 +178,7 @@ def twin_program(
         raise RefusedError([Problem(each.file, each.line, each.wording.within("stops_twin")) for each in run.errors])
     if not len(run):
         raise InputError(Problem(run.files[0], 0, Wording("TWN111", "nothing_moves")))
+    (run,) = frame_of_offset([run], None).runs([run])
     known = known_tools(given.get("tools", ()), given.get("tool_libraries", ()), given.get("unit"), ())
     holds = RegisterValue(given.get("radius_register") or register_value_of(placed))
     run, notices = driven_by_tools(run, known, holds)

@@ -23,7 +23,9 @@ from trunnion.jobs.project.file import is_project
 from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import short_name, view_simulation, with_stock
+from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import fixture_body, part_body
 from trunnion.simulation.meshes import load_mesh
@@ -31,9 +33,9 @@ from trunnion.simulation.tool_deltas import radius_of
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification.comparison import align
+from trunnion.verification.driven_rows import DrivenRows
 from trunnion.viewer.content import ViewContent, side_by_side, view_content, with_phases
 from trunnion.viewer.page import render_view
-from trunnion.viewer.shown_rows import ShownRows
 
 #: Arguments that a project does not state: the second program, and what the first is made with.
 _OF_VIEW: Final = ("against", "against_machine", "setup", "settings")
@@ -85,15 +87,16 @@ def _prepared(
     if any(given[name] for name in ("stock", "part", "fixtures")):
         observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
     fixtures = check_paths("fixtures", given["fixtures"])
-    run, machine = viewed.verification.run, viewed.verification.machine
+    run = viewed.verification.run
+    machine = _with_zero_of(frame_of_offset([run], None), viewed.verification.machine)
     around = [fixture_body(load_mesh(mesh, name=f"fixture {k}"), machine) for k, mesh in enumerate(fixtures, 1)]
     part = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     clamped = around if part is None else [part_body(part, machine), *around]
     bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
     driven = driven_run(run, holds, lambda row: radius_of(run, bodies, row), ContourTools.of(viewed.toolpaths))
     content = view_content(
-        viewed.verification, viewed.texts, viewed.cl_texts, bodies, clamped,
-        ShownRows(driven.centre.run, driven.centre.row_of),
+        replace(viewed.verification, machine=machine), viewed.texts, viewed.cl_texts, bodies, clamped,
+        DrivenRows(driven.centre.run, driven.centre.row_of),
     )  # fmt: skip
     content = with_phases(content, viewed.verification, viewed.toolpaths)
     if notices := [replace(each, severity=Severity.WARNING) for each in compensation_notices(run, driven)]:
@@ -102,6 +105,11 @@ def _prepared(
     if simulated is not None:
         content = with_stock(content, simulated, viewed.verification, viewed.toolpaths, observer)
     return content, run
+
+
+def _with_zero_of(frame: WorkpieceFrame, machine: Machine) -> Machine:
+    """Return the machine with the zero about which stock and part are shown."""
+    return machine if frame.zero is None else replace(machine, workpiece_zero=frame.zero)
 
 
 def write_view(

@@ -81,7 +81,7 @@ def _tool_lengths(run: Run, bodies: Sequence[Body], tools: Mapping[str, ToolShap
     lengths = {}
     for k in used:
         if run.tools[k] in tools:
-            lengths[k] = tools[run.tools[k]].length or machine.tool_length or 0.0
+            lengths[k] = tools[run.tools[k]].length or run.length_of(run.tools[k]) or 0.0
             if iron and not lengths[k]:
                 problems.append(Problem(file, 0, Wording("SIM310", "length_tool_not", tools=run.tools[k])))
     if problems:
