@@ -30,7 +30,7 @@ class Difference:
     @property
     @Figure()
     def text(self) -> str:
-        """What it is, in English."""
+        """What it is."""
         return self.wording.what
 
 
