@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.compensation.centre_runs import CentreRun
+from trunnion.verification.driven_rows import DrivenRows
 from trunnion.verification.recorded.compared import RecordedComparison
 
 
 def by_program_rows(compared: RecordedComparison, driven: CentreRun) -> RecordedComparison:
     """Return a comparison with the run of the tool's centre by the rows of the program."""
-    own = np.searchsorted(driven.row_of, np.arange(len(driven.run)))
+    own = DrivenRows(driven.run, driven.row_of).own
     n = len(driven.row_of)
     worst = np.full((n, 2), np.nan)
     np.fmax.at(worst, own, compared.worst)
