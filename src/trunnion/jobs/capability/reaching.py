@@ -90,7 +90,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     degrees, part = _number("step", found["step"], *_STEPS), found["part"]
     leaning = _number("lean", found["lean"], 0.0, _MOST_LEAN)
     loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
-    check_one_zero(loaded, "zero_of_no_offset")
+    check_one_zero(loaded, Wording("ARG220", "zero_of_no_offset"))
     toolpaths = hooked_toolpaths(
         as_toolpaths(found["cl"], observer, ClReading(found["units"], found["dialect"], found["strict"])),
         loaded,

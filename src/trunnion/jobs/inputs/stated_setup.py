@@ -64,13 +64,13 @@ def set_up_machine(machine: Machine, zero: ZeroLike | None, tool_length: LengthL
     return machine
 
 
-def check_one_zero(machine: Machine, variant: str) -> None:
-    """Refuse zeros of single work offsets where none is selected; ``variant`` of ARG220 says why.
+def check_one_zero(machine: Machine, why: Wording) -> None:
+    """Refuse zeros of single work offsets where none is selected.
 
     Raises ``InputError`` of the argument.
     """
     if machine.zeros:
-        raise InputError(as_argument(setting_problem("zero", Wording("ARG220", variant)), "zero"))
+        raise InputError(as_argument(setting_problem("zero", why), "zero"))
 
 
 def length_of_tool_missing(tool: str) -> InputError:

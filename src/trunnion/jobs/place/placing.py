@@ -122,7 +122,7 @@ def place(
     loaded = set_up_machine(apply_setup(as_machine(machine), of_setup), stated["zero"], stated["tool_length"])
     if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
         raise InputError(argument_problem("machine", Wording("PLC130", "no_limits", machine=loaded.key)))
-    check_one_zero(loaded, "one_place")
+    check_one_zero(loaded, Wording("ARG220", "one_place"))
     asked = loaded
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
     remarks: list[Problem] = []
