@@ -8,11 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import trunnion
 from tests.support.examples import examples
 from tests.support.linuxcnc.interpreter import RefusedByLinuxcncError, interpret, needs_linuxcnc
 from tests.support.plane_figures import Piece, figure, turning_paths
+from trunnion.compensation.driven_runs import driven_run
 from trunnion.compensation.offsets import CentrePath, centre_path
 from trunnion.compensation.plane_path import PlanePath
+from trunnion.compensation.stretches import RegisterValue
 from trunnion.compensation.styles import STYLES
 
 LINUXCNC = STYLES[4]
@@ -77,3 +80,20 @@ def test_it_goes_the_same_way_along_any_path(contour: list[tuple[complex, comple
         canon = interpret(program(path, left), Path(folder))
     its = [complex(*move.end[:2]) for move in canon.moves[1:]]
     assert its == pytest.approx(ends(found), abs=1e-3)
+
+
+@needs_linuxcnc
+@pytest.mark.parametrize("name", ["contour_boss", "contour_pocket"])
+def test_it_drives_a_contour_as_the_twin_and_the_viewer_do(name: str, tmp_path: Path) -> None:
+    """With the diameter in its tool table (5.08 mm, which ``interpret`` has), as the head of the program asks for."""
+    cl, program = Path(__file__).parents[1] / f"golden/compensation/{name}.cls", tmp_path / "contour.ngc"
+    trunnion.post(cl, machine="linuxcnc_5axis", output=program, settings={"radius_register": "radius"})
+    run = trunnion.read_program(program, machine="linuxcnc_5axis")
+    driven = driven_run(run, RegisterValue.RADIUS, lambda _: 2.54)
+    assert not list(driven.missing())
+    real = driven.centre.run
+    ours = real.tip[np.isclose(real.tip[:, 2], -9.0, atol=1e-6)][:, :2]
+    its = np.array([move.end[:2] for move in interpret(program.read_text(), tmp_path).moves if move.end[2] == -9.0])
+    assert len(ours) > 6
+    moved = [points[np.append(True, np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-6)] for points in (ours, its)]
+    assert moved[1] == pytest.approx(moved[0], abs=1e-3)

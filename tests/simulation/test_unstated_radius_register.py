@@ -82,3 +82,17 @@ def _box(folder: Path) -> Path:
     mesh = stock_shape("box:120,80,1,-60,-40,-19").as_mesh()
     save_mesh(mesh, folder / "part.stl")
     return folder / "part.stl"
+
+
+def test_what_is_found_beside_inserted_rows_names_its_cl_line(tmp_path: Path) -> None:
+    """Outside of the boss the control inserts circles at the corners."""
+    boss, program, part = CONTOUR.with_name("contour_boss.cls"), tmp_path / "boss.mpf", tmp_path / "part.stl"
+    trunnion.post(boss, machine="yl569", output=program)
+    save_mesh(stock_shape("box:120,100,1,-60,-50,-9.5").as_mesh(), part)
+    found = trunnion.simulate(
+        program, machine="yl569", stock="box:120,100,20,-60,-50,-20", part=part, tools=[TOOL], cell=2.0, cl=boss,
+        radius_register="radius",
+    )  # fmt: skip
+    lines = {each.cl_line for each in found.findings if each.kind == "gouge"}
+    assert lines
+    assert lines <= set(range(16, 27))

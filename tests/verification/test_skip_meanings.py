@@ -134,8 +134,8 @@ LEVELS = (
     "RAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,500\nGOTO/0,0,5\nRAPID\nGOTO/0,0,30\n"
     "OPSKIP/ON\nGOTO/5,0,6\nSTOP\nSPINDL/RPM,1000,CLW\nGOTO/5,7,6\nRAPID\nGOTO/5,7,25\nOPSKIP/OFF\n"
     "OPSKIP/ON\nRAPID\nGOTO/6,9,25\nGOTO/6,9,6\nGOTO/8,9,6\nOPSKIP/OFF\n"
-    "OPSKIP/ON\nGOTO/9,9,6\nSTOP\nSPINDL/RPM,1000,CLW\nGOTO/9,8,6\nRAPID\nGOTO/9,8,30\nOPSKIP/OFF\n"
-    "RAPID\nGOTO/10,7,30\nGOTO/10,7,6\nGOTO/30,0,6\nRAPID\nGOTO/30,0,50\nEND-OF-PATH\n"
+    "OPSKIP/ON\nGOTO/9,9,6\nSTOP\nSPINDL/RPM,1000,CLW\nGOTO/9,8,6\nOPSKIP/OFF\n"
+    "RAPID\nGOTO/9,8,30\nRAPID\nGOTO/10,7,30\nGOTO/10,7,6\nGOTO/30,0,6\nRAPID\nGOTO/30,0,50\nEND-OF-PATH\n"
 )
 
 #: Controls with several levels of block skip: Klartext has one.
@@ -230,3 +230,37 @@ def test_all_combinations_of_three_levels_are_judged_and_not_those_of_four(tmp_p
         str(stops.missing[-1])
         == "block skip: compared with all 4 levels on and each alone, not with other combinations"
     )
+
+
+_CUT = (
+    "TOOL PATH/ONE,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\n"
+    "RAPID\nGOTO/20,-40,40,0,0,1\nRAPID\nGOTO/20,-40,2\nFEDRAT/MMPM,500\nGOTO/20,-40,-5\nGOTO/20,40,-5\n"
+)
+_UP = "RAPID\nGOTO/20,40,40\n"
+_OVER = "RAPID\nGOTO/-30,-30,40\n"
+_DOWN = "RAPID\nGOTO/-30,-30,2\nFEDRAT/MMPM,500\nGOTO/-30,-30,-5\n"
+_ON = "GOTO/-30,30,-5\nRAPID\nGOTO/-30,30,40\nEND-OF-PATH\n"
+_AGAIN = "RAPID\nGOTO/20,40,2\nFEDRAT/MMPM,500\nGOTO/20,40,-5\n"
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize(
+    ("rest", "said"),
+    [
+        (f"OPSKIP/ON\n{_UP}OPSKIP/OFF\n{_OVER}{_DOWN}{_ON}", "leaves the cut sideways at rapid"),
+        (f"OPSKIP/ON\n{_UP}{_OVER}{_DOWN}OPSKIP/OFF\n{_ON}", "leaves the cut sideways at a feed"),
+        (f"{_UP}OPSKIP/ON\n{_OVER}{_DOWN}GOTO/-30,9,-5\n{_OVER}OPSKIP/OFF\nRAPID\nGOTO/-30,30,40\nEND-OF-PATH\n", ""),
+        (f"OPSKIP/ON\n{_UP}{_AGAIN}OPSKIP/OFF\nGOTO/-30,40,-5\n{_ON}", ""),
+    ],
+    ids=["a retract", "a link", "a pass", "there and back"],
+)
+def test_a_retract_that_the_cl_file_lets_the_operator_skip_is_judged(
+    machine: str, rest: str, said: str, tmp_path: Path
+) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text(_CUT + rest, encoding="utf-8")
+    if not said:
+        trunnion.post(cl, machine=machine)
+        return
+    with pytest.raises(trunnion.TrunnionError, match=said):
+        trunnion.post(cl, machine=machine)

@@ -57,18 +57,19 @@ class PreparedSetup:
 
     def clamped_runs(self) -> list[Run]:
         """Return the runs on the machine, where the part is as it is clamped."""
-        return [path.run for path in self._tool_paths]
+        return [path.run for path in self.tool_paths]
 
     def problems(self) -> list[Problem]:
         """Return what of the runs cannot be simulated."""
-        return [problem for path in self._tool_paths for problem in path.problems]
+        return [problem for path in self.tool_paths for problem in path.problems]
 
     def missing(self) -> tuple[Wording, ...]:
         """Return why what the tools cut is not known."""
-        return tuple(dict.fromkeys(wording for path in self._tool_paths for wording in path.missing))
+        return tuple(dict.fromkeys(wording for path in self.tool_paths for wording in path.missing))
 
     @cached_property
-    def _tool_paths(self) -> list[ToolPath]:
+    def tool_paths(self) -> list[ToolPath]:
+        """How the tools of each program go."""
         contours = ContourTools.of(self.toolpaths)
         return [
             as_the_tool_goes(run, self.tools, self.register_holds, contours, strict=self.strict) for run in self.runs

@@ -1,7 +1,7 @@
 """What a simulation found, as records for scripts and data."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Final, TypeVar
 
@@ -9,17 +9,19 @@ import numpy as np
 
 from trunnion.arrays import Floats, Lines
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind
+from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.results import NOT_DATA, BlockNumber, CubicMillimetres, Figure, Millimetres, OptionalLine, OptionalText
 from trunnion.simulation.contact_times import reached
 from trunnion.simulation.finding import Finding, What
 from trunnion.simulation.findings import file_of_row
 from trunnion.simulation.simulator import OperationCut, SimulatedProgram, row_runs, tip_lengths
 from trunnion.simulation.steps import CutSetup
+from trunnion.simulation.tool_deltas import ToolPath
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import Role
 from trunnion.verification import Verification
 from trunnion.verification import verify as verify_run
+from trunnion.verification.driven_rows import DrivenRows
 from trunnion.wording import position
 
 
@@ -179,11 +181,10 @@ _ROLES: Final = {What.SHANK: (Role.SHANK,), What.HOLDER: (Role.HOLDER,), What.NE
 def setup_findings(cut: CutSetup) -> CutFindings:
     """Return records of what programs have cut, hit and come near to in a set-up, with their blocks and times."""
     found, programs, touched, setup = cut.simulation, cut.programs, cut.touched, cut.setup.name
-    # Runs are taken as they were read, unless radius compensation inserts rows: their rows are those of the programs.
     toolpaths = cut.setup.toolpaths if len(programs) == 1 else ()
     verified = [
-        verify_run(run, toolpaths) if len(run) == len(real) else verify_run(real)
-        for run, real, _ in zip(cut.setup.runs, cut.setup.clamped_runs(), programs, strict=False)
+        _verified(run, path, toolpaths)
+        for run, path, _ in zip(cut.setup.runs, cut.setup.tool_paths, programs, strict=False)
     ]
     slack = 0.5 * float(found.stock.lattice.cell.max())
     seconds = [np.cumsum(each.seconds) for each in verified]
@@ -214,6 +215,15 @@ def setup_findings(cut: CutSetup) -> CutFindings:
             else:
                 findings.append(_finding(verified[number], finding, moment))
     return CutFindings(_named(findings, setup), _named(misses, setup), _named(operations, setup), _named(air, setup))
+
+
+def _verified(run: Run, path: ToolPath, toolpaths: Sequence[Toolpath]) -> Verification:
+    """Return what is known of a run as it was read; where radius compensation inserts rows, by the rows with these."""
+    own = verify_run(run, toolpaths)
+    if len(run) == len(path.run):
+        return own
+    rows, real = DrivenRows(path.run, path.row_of), verify_run(path.run)
+    return replace(real, cl_line=rows.column(own.cl_line), operations=tuple(rows.operations(own.operations)))
 
 
 def _named(found: Iterable[_Named], setup: str) -> tuple[_Named, ...]:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+from trunnion.arrays import Ints
 from trunnion.compensation.contour_tools import ContourTools
 from trunnion.compensation.driven_runs import driven_run
 from trunnion.compensation.notices import compensation_notices
@@ -32,11 +33,13 @@ class ToolPath:
     """How the tools of a program go.
 
     run       of the tools' centres, with the lengths that the program adds
+    row_of    (n,) int64: the row of it that ends a row of the program
     problems  what of it cannot be simulated
     missing   why what they cut is not known, as nobody has stated by how much the control compensates the radius
     """
 
     run: Run
+    row_of: Ints
     problems: tuple[Problem, ...]
     missing: tuple[Wording, ...]
 
@@ -58,7 +61,7 @@ def as_the_tool_goes(
         others = tuple(each for each in real.diagnostics if not is_of_compensation(each.wording))
         real = replace(real, diagnostics=others)
     missing = tuple(wording for _, wording in driven.missing())
-    return ToolPath(with_added_lengths(real), tuple(problems), missing)
+    return ToolPath(with_added_lengths(real), driven.centre.row_of, tuple(problems), missing)
 
 
 def radius_of(run: Run, shapes: Mapping[str, ToolShape], row: int) -> float | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Lines
+from trunnion.compensation.centre_runs import CentreRun
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
@@ -193,6 +194,7 @@ class Verification:
 
     ``operations`` divide the rows among them; there are none without CL files. ``recorded`` compares the machine as it
     was recorded; None: it was not. ``remarks`` are the warnings that were given on the way.
+    ``driven`` is the run of the tool's centre where the control compensates its radius; None: it goes as programmed.
     ``skip_levels`` has the levels of block skip (``/``) that each OPSKIP of the CL files has in the program.
     """
 
@@ -209,6 +211,7 @@ class Verification:
     clamping: Clamping | None = None
     remarks: tuple[Problem, ...] = ()
     skip_levels: tuple[frozenset[int], ...] = ()
+    driven: CentreRun | None = None
 
     @property
     def passed(self) -> bool:

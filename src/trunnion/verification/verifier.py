@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Lines
+from trunnion.compensation.centre_runs import CentreRun
 from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import with_added_lengths
@@ -59,13 +60,15 @@ def verify(
         seen: Measured = _compare_all(_expected_path(run, toolpaths, tolerances, settings), run, settings, analyzer)
     else:
         seen = _measure_alone(run, settings, analyzer)
-    seen = replace(seen, motion=_as_the_tool_goes(seen.context, seen.motion))
+    centre = driven_path(seen.context).centre
+    seen = replace(seen, motion=_as_the_tool_goes(centre, run, seen.motion))
     context, motion = seen.context, seen.motion
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
     return Verification(
         run.files[0], run.machine, run, all_checks(seen), motion.seconds, motion.tip_feed, cl_line, operations,
         waiting=motion.waiting, skip_levels=stretch_levels(context) if isinstance(context, ComparedContext) else (),
+        driven=None if centre.run is run else centre,
     )  # fmt: skip
 
 
@@ -117,18 +120,24 @@ def with_recording(verification: Verification, recording: Recording, tolerance: 
 
     Raises ``InputError`` if the recording has not all axes of the machine.
     """
-    from trunnion.verification.recorded import check_recorded, compare_recording  # most verifications have none
+    from trunnion.verification.recorded import (  # most verifications have none
+        by_program_rows,
+        check_recorded,
+        compare_recording,
+    )
 
-    compared = compare_recording(verification.run, recording, tolerance)
+    driven = verification.driven
+    compared = compare_recording(verification.run if driven is None else driven.run, recording, tolerance)
+    if driven is not None:
+        compared = by_program_rows(compared, driven)
     check = check_recorded(Context(verification.run, ExpectedValues()), compared)
     return replace(verification, checks=(*verification.checks, check), recorded=compared)
 
 
-def _as_the_tool_goes(context: Context, motion: AxisMotion) -> AxisMotion:
+def _as_the_tool_goes(centre: CentreRun, run: Run, motion: AxisMotion) -> AxisMotion:
     """Return the motion with the extremes of the axes as the tool really goes: where the program makes it longer, and
     where the control compensates its radius.
     """
-    run, centre = context.run, driven_path(context).centre
     real = with_added_lengths(centre.run)
     if real is run:
         return motion

@@ -23,10 +23,10 @@ from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification import stand_lines
 from trunnion.verification.comparison import Alignment
+from trunnion.verification.driven_rows import DrivenRows
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
 from trunnion.viewer.shown import Mark, checks_data
-from trunnion.viewer.shown_rows import ShownRows
 from trunnion.viewer.stock import StockView
 
 Column = NDArray[np.float32] | NDArray[np.int32]
@@ -64,7 +64,7 @@ class ViewContent:
     scene: Mapping[str, Any]
     columns: Mapping[str, Column]
     texts: tuple[bytes, ...]
-    rows: ShownRows
+    rows: DrivenRows
     stock: StockView | None = None
 
 
@@ -74,7 +74,7 @@ def view_content(
     cl_texts: Mapping[str, str],
     tools: Mapping[str, ToolShape],
     clamped: Sequence[Body] = (),
-    rows: ShownRows | None = None,
+    rows: DrivenRows | None = None,
 ) -> ViewContent:
     """Put together what a page shows.
 
@@ -88,7 +88,7 @@ def view_content(
     Raises ``InputError`` if a mesh of the machine cannot be used.
     """
     machine = verification.machine
-    rows = rows or ShownRows(verification.run, np.arange(len(verification.run)))
+    rows = rows or DrivenRows(verification.run, np.arange(len(verification.run)))
     run = rows.run
     cl_files = {name: k for k, name in enumerate(cl_texts)}
     seconds = rows.seconds(durations(verification)[0] if len(verification.seconds) else np.zeros(0))
@@ -149,7 +149,11 @@ def with_phases(content: ViewContent, verification: Verification, toolpaths: Seq
 def proof_scene(verification: Verification) -> dict[str, Any]:
     """Return what the page says of the proof."""
     stands = list(stand_lines(verification.checks))
-    return {"checks": checks_data(verification.checks), "standing": verification.standing.told, "stands": stands}
+    standing = verification.standing
+    return {
+        "checks": checks_data(verification.checks), "standing": standing.told, "verdict": standing.verdict,
+        "stands": stands,
+    }  # fmt: skip
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
@@ -282,7 +286,7 @@ def _rewinds(run: Run) -> list[Mark]:
     return [Mark.at(run, "rewind", row) for row in rows.tolist()]
 
 
-def _findings(checks: Sequence[Check], rows: ShownRows) -> Iterator[Mark]:
+def _findings(checks: Sequence[Check], rows: DrivenRows) -> Iterator[Mark]:
     """Yield the places of the checks that have not passed, as rows."""
     run = rows.run
     numbers = {name: k for k, name in enumerate(run.files)}

@@ -29,5 +29,5 @@ def driven_by_tools(run: Run, known: KnownTools, holds: RegisterValue) -> tuple[
 
 def centres_of(toolpaths: Iterable[Toolpath], machine: Machine) -> tuple[list[Toolpath], list[Problem]]:
     """Return CL files along a contour as the paths of the tools' centres, and warnings where these are not known."""
-    style = readers.reader_of(machine).compensation_style if readers.can_read(machine) else UNKNOWN_STYLE
+    style = readers.reader_of(machine).compensation_style(machine) if readers.can_read(machine) else UNKNOWN_STYLE
     return toolpaths_of_centre(toolpaths, style)

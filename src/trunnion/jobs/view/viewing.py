@@ -33,9 +33,9 @@ from trunnion.simulation.tool_deltas import radius_of
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification.comparison import align
+from trunnion.verification.driven_rows import DrivenRows
 from trunnion.viewer.content import ViewContent, side_by_side, view_content, with_phases
 from trunnion.viewer.page import render_view
-from trunnion.viewer.shown_rows import ShownRows
 
 #: Arguments that a project does not state: the second program, and what the first is made with.
 _OF_VIEW: Final = ("against", "against_machine", "setup", "settings")
@@ -96,7 +96,7 @@ def _prepared(
     driven = driven_run(run, holds, lambda row: radius_of(run, bodies, row), ContourTools.of(viewed.toolpaths))
     content = view_content(
         replace(viewed.verification, machine=machine), viewed.texts, viewed.cl_texts, bodies, clamped,
-        ShownRows(driven.centre.run, driven.centre.row_of),
+        DrivenRows(driven.centre.run, driven.centre.row_of),
     )  # fmt: skip
     content = with_phases(content, viewed.verification, viewed.toolpaths)
     if notices := [replace(each, severity=Severity.WARNING) for each in compensation_notices(run, driven)]:

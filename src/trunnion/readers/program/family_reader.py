@@ -34,7 +34,7 @@ class FamilyReader:
     smoothing            regular expression of calls and definitions, besides words, that set how the control follows
                          the path; None: there are none
     lost_smoothing       kind of the event that such a cycle makes -> its name, and the settings that stand for it
-    compensation_style   how its controls compensate the radius in a plane, a key of ``STYLES``; 0: not known
+    compensation_style   how a control compensates the radius in a plane, a key of ``STYLES``; 0: not known
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     """
 
@@ -49,5 +49,5 @@ class FamilyReader:
     words_of: Callable[[Machine], frozenset[str]] | None = None
     smoothing: re.Pattern[str] | None = None
     lost_smoothing: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    compensation_style: int = UNKNOWN_STYLE
+    compensation_style: Callable[[Machine], int] = lambda _: UNKNOWN_STYLE
     check_reading: Callable[[Machine], object] = no_reading

@@ -2,6 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
 
 from trunnion.messages import Wording
 from trunnion.model.run import Run
@@ -15,6 +18,12 @@ from trunnion.verification.matching.hole_approaches import clearance_between_hol
 from trunnion.verification.matching.hole_matching import MatchedHole, match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Check, Place
+
+#: A way from hole to hole is level, or along the axis, when it is off by no more than this, mm.
+_SLANT: Final = 0.05
+
+#: The tool axis stands still when no component changes by more than this.
+_SAME_AXIS: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +51,7 @@ def check_holes(context: ComparedContext) -> Check:
         drilled = _Drilled(hole, match)
         faults = list(hole_faults(run, hole, match, dwells, work, _clearance_on_the_way(context, before, drilled)))
         faults += _faults_around(context, drilled)
+        faults += _slanted_rapids(context, before, drilled)
         before = drilled
         for fault in faults:
             at = context.place(fault.row, fault.value, fault.said)
@@ -90,6 +100,29 @@ def _clearance_on_the_way(context: ComparedContext, before: _Drilled | None, now
     if before is None or _has_pair_between(context.matching, before.match.end, now.match.first):
         return None
     return clearance_between_holes(context.run, before.hole, before.match, now.hole, now.match)
+
+
+def _slanted_rapids(context: ComparedContext, before: _Drilled | None, now: _Drilled) -> Iterator[HoleFault]:
+    """Yield a rapid that goes sideways and down at once from one hole to the next, which motions of the program drill.
+
+    The CL file wants the tool at RTRCTO until it stands above the next hole: clamps may be between them.
+    """
+    if before is None or not now.match.by_motion:
+        return
+    if _has_pair_between(context.matching, before.match.end, now.match.first):
+        return
+    rows = np.arange(before.match.end, now.match.first + 1)
+    if not len(rows):
+        return
+    positions = context.run.positions(np.append(before.match.end - 1, rows))
+    steps, axis = np.diff(positions.tip, axis=0), now.hole.axis
+    rise = steps @ axis
+    aside = np.linalg.norm(steps - rise[:, None] * axis, axis=1)
+    still = np.abs(np.diff(positions.axis, axis=0)).max(axis=1) <= _SAME_AXIS
+    slanted = still & (rise < -_SLANT) & (aside > _SLANT) & ~context.run.state.machine_frame.at(rows)
+    for k in np.flatnonzero(slanted)[:1].tolist():
+        side, down = float(aside[k]), -float(rise[k])
+        yield HoleFault(int(rows[k]), side, Wording("holes", "slanted", aside=side, down=down))
 
 
 def _has_pair_between(matching: Matching, first: int, last: int) -> bool:

@@ -52,6 +52,23 @@ def low_rapids(context: Context) -> Iterator[Place]:
         entry = float(end @ axis)
 
 
+def skipped_retracts(context: Context) -> Iterator[Place]:
+    """Places that leave the cut sideways as the CL file lets the operator skip the retract before them.
+
+    The CL file without what is skipped asks for that motion, so that nothing else would tell.
+    """
+    if not isinstance(context, ComparedContext) or not context.expected.without_retract:
+        return
+    expected = context.expected
+    for nc, cl in context.matching.all_pair_chunks():
+        for row, point in zip(nc.tolist(), cl.tolist(), strict=True):
+            line = (expected.section_at(point).file, expected.point(point).line)
+            if line in expected.without_retract:
+                is_rapid = context.run.kind[row] == Kind.RAPID
+                how = "retract_skipped_at_rapid" if is_rapid else "retract_skipped_at_feed"
+                yield context.place(row, 0.0, Wording("modal", how))
+
+
 def _height_left_at(run: Run, row: int, axis: Floats, entry: float) -> float | None:
     """Return the height to which a cycle, or a motion at feed, has retracted the tool straight up right before a rapid.
 

@@ -11,7 +11,7 @@ from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.approach_faults import approaches_through_part
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
-from trunnion.verification.checks.low_rapids import low_rapids
+from trunnion.verification.checks.low_rapids import low_rapids, skipped_retracts
 from trunnion.verification.checks.passages import not_in_turn
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import ComparedContext, Context, check_from_places
@@ -38,6 +38,7 @@ def check_modal_state(context: Context) -> Check:
     places += _tcp_left_on(context)
     places += _turned_under_tcp(context)
     places += low_rapids(context)
+    places += skipped_retracts(context)
     places += approaches_through_part(context)
     places += not_in_turn(context)
     places += wide_tolerances(context)

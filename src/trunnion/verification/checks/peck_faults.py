@@ -22,6 +22,9 @@ _MAX_PECKS: Final = 100_000
 #: A retract by less than this breaks the chip without leaving the hole, mm.
 _CHIP_BREAK: Final = 5.0
 
+#: Behind a full retract motions of the program feed no farther than this through what is drilled, mm.
+_MOST_AT_FEED: Final = 3.0
+
 #: A last peck no longer than this may go with the one before, mm: programs may print no less.
 _SHORTEST_REST: Final = 0.005
 
@@ -58,6 +61,10 @@ def _collect_pecks(
         if kind == Kind.RAPID and height < deepest - hole.tolerance:
             yield motions.fault(k, height, Wording("holes", "rapid_in_solid"))
         elif kind == Kind.LINEAR and height < deepest - 1e-9:
+            start = float(motions.height[k - 1])
+            is_back = bool(pecks) and start >= hole.cycle.clearance - hole.tolerance
+            if motions.by_motion and is_back and start - deepest > _MOST_AT_FEED:
+                yield motions.fault(k, height, Wording("holes", "no_rapid_back", way=start - deepest))
             pecks.append(height)
             between.append([])
         elif motions.by_motion and kind == Kind.LINEAR and k <= bottom:

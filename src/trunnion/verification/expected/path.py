@@ -30,7 +30,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.verification.expected.frames import transform_to_frame
 from trunnion.verification.expected.holes import Hole, HoleSource, holes_of_operation, without_holes, without_rows
-from trunnion.verification.expected.skipped import skipped_stretches, without_stretches
+from trunnion.verification.expected.skipped import rows_without_retract, skipped_stretches, without_stretches
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedSpindles, ExpectedTool
 from trunnion.verification.expected.tolerances import Tolerances
 
@@ -108,7 +108,7 @@ class ExpectedPath:
     ``hole_ends`` has, for each section, how many holes there are up to its end. ``written_splines`` are those that the
     program writes as such: each has one row here, that of its end, as an arc has. The path is that of an operator who
     has switched block skip on: rows and events of the OPSKIP with the numbers ``left_out`` are not there. They count
-    through all operations.
+    through all operations. ``without_retract`` are lines of the CL files that leave the cut sideways then.
 
     The columns of an operation are not copied; ``tip``, ``axis`` and the like gather some rows of them.
     """
@@ -132,6 +132,7 @@ class ExpectedPath:
         sections: list[Section] = []
         found: list[Hole] = []
         hole_ends: list[int] = []
+        without_retract = set[tuple[str, int]]()
         first = stretch = 0
         spindle: ExpectedSpindle | None = None
         tool = ExpectedTool(None)
@@ -140,7 +141,10 @@ class ExpectedPath:
             limit = limit_of(placed)
             if left_out:
                 own = range(stretch, stretch := stretch + len(list(skipped_stretches(placed))))
-                placed, skipped = without_stretches(placed, {k - own.start for k in own if k in left_out})
+                complete = placed
+                placed, skipped = without_stretches(complete, {k - own.start for k in own if k in left_out})
+                rows = rows_without_retract(complete, skipped)
+                without_retract.update((path.file, line) for line in complete.moves.line[rows].tolist())
                 limit = _without_rows(limit, skipped)
             if whole.frame != frame:  # points of another coordinate system have the noise of turning
                 limit = replace(limit, tip=limit.tip + TURNING_NOISE)
@@ -164,6 +168,7 @@ class ExpectedPath:
         self.sections: tuple[Section, ...] = tuple(sections)
         self.holes: tuple[Hole, ...] = tuple(found)
         self.hole_ends: tuple[int, ...] = tuple(hole_ends)
+        self.without_retract = frozenset(without_retract)
         self.written_splines: tuple[WrittenSpline, ...] = tuple(written_splines)
         self.first_rows: Ints = np.array([section.first for section in sections], np.int64)
 

@@ -6,5 +6,6 @@ the path that is nearest to it, ``compared`` puts them together, and ``check`` j
 
 from trunnion.verification.recorded.check import check_recorded
 from trunnion.verification.recorded.compared import RecordedComparison, compare_recording
+from trunnion.verification.recorded.driven import by_program_rows
 
-__all__ = ["RecordedComparison", "check_recorded", "compare_recording"]
+__all__ = ["RecordedComparison", "by_program_rows", "check_recorded", "compare_recording"]

@@ -69,9 +69,9 @@ def test_the_sheet_tells_what_a_setter_needs(folder: Path) -> None:
     page = _Tags((folder / "job.html").read_text(encoding="utf-8"))
     text = " ".join(page.text.split())
     for wanted in (
-        "job.mpf", "Yalong YL569", "G54", "X0.000 Y0.000 Z−100.000", "Proven", "OP1", "three-axis", "TCP", "flood",
-        "X 0.000 … 20.000", "Y −3.500 … 0.000", "500", "4000", "Tools", "Travel", "To be checked at the machine",
-        "Programmed by", "Set up by", "First part released by", "no simulation",
+        "job.mpf", "Yalong YL569", "G54", "X0.000 Y0.000 Z−100.000", "Passed in part", "OP1", "three-axis",
+        "TCP", "flood", "X 0.000 … 20.000", "Y −3.500 … 0.000", "500", "4000", "Tools", "Travel",
+        "To be checked at the machine", "Programmed by", "Set up by", "First part released by", "no simulation",
         hashlib.sha256((folder / "job.mpf").read_bytes()).hexdigest(),
     ):  # fmt: skip
         assert wanted in text, wanted

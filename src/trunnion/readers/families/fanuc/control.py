@@ -5,7 +5,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from trunnion.arrays import Codes, Floats
-from trunnion.compensation.styles import TYPE_A
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, Mount
 from trunnion.messages import Wording, phrase
@@ -36,11 +35,11 @@ class FanucControl(Rs274Control):
 
     # A reset, and with it the end of a program, keeps units and stroke limits in any case (docs/reader-fanuc.md).
     kept_modes = frozenset({"units", "limits"})
-    compensation_style = TYPE_A
     start_modes = START_MODES
     doubtful_modes = frozenset({"distances", "plane", "feed", "compensation", "offset", "length"})
 
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
+        self.compensation_style = settings.compensation_style
         super().__init__(machine, note, shortest=shortest)
         self.settings = settings
         self.own_words = settings.words

@@ -2,7 +2,6 @@
 
 from typing import Final
 
-from trunnion.readers.families.fanuc.control import FanucControl
 from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
 from trunnion.readers.families.fanuc.settings import settings_of
 from trunnion.readers.families.fanuc.words import TABLE, is_own_word
@@ -36,6 +35,6 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     offsets_of=offsets_of,
     words_of=lambda machine: TABLE.without_path_by(settings_of(machine).words),
-    compensation_style=FanucControl.compensation_style,
+    compensation_style=lambda machine: settings_of(machine).compensation_style,
     check_reading=settings_of,
 )

@@ -5,6 +5,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from trunnion.compensation.styles import TYPE_A, UNKNOWN_STYLE
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.readers.control.start_modes import MOTION, check_start_modes
@@ -34,6 +35,9 @@ _FEEDS: Final = {(94, False): 1.0, (94, True): 0.01, (95, False): 0.01, (95, Tru
 _SECONDS: Final = 0.001
 
 
+#: How radius compensation begins and ends, by its name: no manual at hand says what type B makes of all corners.
+_STYLES: Final = {"A": TYPE_A, "B": UNKNOWN_STYLE}
+
 #: Common variables.
 _VARIABLE: Final = re.compile(r"#[1-9][0-9]{2}")
 
@@ -55,6 +59,7 @@ class Settings:
     home_ends_length  G28 takes the tool length off for the blocks behind it
     home_takes_all  G28 without axes takes all of them home
     length_along_z  G43 counts along Z in every working plane; else a parameter may make it count across the plane
+    compensation_style  how it compensates the radius, a key of ``STYLES``: type A, or not known (type B)
     kept_by  what decides which modes the end of a program ends, as messages say it
     extended_offsets  the highest P of G54.1, or of the word that the control has in its place
     whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
@@ -75,6 +80,7 @@ class Settings:
     home_ends_length: bool = False
     home_takes_all: bool = False
     length_along_z: bool = False
+    compensation_style: int = TYPE_A
     kept_by: str = KEPT_BY
     extended_offsets: int = HIGHEST_EXTENDED
     variables: Mapping[str, float] = field(default_factory=dict)
@@ -163,6 +169,7 @@ def settings_of(machine: Machine) -> Settings:
         home_ends_length=table.flag("home_ends_length", False),
         home_takes_all=table.flag("home_takes_all", False),
         length_along_z=table.flag("length_along_z", False),
+        compensation_style=_STYLES[table.text("compensation_start", "A", one_of=tuple(_STYLES))],
         kept_by=table.text("kept_by", KEPT_BY),
         variables=read_variables(table, _VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),

@@ -56,6 +56,6 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     smoothing=re.compile(r"CYCL[ \t]+DEF[ \t]+32(?![0-9])"),
     lost_smoothing={"cycle32": ("cycle 32", "see the setting tolerance=…")},
-    compensation_style=HeidenhainControl.compensation_style,
+    compensation_style=lambda _: HeidenhainControl.compensation_style,
     check_reading=variables_of,
 )

@@ -42,6 +42,6 @@ READER: Final = FamilyReader(
     uses_length_numbers=True,
     raw_words=RAW_WORDS,
     words_of=lambda machine: TABLE.without_path_by(settings_of(machine)[1]),
-    compensation_style=LinuxcncControl.compensation_style,
+    compensation_style=lambda _: LinuxcncControl.compensation_style,
     check_reading=settings_of,
 )

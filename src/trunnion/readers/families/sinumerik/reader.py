@@ -55,6 +55,6 @@ READER: Final = FamilyReader(
     raw_words=RAW_WORDS,
     smoothing=re.compile(r"ORI[A-Z]+|CYCLE832"),
     lost_smoothing={"cycle832": ("CYCLE832", "see setting cycle832=… and tolerance=…")},
-    compensation_style=SinumerikControl.compensation_style,
+    compensation_style=lambda _: SinumerikControl.compensation_style,
     check_reading=settings_of,
 )

@@ -1,4 +1,4 @@
-"""The rows that a page shows of a program whose tool's centre goes elsewhere than its blocks say.
+"""The rows of a program whose tool's centre goes elsewhere than its blocks say.
 
 In:     a verification, whose columns have a row for each motion of the program, and the run of the tool's centre.
 Out:    the same columns, rows and places for the rows of that run: what is inserted before a row belongs to it.
@@ -18,7 +18,7 @@ from trunnion.verification.results import OperationRows
 
 
 @dataclass(frozen=True, eq=False)
-class ShownRows:
+class DrivenRows:
     """The run of the tool's centre, and where the rows of the program end in it (``CentreRun``)."""
 
     run: Run
@@ -26,15 +26,15 @@ class ShownRows:
 
     @cached_property
     def own(self) -> Ints:
-        """The row of the program to which each shown row belongs, (n,)."""
+        """The row of the program to which each row belongs, (n,)."""
         return np.searchsorted(self.row_of, np.arange(len(self.run)))
 
     def column(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Return a column of the program's rows for the shown ones; an empty one stays."""
+        """Return a column of the program's rows for these; an empty one stays."""
         return values[self.own] if len(values) else values
 
     def seconds(self, values: Floats) -> Floats:
-        """Return the times of shown rows: each row's time is shared by the ways of what belongs to it."""
+        """Return the times of rows: that of each row of the program is shared by the ways of what belongs to it."""
         if len(values) == len(self.run) or not len(values):
             return values
         tip = self.run.positions(np.arange(-1, len(self.run))).tip
@@ -48,7 +48,7 @@ class ShownRows:
         return int(self.row_of[row]) if row < len(self.row_of) else row + len(self.run) - len(self.row_of)
 
     def operations(self, operations: Iterable[OperationRows]) -> Iterator[OperationRows]:
-        """Yield the operations with their shown rows."""
+        """Yield operations of the program with these rows."""
         for each in operations:
             first = self.row(each.first - 1) + 1 if each.first else 0
             yield replace(each, first=first, end=self.row(each.end - 1) + 1 if each.end else 0)
