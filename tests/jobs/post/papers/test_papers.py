@@ -219,14 +219,14 @@ def test_a_refused_post_tells_of_the_files_that_are_there(tmp_path: Path, capsys
     old, sheet = tmp_path / "a.mpf", tmp_path / "a.html"
     arguments = ["post", str(cl), "--machine", "yl569", "--output", str(old), "--sheet", str(sheet)]
     assert main(arguments) == 0
-    assert "of before this change" not in capsys.readouterr().err
+    assert "from before this change" not in capsys.readouterr().err
     cl.write_text((HEAD + FOOT).replace("0.0,0.0,1.0", "0.0,0.7071068,-0.7071068"), encoding="utf-8")
     assert main(arguments) == 1
-    assert f"{old}, {sheet}: warning: of before this change: do not run" in capsys.readouterr().err
+    assert f"{old}, {sheet}: warning: from before this change: do not run" in capsys.readouterr().err
     sheet.unlink()
     old.unlink()
     assert main(arguments) == 1
-    assert "of before this change" not in capsys.readouterr().err
+    assert "from before this change" not in capsys.readouterr().err
 
 
 @needs_browser
