@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.simulation.setup_findings import BlockRemoval, NearMiss, SimulatedOperation, SimulationFinding
+from trunnion.verification import Verdict
 
 EVIL = '<script>alert("&")</script>'
 FINDING = SimulationFinding(
@@ -17,7 +18,7 @@ NEAR = NearMiss((EVIL, EVIL), EVIL, 3, 30, 3, 30, 12.0, 0.25, (1.0, -2.0, 3.0), 
 REMOVAL = BlockRemoval(np.zeros(0, np.int32), np.zeros(0), np.zeros(0))
 CONTENT = SimulationContent(
     title=EVIL,
-    passed=False,
+    verdict=Verdict.FAILED,
     facts=(("Machine", EVIL),),
     findings=(FINDING,) * 250,
     near=(NEAR,),
@@ -57,6 +58,10 @@ def test_it_shows_findings_tables_bars_and_pictures() -> None:
     assert "<td class=n>120</td>" in text  # mm³ in a minute
     assert re.findall(r'<rect width="([\d.]+)"', text) == ["120.0", "240.0"]  # to the scale of what deviates
     assert text.count("data:image/png;base64,iVBORw==") == 1
-    sound = page(replace(CONTENT, passed=True, findings=(), near=(), remarks=()))
+    sound = page(replace(CONTENT, verdict=Verdict.PASSED, findings=(), near=(), remarks=()))
     assert "Nothing was found." in sound
     assert "Near misses" not in sound
+    assert 'class="verdict good"' in sound
+    in_part = page(replace(CONTENT, verdict=Verdict.IN_PART, not_checked="not all was judged (SIM146)"))
+    assert 'class="verdict open"' in in_part
+    assert "<strong>Passed in part</strong>\n<span>nothing found; not all was judged (SIM146)</span>" in in_part

@@ -2,7 +2,9 @@
 
 import re
 
-_PASSED = re.compile(r"^(?:[a-z]+ +(?:ok|not checked) +|Passed: |[a-z, ]+: not measured: ).*\n", re.MULTILINE)
+_PASSED = re.compile(
+    r"^(?:[a-z]+ +(?:ok|not checked) +|Passed(?: in part)?: |[a-z, ]+: not measured: ).*\n", re.MULTILINE
+)
 _UNSTATED = re.compile(r"^\w+: warning: (?:travel|home) of [XYZABC, ]+ is (?:not stated|assumed).*\n", re.MULTILINE)
 _OF_BUILDER = re.compile(r"^.* belongs to the machine: what it does is not known; .*\n", re.MULTILINE)
 

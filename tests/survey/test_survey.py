@@ -152,6 +152,8 @@ def test_the_command_prints_and_writes_page_and_data(
     html = page.read_text("utf-8")
     assert "&lt;b&gt;&amp;.mpf" in html
     assert "<b>&.mpf" not in html
+    read, *_ = [each.file for each in found.files if str(each.became).startswith("read")]
+    assert f'<tr class="open"><th scope=row><bdi>{read}<' in html  # it is not proven
     assert "<script" not in html
 
 

@@ -1,5 +1,6 @@
 """What "passed" stands on: states of checks, what is missing, and what settings and definitions demand."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from trunnion.errors import InputError, Severity
 from trunnion.machines import Machine, load_machine
 from trunnion.machines.unmeasured import unmeasured_values
 from trunnion.messages import foreign
-from trunnion.verification import check_lines
+from trunnion.reporting.html_text import verdict_banner
+from trunnion.verification import Standing, check_lines
 from trunnion.verification.checks import table
 from trunnion.verification.results import Check, State, Verification
 
@@ -63,9 +65,33 @@ def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured
     sound = replace(bare, checks=tuple(check for check in bare.checks if check.passed))
     ok, every = sound.standing.ok, len(sound.checks)
     assert sound.standing.told == (
-        f"Passed: {ok} of {every} checks; {every - ok} not checked; stands on 2 values nobody measured; "
+        f"Passed in part: {ok} of {every} checks; {every - ok} not checked; stands on 2 values nobody measured; "
         "assumed: the control starts with G40"
     )
+
+
+def test_every_page_has_the_banner_of_the_verdict() -> None:
+    def banner(standing: Standing) -> list[str]:
+        text = verdict_banner(standing.verdict, standing.said())
+        return re.findall(r'class="verdict (\w+)"|<strong>([^<]+)|<span>([^<]+)', text)
+
+    found = [
+        ["".join(parts) for parts in banner(standing)]
+        for standing in (
+            Standing(passed=True, ok=21, failed=0, not_checked=0),
+            Standing(passed=True, ok=7, failed=0, not_checked=14),
+            Standing(passed=False, ok=19, failed=2, not_checked=0),
+            Standing(passed=False, ok=21, failed=0, not_checked=0),
+            Standing(passed=True, ok=0, failed=0, not_checked=0),
+        )
+    ]
+    assert found == [
+        ["good", "Passed", "21 of 21 checks"],
+        ["open", "Passed in part", "7 of 21 checks; 14 not checked"],
+        ["bad", "Failed", "2 of 21 checks"],
+        ["bad", "Failed", "written by force; 21 of 21 checks passed"],
+        ["none", "Nothing checked"],
+    ]
 
 
 def test_overruled_errors_do_not_pass(verified: Verifier) -> None:

@@ -106,7 +106,7 @@ PAGES = {
 
 
 @pytest.fixture(scope="module", params=PAGES)
-def page_and_length(twin: str, request: pytest.FixtureRequest) -> Iterator[tuple[str, float]]:
+def serving(twin: str, request: pytest.FixtureRequest) -> Iterator[tuple[subprocess.Popen[str], str, float]]:
     arguments, length = PAGES[request.param]
     command = [sys.executable, "-m", "trunnion", "view", *arguments, "--live", twin, "--machine", "yl569"]
     command += ["--no-browser"]
@@ -118,16 +118,18 @@ def page_and_length(twin: str, request: pytest.FixtureRequest) -> Iterator[tuple
         assert process.stdout is not None
         address = process.stdout.readline().strip()
         assert re.match(r"http://127\.0\.0\.1:\d+/", address), process.communicate()
-        yield address, length
+        yield process, address, length
     finally:
         process.terminate()
         process.communicate()
 
 
 @needs_browser
-def test_the_pose_that_is_shown_is_that_of_the_machine(page_and_length: tuple[str, float], browser: Browser) -> None:
+def test_the_pose_that_is_shown_is_that_of_the_machine(
+    serving: tuple[subprocess.Popen[str], str, float], browser: Browser
+) -> None:
     machine = load_machine("yl569")
-    page_address, length = page_and_length
+    process, page_address, length = serving
     with open_page(browser, page_address) as (page, errors):
         page.wait_for_function("() => page.space.values.some(value => value !== 0)")
         shown = page.evaluate(
@@ -152,3 +154,11 @@ def test_the_pose_that_is_shown_is_that_of_the_machine(page_and_length: tuple[st
         page.wait_for_timeout(200)
         assert page.evaluate("page.space.values") == first
         assert page.locator("#live-state").inner_text() == ""
+        page.locator("#live").check()
+        page.wait_for_function(f"() => page.space.values.join() !== '{','.join(map(str, first))}'")
+        assert page.evaluate("[page.time, page.curves.cursor]") == [page.evaluate("page.program.timeOf(page.row)")] * 2
+        process.terminate()
+        process.wait()
+        page.locator("body.gone").wait_for()
+        assert page.locator("#live-state").inner_text() == "The machine is not connected."
+        assert float(page.locator("#values").evaluate("it => getComputedStyle(it).opacity")) < 0.5

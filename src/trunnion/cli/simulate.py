@@ -63,7 +63,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
     yield from not_measured_lines(found)
-    yield found.verdict
+    yield found.told
 
 
 def _of_setup(name: str) -> str:

@@ -30,7 +30,7 @@ from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
 from trunnion.results import Figure, OptionalText
-from trunnion.verification import Standing
+from trunnion.verification import Standing, Verdict
 from trunnion.verification.results import Check, Place, Verification, durations, moving_seconds
 
 #: Units of a program by whether they are inches.
@@ -76,6 +76,13 @@ class ReportContent:
         Figure("turn_deg", take=attrgetter("turn"), after="program_units"),
         Figure("tilt_deg", take=attrgetter("tilt")),
     ] = None
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the page says at its head: that of the proof, in part where a simulation only warns of what it found."""
+        own = self.standing.verdict
+        warned = self.simulation is not None and not self.simulation.passed
+        return Verdict.IN_PART if warned and own is Verdict.PASSED else own
 
 
 def collect_content(

@@ -26,10 +26,8 @@ _ASSETS = files("trunnion.reporting")
 def render_page(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
     """Yield the page, piece by piece."""
     parts = [series] if content.recorded is None else [content.recorded.series, series]
-    verdict = "passed" if content.standing.passed else "FAILED"
-    yield from plot_page(
-        f"{content.program}: {verdict}", page_body(content), parts, pictures=content.simulation is not None
-    )
+    title = f"{content.program}: {content.verdict.word.lower()}"
+    yield from plot_page(title, page_body(content), parts, pictures=content.simulation is not None)
 
 
 def plot_page(title: str, body: str, parts: Sequence[PlotSeries], *, pictures: bool = False) -> Iterator[bytes]:

@@ -17,12 +17,13 @@ from trunnion.reporting.html_text import (
     format_number,
     format_range,
     note_lines,
+    verdict_banner,
     with_unit,
 )
 from trunnion.reporting.remarks import RemarkGroup
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
-from trunnion.verification import stand_lines
+from trunnion.verification import Verdict, stand_lines
 from trunnion.verification.results import Check, Place, State
 from trunnion.wording import counted, format_duration
 
@@ -55,16 +56,11 @@ def page_body(content: ReportContent) -> str:
 
 
 def _title(content: ReportContent) -> str:
-    said, count = content.standing.said(), len(content.checks)
-    if not content.standing.passed:
-        mark, word, more = "✗", "Failed", f"{said}; the program must not run as it is"
-    elif count:
-        mark, word, more = "✓", "Passed", said
-        if content.simulation is not None and not content.simulation.passed:
-            more += "; the simulation warns, see below"
-    else:
-        mark, word, more = "–", "Nothing checked", ""
-    state = "bad" if not content.standing.passed else "good" if count else "none"
+    verdict, said = content.verdict, content.standing.said()
+    if content.simulation is not None and not content.simulation.passed:
+        said += "; the simulation warns, see below"
+    if verdict is Verdict.FAILED:
+        said += "; the program must not run as it is"
     items = [
         ("Machine", content.machine),
         ("Control", content.control),
@@ -84,8 +80,7 @@ def _title(content: ReportContent) -> str:
         f'<p class="note">{counted(content.untimed, "motion")} without a known time.</p>' if content.untimed else ""
     )
     return f"""<header>
-<div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span><div><strong>{word}</strong>
-<span>{escape(more)}</span></div></div>
+{verdict_banner(verdict, said)}
 <h1><bdi>{escape(content.program)}</bdi></h1>
 <dl>{entries}</dl>
 {untimed}</header>

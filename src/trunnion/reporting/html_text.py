@@ -5,6 +5,17 @@ import hashlib
 import html
 import math
 from collections.abc import Iterable
+from typing import Final
+
+from trunnion.verification import Verdict
+
+#: The class of a banner of each verdict, and its sign.
+_BANNERS: Final = {
+    Verdict.PASSED: ("good", "✓"),
+    Verdict.IN_PART: ("open", "–"),
+    Verdict.FAILED: ("bad", "✗"),
+    Verdict.NOTHING: ("none", "–"),
+}
 
 
 def escape(value: object) -> str:
@@ -25,6 +36,14 @@ def page_head(title: str, style: str, policy: str) -> str:
 <style>{style}</style>
 </head>
 """
+
+
+def verdict_banner(verdict: Verdict, said: str) -> str:
+    """Return the banner of a page: its verdict, and what that stands on."""
+    state, mark = _BANNERS[verdict]
+    return f"""<div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span>\
+<div><strong>{verdict.word}</strong>
+<span>{escape(said)}</span></div></div>"""
 
 
 def note_lines(lines: Iterable[str]) -> str:

@@ -21,7 +21,7 @@ from trunnion.reporting.html_text import (
 )
 from trunnion.reporting.setup_sheet import Range, SetupSheet, SheetOperation, SheetTool
 from trunnion.results import as_json, to_data
-from trunnion.verification import stand_lines
+from trunnion.verification import Verdict, stand_lines
 from trunnion.verification.results import Check, State
 from trunnion.wording import format_duration
 
@@ -63,13 +63,16 @@ def sheet_json(sheet: SetupSheet) -> bytes:
 
 def _title(sheet: SetupSheet) -> str:
     content = sheet.content
-    standing, said = content.standing, escape(content.standing.said())
+    standing = content.standing
     if sheet.may_run:
-        warning = "<br>THE SIMULATION WARNS: see To be checked" if sheet.simulated is False else ""
-        verdict = f'<div class="verdict">Proven<small>{said}{warning}</small></div>'
+        warns = sheet.simulated is False
+        warning = "<br>THE SIMULATION WARNS: see To be checked" if warns else ""
+        word = Verdict.IN_PART if warns and standing.verdict is Verdict.PASSED else standing.verdict
+        state = "" if word is Verdict.PASSED else " open"
+        said = escape(standing.said())
+        verdict = f'<div class="verdict{state}">{word.word}<small>{said}{warning}</small></div>'
     else:
-        why = said if standing.failed else f"refused, and written by force; {said}"
-        verdict = f'<div class="verdict bad">MUST NOT RUN AS IT IS<small>{why}</small></div>'
+        verdict = f'<div class="verdict bad">MUST NOT RUN AS IT IS<small>{escape(standing.told)}</small></div>'
     zero = (
         "not stated"
         if sheet.zero is None

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
+from trunnion.verification import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +42,15 @@ class StockState:
 class SimulationContent:
     """A simulation.
 
+    verdict  on what was judged
     facts    names and values of what it is about
     remarks  what was taken for granted or broken off, each thing once with its count
-    not_checked  that collisions with the machine were not checked, and why; empty: they were
+    not_checked  what was not judged, and why; empty: all was
     data     all of it, as the command prints it as data
     """
 
     title: str
-    passed: bool
+    verdict: Verdict
     facts: tuple[tuple[str, str], ...]
     findings: tuple[SimulationFinding, ...]
     near: tuple[NearMiss, ...]
@@ -57,3 +59,8 @@ class SimulationContent:
     remarks: tuple[str, ...]
     data: Mapping[str, object]
     not_checked: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing was found that must not be."""
+        return self.verdict is not Verdict.FAILED

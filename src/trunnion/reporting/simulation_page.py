@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
-from trunnion.reporting.html_text import capitalised, escape, format_number, page_head, source_hash
+from trunnion.reporting.html_text import capitalised, escape, format_number, page_head, source_hash, verdict_banner
 from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
 from trunnion.reporting.text import clean
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
@@ -29,16 +29,14 @@ def render_simulation_page(content: SimulationContent) -> Iterator[bytes]:
     """Yield the page, piece by piece."""
     style = "\n" + _ASSETS.joinpath("page.css").read_text(encoding="utf-8")
     policy = f"default-src 'none'; img-src data:; style-src {source_hash(style)}; base-uri 'none'; form-action 'none'"
-    state, mark, word = ("good", "✓", "Passed") if content.passed else ("bad", "✗", "Failed")
     facts = "".join(
         f"<div><dt>{escape(name)}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in content.facts
     )
-    title = f"{content.title}: simulation {'passed' if content.passed else 'FAILED'}"
+    title = f"{content.title}: simulation {content.verdict.word.lower()}"
     yield f"""{page_head(title, style, policy)}<body>
 <main>
 <header>
-<div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span><div><strong>{word}</strong>
-<span>{_verdict(content)}</span></div></div>
+{verdict_banner(content.verdict, _said(content))}
 <h1><bdi>{escape(content.title)}</bdi></h1>
 <dl>{facts}</dl>
 </header>
@@ -68,13 +66,13 @@ def _unfound(content: SimulationContent) -> str:
     return f'<p class="note">{told.strip()}</p>' if told else ""
 
 
-def _verdict(content: SimulationContent) -> str:
+def _said(content: SimulationContent) -> str:
     if content.passed:
         found = "nothing found"
     else:
         count = counted(len(content.findings), "finding") if content.findings else "see below"
         found = f"{count}; the program must not run as it is"
-    return "; ".join(filter(None, (found, escape(content.not_checked))))
+    return "; ".join(filter(None, (found, content.not_checked)))
 
 
 def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:

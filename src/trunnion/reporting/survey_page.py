@@ -38,13 +38,16 @@ class BlockerRow:
 
 @dataclass(frozen=True, slots=True)
 class FileRow:
-    """A file: what it is, what became of it, on how many machines it went through, and why not on the others."""
+    """A file: what it is, what became of it, on how many machines it went through, and why not on the others.
+
+    is_proven  on all of them, against its CL file
+    """
 
     file: str
     kind: str
     looks: str
     became: str
-    is_through: bool
+    is_proven: bool
     is_in_part: bool
     through: str
     reasons: Sequence[str]
@@ -125,10 +128,10 @@ def _files(found: Sequence[FileRow]) -> str:
 
 
 def _colour(each: FileRow) -> str:
-    """Return the class of a row: through, in part, not; one that was not tried has none."""
+    """Return the class of a row: proven; in part, or only read; not. One that was not tried has none."""
     if not each.through:
         return ""
-    return "good" if each.is_through else "open" if each.is_in_part else "bad"
+    return "good" if each.is_proven else "open" if each.is_in_part else "bad"
 
 
 def _section(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:

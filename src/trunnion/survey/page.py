@@ -5,7 +5,7 @@ from collections.abc import Callable
 from trunnion.errors import Problem
 from trunnion.reporting.survey_page import BlockerRow, FileRow, RateRow, SurveyContent, render_survey_page
 from trunnion.survey.found_files import FileKind
-from trunnion.survey.result import Survey, SurveyedFile, Trying
+from trunnion.survey.result import Became, Survey, SurveyedFile, Trying
 
 
 def survey_page(found: Survey, spoken: Callable[[str], str] = str) -> bytes:
@@ -51,11 +51,12 @@ def _place(problem: Problem) -> str:
 
 
 def _row(file: SurveyedFile, spoken: Callable[[str], str]) -> FileRow:
-    is_through = bool(file.tries) and file.passes == len(file.tries)
+    proven = (Became.PROVEN, Became.PROVEN_WARNED)
+    is_proven = bool(file.tries) and all(each.became in proven for each in file.tries)
     kind = str(file.kind) if file.kind is not FileKind.OTHER else ""
     through = f"{file.passes} of {len(file.tries)}" if file.tries else ""
     reasons = [_reason(each, spoken, len(file.tries) > 1) for each in file.tries if not each.became.passed]
-    return FileRow(file.file, kind, file.looks, str(file.became), is_through, bool(file.passes), through, reasons)
+    return FileRow(file.file, kind, file.looks, str(file.became), is_proven, bool(file.passes), through, reasons)
 
 
 def _reason(each: Trying, spoken: Callable[[str], str], names_machine: bool) -> str:

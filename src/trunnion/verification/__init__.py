@@ -19,7 +19,7 @@ from trunnion.verification.results import (
     rows_from_starts,
     without_columns,
 )
-from trunnion.verification.standing import Standing
+from trunnion.verification.standing import Standing, Verdict
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, stand_lines, time_lines
 from trunnion.verification.verifier import reachable_feeds, verify, with_recording
 
@@ -37,6 +37,7 @@ __all__ = [
     "Standing",
     "State",
     "Tolerances",
+    "Verdict",
     "Verification",
     "check_lines",
     "durations",

@@ -6,9 +6,24 @@ Out:    ``Standing``, as data and in words.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 
 from trunnion.messages import LIBRARY, Wording, Words, phrase
 from trunnion.results import Figure
+
+
+class Verdict(StrEnum):
+    """The word that every front says of what was judged: the name of its phrase."""
+
+    PASSED = "passed"
+    IN_PART = "passed_in_part"
+    FAILED = "failed"
+    NOTHING = "nothing_checked"
+
+    @property
+    def word(self) -> str:
+        """As it is read."""
+        return str(phrase(self.value))
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +55,21 @@ class Standing:
         """How many checks there are."""
         return self.ok + self.failed + self.not_checked
 
+    @property
+    def verdict(self) -> Verdict:
+        """``PASSED`` only where every check was made, and wholly."""
+        if not self.passed:
+            return Verdict.FAILED
+        if not self.checks:
+            return Verdict.NOTHING
+        return Verdict.IN_PART if self.not_checked else Verdict.PASSED
+
     def wordings(self) -> Iterator[Wording]:
-        """Yield the parts of what is said behind "Passed" or "Failed"."""
+        """Yield the parts of what is said behind the verdict."""
         if self.failed:
             yield phrase("standing_failed", failed=self.failed, count=self.checks)
+        elif not self.passed:
+            yield phrase("standing_forced", ok=self.ok, count=self.checks)
         elif self.checks:
             yield phrase("standing_passed", ok=self.ok, count=self.checks)
         if self.not_checked:
@@ -58,12 +84,11 @@ class Standing:
             yield phrase("assumed_offset", block=self.turns_before_offset)
 
     def said(self, words: Words = LIBRARY, language: str = "en") -> str:
-        """Return what is said behind "Passed" or "Failed"."""
+        """Return what is said behind the verdict."""
         return "; ".join(wording.text("what", words, language) for wording in self.wordings())
 
     @property
     @Figure("text")
     def told(self) -> str:
         """The line that is said of the program."""
-        head = phrase("passed") if self.passed else phrase("failed")
-        return f"{head}: {said}" if (said := self.said()) else str(head)
+        return f"{self.verdict.word}: {said}" if (said := self.said()) else self.verdict.word

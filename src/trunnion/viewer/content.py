@@ -149,7 +149,11 @@ def with_phases(content: ViewContent, verification: Verification, toolpaths: Seq
 def proof_scene(verification: Verification) -> dict[str, Any]:
     """Return what the page says of the proof."""
     stands = list(stand_lines(verification.checks))
-    return {"checks": checks_data(verification.checks), "standing": verification.standing.told, "stands": stands}
+    standing = verification.standing
+    return {
+        "checks": checks_data(verification.checks), "standing": standing.told, "verdict": standing.verdict,
+        "stands": stands,
+    }  # fmt: skip
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:

@@ -1,6 +1,7 @@
 """Impellers, machined: CL files, one proven program, and what it leaves."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Never
@@ -24,6 +25,7 @@ from trunnion.impeller.impeller import rotated
 from trunnion.jobs.impeller.cutting import reachable_axes
 from trunnion.model.toolpath import Phase
 from trunnion.placing.region import TOLERANCE
+from trunnion.simulation.setup_findings import SimulationFinding
 
 FOLDER = Path(__file__).resolve().parents[3] / "examples" / "impeller"
 TEXT = (FOLDER / "impeller.toml").read_text("utf-8")
@@ -277,6 +279,25 @@ def test_a_cut_is_made_again_over_its_own_files(tmp_path: Path) -> None:
         "IMPELLER.mpf", "IMPELLER.html", "IMPELLER_ROUGH.cls", "ROUGH.spf", "IMPELLER_simulation.html",
         "IMPELLER_stock.png",
     }  # fmt: skip
+
+
+def test_the_report_of_the_proof_has_the_verdict_of_the_simulation(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulated = trunnion.simulate
+
+    def gouging(*given: object, **named: object) -> trunnion.SimulationResult:
+        found = simulated(*given, **named)  # type: ignore[arg-type]
+        finding = SimulationFinding("gouge", ("part", "tool 1"), "a.spf", 1, 1, 1, 1, 1, 0.0, 0.5, (0.0, 0.0, 0.0))
+        return replace(found, findings=(finding,))
+
+    monkeypatch.setattr("trunnion.jobs.impeller.cutting.simulate", gouging)
+    cut = trunnion.cut_impeller(definition(tmp_path, ROUGHING), machine="yl569", output=tmp_path / "nc", cell=4.0)
+    assert not cut.passed
+    for name in ("IMPELLER.html", "IMPELLER_simulation.html"):
+        page = (tmp_path / "nc" / name).read_text(encoding="utf-8")
+        assert '<div class="verdict bad">' in page
+        assert "the program must not run as it is" in page
 
 
 @pytest.mark.parametrize(

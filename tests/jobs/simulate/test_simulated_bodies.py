@@ -179,7 +179,7 @@ def test_the_verdict_says_that_collisions_with_the_machine_were_not_checked(tmp_
     assert unstated.passed
     why = "collisions with the machine: not checked (no gauge point stated)"
     assert unstated.verdict == f"nothing found; {why}"
-    assert list(simulation_lines(unstated))[-1] == unstated.verdict
+    assert list(simulation_lines(unstated))[-1] == f"Passed in part: {unstated.verdict}"
     page = b"".join(render_simulation_page(simulation_content(unstated))).decode()
     assert page.count(why) == 1
     assert "Nothing was found. Collisions with the machine: not checked (no gauge point stated)." in page

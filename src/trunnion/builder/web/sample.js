@@ -54,7 +54,7 @@ export class Sample {
    * @param {{checks: number, ok: number, not_checked: number, warnings: number, not_measured: string[], assumed: string[]}} standing
    */
   #said(standing) {
-    const parts = [say("passed", standing.ok, standing.checks)];
+    const parts = [say(standing.not_checked ? "inPart" : "passed", standing.ok, standing.checks)];
     if (standing.not_checked) parts.push(`${standing.not_checked} ${say("notChecked")}`);
     if (standing.warnings) parts.push(say("warnings", standing.warnings));
     if (standing.not_measured.length) parts.push(say("notMeasured", standing.not_measured.length));

@@ -12,7 +12,7 @@ import numpy as np
 
 from trunnion.cl.read import ClReading
 from trunnion.definitions import load_table
-from trunnion.errors import InputError, Problem, Severity, TrunnionError, argument_problem
+from trunnion.errors import InputError, MissingExtraError, Problem, Severity, TrunnionError, argument_problem
 from trunnion.jobs.arguments import FitArguments, taken
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
@@ -267,7 +267,7 @@ def _fit(
     except TrunnionError as error:
         if any(problem.argument in _OF_ALL for problem in error.problems):
             raise
-        return MachineFit(key, FitStatus.NOT, _reasons(error))
+        return _does_not_fit(error, key)
     if not found.fits:
         return replace(_beyond(asked, machine, found), not_measured=found.not_measured)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes) if found.best else ()
@@ -276,7 +276,7 @@ def _fit(
     try:
         posted = post_placed(found, machine=machine, hooks=hooks)
     except TrunnionError as error:
-        return MachineFit(machine.key, FitStatus.NOT, _reasons(error), None, margins, None, *place_of)
+        return replace(_does_not_fit(error, machine.key, margins), zero_mm=place_of[0], turn_deg=place_of[1])
     reasons = _open_reasons(machine)
     status = FitStatus.OPEN if reasons else FitStatus.FITS
     margins += _rotary_margins(machine, posted)
@@ -289,10 +289,17 @@ def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath], hooks: Sequ
     try:
         posted = post(toolpaths, machine=machine, hooks=hooks)
     except TrunnionError as error:
-        return MachineFit(machine.key, FitStatus.NOT, _reasons(error))
+        return _does_not_fit(error, machine.key)
     margins = _rotary_margins(machine, posted)
     fits = MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins)
     return replace(fits, not_measured=_not_measured(posted))
+
+
+def _does_not_fit(error: TrunnionError, key: str, margins: tuple[AxisMargin, ...] = ()) -> MachineFit:
+    """Return what an error says of a machine; without a package there is nothing to say of any."""
+    if isinstance(error, MissingExtraError):
+        raise error
+    return MachineFit(key, FitStatus.NOT, _reasons(error), None, margins)
 
 
 def _not_measured(posted: PostResult) -> tuple[str, ...]:

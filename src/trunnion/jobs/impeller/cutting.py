@@ -31,11 +31,13 @@ from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, read_cl
 from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.post.papers.writing import PostPapers
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.result_output import PaperFiles, open_target
+from trunnion.jobs.simulate.posted import simulation_checks
 from trunnion.jobs.simulate.report import simulation_content
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
@@ -172,7 +174,8 @@ def _cut(cutting: _Cutting, job: PostJob, observer: Observer) -> ImpellerCut:
                 advance(1)
         own_settings = operation_settings(made, job.control, job.settings, job.own_settings)
         job = replace(job, own_settings=own_settings)
-        result = post_toolpaths(toolpaths, job, target, observer)
+        papers: list[PostPapers] = []
+        result = post_toolpaths(toolpaths, job, target, observer, papers)
         for file, text in texts:
             target.files.add_file(file.name).write(text)
         cut = tuple(_steps(found, made, toolpaths, result))
@@ -190,7 +193,18 @@ def _cut(cutting: _Cutting, job: PostJob, observer: Observer) -> ImpellerCut:
             page = render_simulation_page(simulation_content(simulated))
             target.files.add_file(files.simulation.name).writelines(page)
             target.files.add_file(files.picture.name).write(picture(stock_surface(simulated.simulation.stock)))
+        for each in papers:
+            _with_simulation(each, simulated).write()
     return ImpellerCut(found, cut, result, tuple(file for file, _ in texts), simulated, tuple(beside))
+
+
+def _with_simulation(papers: PostPapers, simulated: SimulationResult | None) -> PostPapers:
+    """Return the papers with what the simulation found as checks: the report of the proof and its own say the same."""
+    proven = papers.result.verification
+    if simulated is None or proven is None:
+        return papers
+    proven = replace(proven, checks=(*proven.checks, *simulation_checks(simulated)))
+    return replace(papers, result=replace(papers.result, verification=proven))
 
 
 def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:

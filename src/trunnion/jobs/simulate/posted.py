@@ -248,7 +248,7 @@ def _check(
     elif found.pairs:
         answer = Wording("collision", "good", pairs=found.pairs)
         if found.not_checked:
-            answer = Wording("removal", "with_note", answer=answer, note=found.collisions_line)
+            missing = (*missing, phrase("collisions_not_checked", why=found.not_checked))
     else:
         missing = (phrase("no_bodies"),)
     places = (*_places(findings), *(Place(each.line, -1, math.nan, each.wording, code=each.code) for each in broken))
@@ -261,6 +261,8 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
     passed = not findings and largest <= found.limit
     missing = {"largest": largest, "volume": found.gouge.volume}
     answer = Wording("gouge", "missing", **missing)
+    if found.left is not None and found.left.largest > found.limit:
+        answer = Wording("gouge", "missing_and_left", **missing, left=found.left.largest)
     if findings:
         worst = max(findings, key=lambda each: each.depth)
         answer = Wording("gouge", "missing_by", **missing, line=worst.line, count=len(findings))

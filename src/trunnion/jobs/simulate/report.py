@@ -75,7 +75,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
     )
     return SimulationContent(
         title=clean(", ".join(dict.fromkeys(Path(program).name for program in found.programs))),
-        passed=found.passed,
+        verdict=found.outcome,
         facts=tuple((name, clean(value)) for name, value in facts if value),
         findings=tuple(sorted(found.findings, key=lambda finding: -finding.depth)),
         near=found.near,

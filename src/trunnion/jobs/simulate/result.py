@@ -18,6 +18,7 @@ from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.tools.profile import ToolShape
+from trunnion.verification import Verdict
 from trunnion.wording import counted
 
 #: Air cuts that are told, the longest ones.
@@ -28,6 +29,9 @@ _MOST_AIR: Final = 20
 _WHY_NOT_CHECKED: Final = {
     "no_spindle_gauge": "gauge_point_unstated", "bodies_machine_not": "zero_or_length_unstated",
 }  # fmt: skip
+
+#: Remarks on what was not judged: the stock outside, where nobody knows the tool, blocks that are not simulated.
+_NOT_JUDGED: Final = ("SIM131", "SIM143", "SIM146", "SIM162", "SIM310")
 
 #: What data says of each of several set-ups.
 _OF_SETUP: Final = (
@@ -105,6 +109,18 @@ class SimulationResult:
         return tuple(str(phrase(each)) for each in why)
 
     @property
+    def outcome(self) -> Verdict:
+        """``PASSED`` only where all that can be judged was."""
+        if not self.passed:
+            return Verdict.FAILED
+        return Verdict.IN_PART if self.not_checked_line else Verdict.PASSED
+
+    @property
+    def told(self) -> str:
+        """The last line that is said of a simulation."""
+        return f"{self.outcome.word}: {self.verdict}"
+
+    @property
     def verdict(self) -> str:
         """What was found, and what nothing was found of because nobody could check it."""
         if self.passed:
@@ -133,7 +149,11 @@ class SimulationResult:
     @property
     def not_checked_line(self) -> str:
         """What was not checked, and why; empty: all was."""
-        return "; ".join(filter(None, (self.cuts_line, self.collisions_line)))
+        codes = dict.fromkeys(each.code for each in self.remarks if each.code in _NOT_JUDGED)
+        if self.not_checked:
+            codes.pop("SIM310", None)
+        not_judged = str(phrase("not_all_judged", codes=tuple(codes))) if codes else ""
+        return "; ".join(filter(None, (self.cuts_line, self.collisions_line, not_judged)))
 
     @property
     @Figure("remarks", after="operations")

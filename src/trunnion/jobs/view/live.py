@@ -101,5 +101,6 @@ def machine_content(machine: MachineLike, title: str, **given: Any) -> ViewConte
         nothing = Path(folder) / "no program"  # a control that has been given a blank line
         nothing.write_bytes(b"\n")
         content = prepare_view(nothing, machine=named, **given)
-    scene = {**content.scene, "title": title, "files": [""], "findings": [], "checks": [], "standing": "", "stands": []}
+    scene = {**content.scene, "title": title, "files": [""], "findings": [], "checks": []}
+    scene |= {"standing": "", "verdict": "", "stands": []}
     return replace(content, scene=scene)

@@ -164,9 +164,10 @@ def _check_shares(context: Context, shares: Sequence[WorstRows], key: str) -> Ch
     top = max(range(len(axes)), key=lambda k: shares[k].value)
     worst, unit = shares[top], Wording(key, "unit").what
     if worst.row < 0:
-        return Check(key, True, Wording(key, "none_moves"), 0.0, 1.0, unit)
+        return Check(key, True, Wording(key, "none_moves"), 0.0, None, unit)
     most = {"axis": axes[top].name, "share": 100.0 * worst.value, "block": context.block_name(worst.row)}
     answer = Wording(key, "most", **most)
     if count := sum(each.count for each in shares):
         answer = Wording(key, "most_and_slows", **most, count=count)
-    return Check(key, True, answer, worst.value, 1.0, unit, tuple(places[:MAX_PLACES]))
+    # No limit: more than all of it is no fault of the program, the control slows down.
+    return Check(key, True, answer, worst.value, None, unit, tuple(places[:MAX_PLACES]))

@@ -10,9 +10,9 @@ from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.approach_faults import approaches_through_part
+from trunnion.verification.checks.approach_order import not_in_turn
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
 from trunnion.verification.checks.low_rapids import low_rapids, skipped_retracts
-from trunnion.verification.checks.passages import not_in_turn
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places

@@ -6,8 +6,9 @@ const LEFT = 64, RIGHT = 10, GAP = 6;
 const MORE = ["#b06a00", "#7d55c7", "#0f8a6d", "#c2417a"];
 
 /**
- * @typedef {{name: string, at: (piece: number) => number}} Curve
- * @typedef {{name: string, unit: string, low: number | null, high: number | null, at?: (piece: number) => number, curves?: Curve[]}} Strip
+ * @typedef {(piece: number, share?: number) => number} Value when a share of a piece's time has gone by; 1 is its end
+ * @typedef {{name: string, at: Value}} Curve
+ * @typedef {{name: string, unit: string, low: number | null, high: number | null, at?: Value, curves?: Curve[]}} Strip
  *   one curve, ``at``, or several with names of their own
  */
 
@@ -70,7 +71,7 @@ export class Curves {
 
   /**
    * Least and greatest value for each pixel across.
-   * @param {(piece: number) => number} at
+   * @param {Value} at
    * @param {number} width
    */
   #extents(at, width) {
@@ -79,12 +80,15 @@ export class Curves {
     const first = program.pieceAt(range[0]), last = program.pieceAt(range[1]);
     const scale = width / (range[1] - range[0]);
     for (let i = first; i <= last && i < program.pieces; i++) {
-      const value = at(i);
-      const from = Math.max(Math.floor((program.time[i] - range[0]) * scale), 0);
-      const to = Math.min(Math.floor((program.time[i + 1] - range[0]) * scale), width - 1);
+      const begin = (program.time[i] - range[0]) * scale, takes = (program.time[i + 1] - program.time[i]) * scale;
+      const from = Math.max(Math.floor(begin), 0), to = Math.min(Math.floor(begin + takes), width - 1);
       for (let x = from; x <= to; x++) {
-        if (value < low[x]) low[x] = value;
-        if (value > high[x]) high[x] = value;
+        // What the piece shows from the left edge of the pixel to its right one, as far as the piece goes.
+        for (const edge of [x, x + 1]) {
+          const value = at(i, takes > 0 ? Math.min(Math.max((edge - begin) / takes, 0), 1) : Number(edge > x));
+          if (value < low[x]) low[x] = value;
+          if (value > high[x]) high[x] = value;
+        }
       }
     }
     return { low, high };

@@ -21,15 +21,20 @@ export function followMachine(page, place) {
   const follow = () => { if (page.playing) page.play(); };
   follow();
   box.addEventListener("change", follow);
+  /** What is shown is old once nothing says where the machine is. */
+  const tell = (/** @type {boolean} */ gone) => {
+    state.textContent = gone ? say("liveGone") : "";
+    document.body.classList.toggle("gone", gone && box.checked);
+  };
   const source = new EventSource("live");
   source.onmessage = (event) => {
     /** @type {{values: number[] | null, line: number, file: number}} */
     const told = JSON.parse(event.data);
-    state.textContent = told.values ? "" : say("liveGone");
+    tell(!told.values);
     if (!told.values || !box.checked) return;
     const { program } = page;
     const row = told.line > 0 && program.rows ? program.rowOfLine(told.file, told.line, page.row) : page.row;
     page.showMachineAt(told.values, row);
   };
-  source.onerror = () => { state.textContent = say("liveGone"); };
+  source.onerror = () => tell(true);
 }

@@ -89,7 +89,10 @@ export class Page {
    */
   showMachineAt(values, row) {
     this.row = row;
+    this.time = this.program.timeOf(row);
     this.space.setPose(values, row);
+    this.curves.setCursor(this.time);
+    element("scrub").value = String(this.program.end ? this.time / this.program.end : 0);
     this.#readOut(values, row);
     this.text.showRow(row);
   }
@@ -128,6 +131,7 @@ export class Page {
   #fillFindings() {
     const list = element("findings");
     element("standing").textContent = this.scene.standing;
+    element("basis").className = this.scene.verdict;
     element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
     for (const check of this.scene.checks.filter((one) => one.state !== "ok")) {
       const line = document.createElement("li");

@@ -64,9 +64,11 @@ export class PathColours {
       const value = (/** @type {number} */ piece) => speed(piece) || 0; // one that is not known has the colour of none
       let most = 0;
       for (let i = 0; i < program.pieces; i++) if (program.kind[program.row[i]] !== 0) most = Math.max(most, value(i));
-      this.space.paint((piece) => scaled(value(piece) / (most || 1)));
+      const isRapid = (/** @type {number} */ piece) => by === "feed" && program.kind[program.row[piece]] === 0;
+      this.space.paint((piece) => (isRapid(piece) ? QUIET : scaled(value(piece) / (most || 1))));
       const unit = by === "feed" ? "mm/min" : "°/min";
-      this.#legend(SCALE.map((colour, k) => [`${((most * k) / (SCALE.length - 1)).toFixed(0)}${k === SCALE.length - 1 ? ` ${unit}` : ""}`, colour]));
+      const scale = SCALE.map((colour, k) => [`${((most * k) / (SCALE.length - 1)).toFixed(0)}${k === SCALE.length - 1 ? ` ${unit}` : ""}`, colour]);
+      this.#legend(by === "feed" ? [...scale, [say("rapid"), QUIET]] : scale);
     }
     this.showScale();
   }

@@ -11,7 +11,7 @@ import { say } from "./texts.js";
 export function strips(program) {
   const axes = program.machine.axes.map((axis, k) => ({
     name: axis.name, unit: axis.rotary ? "°" : "mm", low: axis.placed ? axis.low : null, high: axis.placed ? axis.high : null,
-    at: (/** @type {number} */ piece) => program.axes[k][piece + 1],
+    at: (/** @type {number} */ piece, share = 1) => positionOf(program, k, piece, share),
   }));
   /** @type {any} */
   const feed = { name: "F", unit: "mm/min", low: null, high: null, at: (/** @type {number} */ piece) => program.feedOf(program.row[piece]) };
@@ -21,9 +21,21 @@ export function strips(program) {
   /** @type {any} */
   const room = {
     name: say("limits"), unit: "%", low: 0, high: null,
-    curves: limited.map((k) => ({ name: program.machine.axes[k].name, at: (/** @type {number} */ piece) => roomOf(program, k, piece) })),
+    curves: limited.map((k) => ({ name: program.machine.axes[k].name, at: (/** @type {number} */ piece, share = 1) => roomOf(program, k, piece, share) })),
   };
   return [...axes, rotary, feed, ...(limited.length ? [room] : [])];
+}
+
+/**
+ * Where an axis is within a piece, as ``valuesAt`` has it.
+ * @param {ShownProgram} program
+ * @param {number} k number of the axis
+ * @param {number} piece
+ * @param {number} share of its time that has gone by
+ */
+function positionOf(program, k, piece, share) {
+  const from = program.axes[k][piece];
+  return share < 1 ? from + share * (program.axes[k][piece + 1] - from) : program.axes[k][piece + 1];
 }
 
 /**
@@ -47,8 +59,9 @@ export function rotarySpeed(program, piece) {
  * @param {ShownProgram} program
  * @param {number} k number of the axis
  * @param {number} piece
+ * @param {number} share of its time that has gone by
  */
-function roomOf(program, k, piece) {
-  const { low, high } = program.machine.axes[k], value = program.axes[k][piece + 1];
+function roomOf(program, k, piece, share) {
+  const { low, high } = program.machine.axes[k], value = positionOf(program, k, piece, share);
   return (100 * Math.min(value - low, high - value)) / (high - low);
 }

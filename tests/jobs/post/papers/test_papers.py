@@ -69,9 +69,9 @@ def test_the_sheet_tells_what_a_setter_needs(folder: Path) -> None:
     page = _Tags((folder / "job.html").read_text(encoding="utf-8"))
     text = " ".join(page.text.split())
     for wanted in (
-        "job.mpf", "Yalong YL569", "G54", "X0.000 Y0.000 Z−100.000", "Proven", "OP1", "three-axis", "TCP", "flood",
-        "X 0.000 … 20.000", "Y −3.500 … 0.000", "500", "4000", "Tools", "Travel", "To be checked at the machine",
-        "Programmed by", "Set up by", "First part released by", "no simulation",
+        "job.mpf", "Yalong YL569", "G54", "X0.000 Y0.000 Z−100.000", "Passed in part", "OP1", "three-axis",
+        "TCP", "flood", "X 0.000 … 20.000", "Y −3.500 … 0.000", "500", "4000", "Tools", "Travel",
+        "To be checked at the machine", "Programmed by", "Set up by", "First part released by", "no simulation",
         hashlib.sha256((folder / "job.mpf").read_bytes()).hexdigest(),
     ):  # fmt: skip
         assert wanted in text, wanted
@@ -219,14 +219,14 @@ def test_a_refused_post_tells_of_the_files_that_are_there(tmp_path: Path, capsys
     old, sheet = tmp_path / "a.mpf", tmp_path / "a.html"
     arguments = ["post", str(cl), "--machine", "yl569", "--output", str(old), "--sheet", str(sheet)]
     assert main(arguments) == 0
-    assert "of before this change" not in capsys.readouterr().err
+    assert "from before this change" not in capsys.readouterr().err
     cl.write_text((HEAD + FOOT).replace("0.0,0.0,1.0", "0.0,0.7071068,-0.7071068"), encoding="utf-8")
     assert main(arguments) == 1
-    assert f"{old}, {sheet}: warning: of before this change: do not run" in capsys.readouterr().err
+    assert f"{old}, {sheet}: warning: from before this change: do not run" in capsys.readouterr().err
     sheet.unlink()
     old.unlink()
     assert main(arguments) == 1
-    assert "of before this change" not in capsys.readouterr().err
+    assert "from before this change" not in capsys.readouterr().err
 
 
 @needs_browser
