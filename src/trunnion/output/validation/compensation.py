@@ -89,10 +89,6 @@ def register_problems(program: Program) -> list[Problem]:
     return problems
 
 
-def _takes_tilted(program: Program, motion: Motion) -> bool:
-    return motion.mode is not MachiningMode.TILTED and MachiningMode.TILTED in program.control.modes({})
-
-
 def skipped_side_problems(program: Program, motion: Motion) -> list[Problem]:
     """Refuse CUTCOM within OPSKIP that waits for the motion behind it, where its words make no block alone.
 
