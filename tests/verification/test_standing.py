@@ -230,3 +230,11 @@ def test_what_nobody_measured_is_asked_once_for_all_checks(monkeypatch: pytest.M
     found = trunnion.verify(YL569 / "2_hub_rough.expected.mpf", machine="yl569", cl=HUB)
     assert sum(bool(check.stands_on) for check in found.checks) > 1
     assert len(asked) == 1
+
+
+def test_a_program_that_moves_nothing_is_not_passed(tmp_path: Path) -> None:
+    for machine, text in (("matsuura_mx330", "%\nO0001\nM30\n%\n"), ("yl569", "M30\n"), ("xyzac_trt", "M2\n")):
+        program = tmp_path / "p.nc"
+        program.write_text(text, encoding="utf-8")
+        standing = trunnion.verify(program, machine=machine).standing
+        assert standing.told.startswith("Nothing checked: there is no motion; ")
