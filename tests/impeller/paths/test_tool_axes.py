@@ -187,14 +187,14 @@ def beside_the_blade(impeller: Impeller, count: int = 8) -> PassFamily:
     return PassFamily(tuple(passes), 2.0, Way.ONE_WAY)
 
 
-def on_the_hub(impeller: Impeller, count: int = 5, points: int = 60) -> PassFamily:
+def on_the_hub(impeller: Impeller) -> PassFamily:
     """Rows of a ball of 6 mm on the hub, in the middle of the first channel."""
     passes = []
-    w = np.linspace(0.05, 0.9, points)
-    for share in np.linspace(0.4, 0.6, count):
-        foot = rotated(impeller.blade.frames(w, np.zeros(points))[0], share * np.pi / 3.0)
+    w = np.linspace(0.05, 0.9, 60)
+    for share in np.linspace(0.4, 0.6, 5):
+        foot = rotated(impeller.blade.frames(w, np.zeros(60))[0], share * np.pi / 3.0)
         distance, normal, _ = impeller.hub.distances(foot)
-        place = np.column_stack((w, np.full(points, (share - 0.4) / 0.2)))
+        place = np.column_stack((w, np.full(60, (share - 0.4) / 0.2)))
         passes.append(Pass(foot + (3.0 - distance)[:, None] * normal, normal, place))
     return PassFamily(tuple(passes), 3.0, Way.BOTH_WAYS)
 
@@ -241,7 +241,7 @@ def test_a_tool_too_short_for_the_published_impeller_is_refused(published: tuple
     impeller, obstacles = published
     stub = ball(6.0, flute_length=6.0, length=8.0, holder=(BodyPiece(20, 24, 30), BodyPiece(40, 40, 20)))
     with pytest.raises(InputError, match=r"holder and .* do not clear each other at .* along, .* across \(radius"):
-        choose_axes(on_the_hub(impeller, 3, 20), stub, obstacles)
+        choose_axes(on_the_hub(impeller), stub, obstacles)
 
 
 @pytest.mark.parametrize(
