@@ -238,3 +238,17 @@ def test_a_program_that_moves_nothing_is_not_passed(tmp_path: Path) -> None:
         program.write_text(text, encoding="utf-8")
         standing = trunnion.verify(program, machine=machine).standing
         assert standing.told.startswith("Nothing checked: there is no motion; ")
+
+
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "yl569", "dmu65", "hs664rt", "xyzac_trt"])
+def test_what_is_compared_with_no_point_is_not_checked(machine: str, tmp_path: Path) -> None:
+    """A program that moves nothing has nothing at the points of the CL file."""
+    program, cl = tmp_path / "p.nc", tmp_path / "p.cls"
+    cl.write_text(f"{CL_HEAD}RAPID\nGOTO/0,0,50\nFEDRAT/MMPM,500\nGOTO/10,0,5\n{CL_FOOT}", encoding="utf-8")
+    empty = "0 BEGIN PGM P MM\n1 END PGM P MM\n" if machine == "dmu65" else "M30\n"
+    program.write_text(empty, encoding="utf-8")
+    found = {check.key: check for check in trunnion.verify(program, machine=machine, cl=cl).checks}
+    assert not found["order"].passed
+    for key in ("kind", "feed", "spindle", "tool", "coolant", "stops"):
+        assert found[key].state == "not checked"
+        assert found[key].told.startswith("no block goes to any CL point")

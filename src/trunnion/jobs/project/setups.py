@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.definitions import Table
 from trunnion.errors import InputError
 from trunnion.jobs.inputs.reading import as_machine
-from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.jobs.inputs.settings import SettingValue, work_offset_setting
 from trunnion.jobs.inputs.simulation_input import Places, SetupInput, with_place
 from trunnion.jobs.project.keys import KEYS, OF_SETUP, POSTED, STATED
