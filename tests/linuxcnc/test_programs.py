@@ -50,7 +50,7 @@ def roomy(machine: Machine) -> Machine:
     return replace(machine, axes=axes, workpiece_zero=(0.0, 0.0, 0.0), tool_length=25.4)
 
 
-#: Their workpiece and tool are known, as programs without TCP want it; the slides have room for everything.
+#: Their workpiece and tool are known, as programs without TCP need it; the slides have room for everything.
 MACHINES = {name: roomy(load_machine(name)) for name in ("xyzac_trt", "xyzbc_trt", "linuxcnc_5axis")}
 CONTROLS = {name: load_control(machine.control) for name, machine in MACHINES.items()}
 

@@ -18,7 +18,7 @@ from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
 from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
-from trunnion.jobs.inputs.stated_setup import LengthLike, set_up_for_all
+from trunnion.jobs.inputs.stated_setup import LengthLike, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.placing import place, unknown_length
 from trunnion.jobs.place.posting import post_placed
@@ -122,8 +122,8 @@ def fit(
     zero : (3,) float, mm
         Workpiece zero of the NC program on its own machine, where it moves linear axes to positions of the machine.
     tool_length
-        Of the tool, gauge point to tip, mm, on all machines; by default the greatest that the CL files state for tools
-        in the spindle. Where none is known the answer is open at best.
+        Of the tool, gauge point to tip, mm, on all machines, or ``{"1": 110.0, "2": 85.0}`` of each tool; by default
+        the greatest that the CL files state for tools in the spindle. Where none is known the answer is open at best.
     units, dialect, strict
         How the CL files are read, as ``trunnion.read_cl`` has it.
     hooks
@@ -260,7 +260,7 @@ def _fit(
     """Return what a machine makes of it; whatever is wrong with the machine is its reason."""
     key, hooks = asked.key if isinstance(asked, Machine) else os.fspath(asked), stated["hooks"]
     try:
-        machine = set_up_for_all(as_machine(asked, "machines"), None, tool_length)
+        machine = set_up_machine(as_machine(asked, "machines"), None, tool_length)
         if not np.isfinite(machine.limits[list(machine.linear)]).any():
             return _without_limits(machine, toolpaths, hooks)
         found = place(toolpaths, machine=machine, turns=stated["turns"], hooks=hooks)
