@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.support.operations import PATHS
+from tests.support.two_operations import PATHS
 from trunnion.options.words import PROOF_SETTINGS
 from trunnion.verification import Check
 

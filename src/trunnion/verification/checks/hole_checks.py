@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -15,7 +14,6 @@ from trunnion.verification.checks.tool_checks import length_fault, tool_fault
 from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.expected.holes import Hole
 from trunnion.verification.expected.spindle_and_tool import names_tool
-from trunnion.verification.kinematics.positioning_moves import comes_from_home, first_workpiece_position
 from trunnion.verification.matching.hole_approaches import clearance_between_holes
 from trunnion.verification.matching.hole_matching import MatchedHole, match_holes
 from trunnion.verification.matching.pairs import Matching
@@ -114,24 +112,17 @@ def _slanted_rapids(context: ComparedContext, before: _Drilled | None, now: _Dri
     if _has_pair_between(context.matching, before.match.end, now.match.first):
         return
     rows = np.arange(before.match.end, now.match.first + 1)
-    if not len(rows):
-        return
+    if not len(rows) or context.run.state.machine_frame.at(rows).any():
+        return  # from home the tool comes down as to a first hole
     positions = context.run.positions(np.append(before.match.end - 1, rows))
     steps, axis = np.diff(positions.tip, axis=0), now.hole.axis
     rise = steps @ axis
     aside = np.linalg.norm(steps - rise[:, None] * axis, axis=1)
     still = np.abs(np.diff(positions.axis, axis=0)).max(axis=1) <= _SAME_AXIS
-    slanted = still & (rise < -_SLANT) & (aside > _SLANT) & ~context.run.state.machine_frame.at(rows)
-    slants = (k for k in np.flatnonzero(slanted).tolist() if not _comes_from_retract(context.run, int(rows[k])))
-    for k in islice(slants, 1):
+    slanted = still & (rise < -_SLANT) & (aside > _SLANT)
+    for k in np.flatnonzero(slanted)[:1].tolist():
         side, down = float(aside[k]), -float(rise[k])
         yield HoleFault(int(rows[k]), side, Wording("holes", "slanted", aside=side, down=down))
-
-
-def _comes_from_retract(run: Run, row: int) -> bool:
-    """Whether a row leads from home, or from where a word has retracted the tool, to the next hole."""
-    retracts = (event.before_row for event in run.events if event.kind == "retract")
-    return comes_from_home(run, row) or any(first_workpiece_position(run, at, row + 1) == row for at in retracts)
 
 
 def _has_pair_between(matching: Matching, first: int, last: int) -> bool:

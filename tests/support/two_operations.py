@@ -1,4 +1,4 @@
-"""CL files of operations that follow one another, and of one within which the tool axis changes."""
+"""Two operations with one tool, and holes in three planes, as CL files."""
 
 OPERATION = """TOOL PATH/{name},TOOL,D{tool}
 TLDATA/MILL,1{tool}.0000,0.0000,75.0000,0.0000,0.0000
@@ -22,6 +22,7 @@ UP, TILTED, MORE = "0.0,0.0,1.0", "0.0,0.5,0.8660254", "0.0,0.5150381,0.8571673"
 
 
 def operation(name: str, x: float, axis: str = UP, last: str = "", tool: int = 1) -> str:
+    """Return a cut of 10 mm from x on, from one tool axis to another."""
     return OPERATION.format(name=name, x=x, end=x + 10.0, axis=axis, last=last or axis, tool=tool)
 
 
