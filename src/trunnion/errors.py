@@ -167,5 +167,9 @@ class InputError(TrunnionError):
     """A file, a definition or a command cannot be used."""
 
 
+class MissingExtraError(InputError):
+    """An optional package is not installed: nothing can be said of what was to be tried with it."""
+
+
 class RefusedError(TrunnionError):
     """The input is understood, but the program that it asks for must not run."""

@@ -181,3 +181,23 @@ def test_a_command_line_leaves_nothing_for_the_next_one() -> None:
     again = parse(post)
     assert (more.settings, more.subprograms) == ([("tool", "7"), ("dialect", "apt")], ["a.spf"])
     assert (again.settings, again.subprograms, again.dialect) == ([], [], None)
+
+
+@pytest.mark.parametrize(
+    ("words", "cure"),
+    [
+        (["--zero", "0", "0", "0"], "numbers of one value are joined by commas: --zero 1,2,3"),
+        (["-o", "x.nc"], "did you mean --output?"),
+    ],
+)
+def test_what_is_typed_as_elsewhere_has_a_cure(words: list[str], cure: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["post", "x.cls", "--machine", "yl569", *words])
+    assert cure in capsys.readouterr().err
+
+
+def test_help_is_a_word_too(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["help", "post"])
+    assert not ended.value.code
+    assert "trunnion post" in capsys.readouterr().out

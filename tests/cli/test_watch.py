@@ -109,7 +109,7 @@ def test_what_is_cut_off_leaves_the_last_program_and_says_so(tmp_path: Path, cap
         "NOT posted"
     ] * 2 + ["posted: " + str(program)[:2]]
     assert kept[0] == kept[1] == kept[2]
-    assert err.count(f"{program}: warning: of before this change: do not run until it is posted again") == 2
+    assert err.count(f"{program}: warning: from before this change: do not run it until it is posted again") == 2
     assert "the file is cut off" in err
 
 

@@ -123,7 +123,7 @@ def converted(text: str, machine: Machine, folder: Path) -> Conversion:
     program.write_text(text)
     run = run_program(program, machine)
     assert run.errors == ()
-    return convert(run, load_control(machine.control.unread_copy()))
+    return convert(run, load_control(machine.control))
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -298,4 +298,4 @@ def test_a_retract_of_which_no_row_tells_divides_operations_of_one_tool(tmp_path
 def test_a_program_that_leaves_at_feed_in_machine_positions_goes_over() -> None:
     machine = load_machine("dmu65")
     run = run_program(TESTS / "data" / "cases" / "pile" / "R7_m91_at_feed.h", machine)
-    assert convert(run, load_control(machine.control.unread_copy())).errors == ()
+    assert convert(run, load_control(machine.control)).errors == ()

@@ -42,7 +42,7 @@ def sites() -> Iterator[tuple[str, Site]]:
     for name in shipped_machines():
         machine = roomy(load_machine(name))
         try:
-            control = load_control(machine.control.unread_copy())
+            control = load_control(machine.control)
         except InputError:
             continue
         if control.tcp and "approach_five_axis" in control.templates:

@@ -96,7 +96,7 @@ def converted(machine: str, text: str, folder: Path) -> Conversion:
     site = load_machine(machine)
     run = run_program(program, site)
     assert run.errors == (), [str(error) for error in run.errors]
-    return convert(run, load_control(site.control.unread_copy()))
+    return convert(run, load_control(site.control))
 
 
 def one(machine: str, text: str, folder: Path) -> Operation:

@@ -50,7 +50,7 @@ def test_what_post_has_proven_verify_proves_with_the_same_settings(
     failed = {check.key: check.summary for check in found.checks if check.state == "FAIL"}
     assert set(failed) == {key}
     (name, value), *_ = settings.items()
-    assert f"posted with {name}={value}, repeat that setting" in failed[key]
+    assert f"posted with {name}={value}, repeat that (--set {name}={value})" in failed[key]
 
 
 def test_settings_without_which_the_proof_is_the_same_are_refused(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ extends = "{family}"
 
 def site_of(machine: Machine) -> Site:
     """A machine with its control, and room for everything."""
-    control = load_control(machine.control.unread_copy())
+    control = load_control(machine.control)
     formats = control.number_formats(three_axis=False)
     half = [0.5 * 10.0 ** -formats[key].decimals for key in ("coordinate", "angle")]
     return Site(roomy(machine), control, half[0], half[1])

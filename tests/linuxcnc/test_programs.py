@@ -50,9 +50,9 @@ def roomy(machine: Machine) -> Machine:
     return replace(machine, axes=axes, workpiece_zero=(0.0, 0.0, 0.0), tool_length=25.4)
 
 
-#: Their workpiece and tool are known, as programs without TCP want it; the slides have room for everything.
+#: Their workpiece and tool are known, as programs without TCP need it; the slides have room for everything.
 MACHINES = {name: roomy(load_machine(name)) for name in ("xyzac_trt", "xyzbc_trt", "linuxcnc_5axis")}
-CONTROLS = {name: load_control(machine.control.unread_copy()) for name, machine in MACHINES.items()}
+CONTROLS = {name: load_control(machine.control) for name, machine in MACHINES.items()}
 
 #: What LinuxCNC has words for; compensated paths are judged by it as paths of another tool.
 KINDS = {name: kind for name, kind in SAYABLE.items() if name not in ("comp", "coolant")} | {

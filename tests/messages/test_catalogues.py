@@ -51,7 +51,7 @@ NO_SENTENCES = {
 }
 
 #: In modules that say nothing themselves: values of data, and what stands for the name of a file.
-WORDS_OF_DATA = {"not checked", "from home", "CL file"}
+WORDS_OF_DATA = {"not checked", "from home", "CL file", "swivel data"}
 
 #: Words of a sentence.
 MOST_WORDS = 35
@@ -194,7 +194,7 @@ def test_checks_and_comparisons_have_no_words_of_their_own() -> None:
     texts_of_their_own = [
         f"{path.relative_to(SOURCE)}:{node.lineno}: {ast.unparse(node)}"
         for path, tree in trees().items()
-        if "verification" in path.parts and "comparison" not in path.parts
+        if "verification" in path.parts
         for node in words_in(tree)
     ]
     assert not texts_of_their_own, "\n".join(texts_of_their_own)

@@ -30,8 +30,8 @@ DMU65 = replace(
     (shipped_machines := load_machine("dmu65")),
     axes=tuple(replace(axis, low=-360.0, high=360.0) if axis.is_rotary else axis for axis in shipped_machines.axes),
 )
-SINUMERIK = dict(load_control(YL569.control.unread_copy()).settings)
-KLARTEXT = dict(load_control(DMU65.control.unread_copy()).settings)
+SINUMERIK = dict(load_control(YL569.control).settings)
+KLARTEXT = dict(load_control(DMU65.control).settings)
 
 
 def turned(axis: int, degrees: float) -> Floats:

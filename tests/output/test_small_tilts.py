@@ -25,7 +25,7 @@ from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
 
 MACHINES = {name: load_machine(name) for name in shipped_machines()}
-CONTROLS = {name: load_control(machine.control.unread_copy()) for name, machine in MACHINES.items()}
+CONTROLS = {name: load_control(machine.control) for name, machine in MACHINES.items()}
 TIPS = np.array([[0.0, 0.0, 50.0], [10.0, 0.0, 5.0], [20.0, 3.0, 5.0], [60.0, -40.0, 2.0]])
 
 

@@ -120,7 +120,7 @@ def written(
 ) -> tuple[Run, WrittenProgram] | None:
     """The program in one file as it runs, and in several; None where there can be none."""
     model = MACHINES[machine]
-    control = load_control(model.control.unread_copy())
+    control = load_control(model.control)
     planned = plan(
         [toolpath],
         model,

@@ -26,7 +26,7 @@ from trunnion.verification import Verification, failures, verify
 
 DMU65 = GOLDEN / "dmu65"
 OWN = {name: load_machine(name) for name in ("dmu65", "mikron_600u", "ucp800")}
-CONTROLS = {name: load_control(machine.control.unread_copy()) for name, machine in OWN.items()}
+CONTROLS = {name: load_control(machine.control) for name, machine in OWN.items()}
 
 #: Every shipped machine, with the control of one of these.
 MACHINES = {

@@ -11,7 +11,7 @@ from trunnion.machines import load_machine, shipped_machines
 from trunnion.model.toolpath import LoadTool, Moves, SpindleOn, Toolpath
 
 SINUMERIK = load_machine("yl569").control
-CONTROL = load_control(SINUMERIK.unread_copy())
+CONTROL = load_control(SINUMERIK)
 
 #: Every shipped machine with a control whose programs can be written.
 MACHINES = {name: replace(at_zero(name), control=SINUMERIK.unread_copy()) for name in shipped_machines()}

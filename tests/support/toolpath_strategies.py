@@ -105,7 +105,14 @@ def events(draw: st.DrawFn, rows: int, kinds: dict[str, st.SearchStrategy[Any]])
     # an operation begins with one tool, from one point
     first = {type(event): event for row, event in placed if row == 0 and isinstance(event, From | LoadTool)}
     kept = [(row, event) for row, event in placed if row or event is first.get(type(event), event)]
-    return tuple(replace(event, row=row) for row, event in sorted(kept, key=lambda pair: pair[0]))
+    ordered = tuple(replace(event, row=row) for row, event in sorted(kept, key=lambda pair: pair[0]))
+    return tuple(event for at, event in enumerate(ordered) if not _is_load_in_cycle(event, ordered[:at]))
+
+
+def _is_load_in_cycle(event: Event, before: tuple[Event, ...]) -> bool:
+    """Whether a tool is loaded while a cycle is on: readers of CL files refuse the holes behind it."""
+    cycles = [each for each in before if isinstance(each, CycleOn | CycleOff)]
+    return isinstance(event, LoadTool) and bool(cycles) and isinstance(cycles[-1], CycleOn)
 
 
 @st.composite

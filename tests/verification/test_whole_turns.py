@@ -14,7 +14,7 @@ SOURCE = TESTS / "data" / "cases" / "contour.cls"
 #: By machine: the block that cuts to (20, 12.5), and the next one, to Y25.
 BLOCKS = {
     "yl569": ("N680 X20. Y12.5 Z-2.25", "N690 Y25."),
-    "dmu65": ("52 L X+20 Y+12.5 Z-2.25", "53 L Y+25"),
+    "dmu65": ("53 L X+20 Y+12.5 Z-2.25", "54 L Y+25"),
     "matsuura_mx330": ("N350 X20. Y12.5 Z-2.25", "N360 Y25."),
     "haas_umc750": ("N330 X20. Y12.5 Z-2.25", "N340 Y25."),
     "xyzac_trt": ("N400 X20. Y12.5 Z-2.25", "N410 Y25."),

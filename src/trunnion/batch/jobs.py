@@ -236,7 +236,7 @@ def _extensions(action: Action, said: Mapping[str, Any], machines: Mapping[str, 
         job = prepare(machines["machine"], said.get("settings"))
         return Extensions("", job.control.extension)
     machine = machines.get("machine")
-    read = load_control(machine.control.unread_copy()).extension if machine is not None else ""
+    read = load_control(machine.control).extension if machine is not None else ""
     if action in NOTED:
         return Extensions(read, "")
     if bool(said.get("to_machine")) is bool(said.get("to_cl")):

@@ -1,6 +1,6 @@
 """Which points of CL files the tip reaches."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -33,31 +33,40 @@ class PathReach:
     no_travel_line: Annotated[int, Figure("first_line", none=0, within="no_travel")]
 
 
-def path_reach(machine: Machine, toolpaths: Sequence[Toolpath], step: float) -> tuple[PathReach, ...]:
-    """Judge the points of CL files, in the coordinates of the first operation."""
+def path_reach(
+    machine_of: Callable[[Operation], Machine], toolpaths: Sequence[Toolpath], step: float
+) -> tuple[PathReach, ...]:
+    """Judge the points of CL files, in the coordinates of the first operation; each has a machine with its own tool."""
     operations = [operation for toolpath in toolpaths for operation in toolpath.operations if len(operation.moves)]
     if not operations:
         return ()
     frame = operations[0].frame
     return tuple(
-        _of_file(machine, each.file, [into_frame(one, frame) for one in each.operations if len(one.moves)], step)
+        _of_file(
+            each.file, [(machine_of(one), into_frame(one, frame)) for one in each.operations if len(one.moves)], step
+        )
         for each in toolpaths
         if any(len(one.moves) for one in each.operations)
     )
 
 
-def _of_file(machine: Machine, file: str, operations: Sequence[Operation], step: float) -> PathReach:
-    tip = np.concatenate([one.moves.tip for one in operations])
-    axis = np.concatenate([one.moves.axis for one in operations])
-    line = np.concatenate([one.moves.line for one in operations])
-    found = reached_points(machine, tip[:, None], axis, step)
-    tilts = _tilts(axis)
+def _of_file(file: str, operations: Sequence[tuple[Machine, Operation]], step: float) -> PathReach:
+    tip = np.concatenate([one.moves.tip for _, one in operations])
+    axis = np.concatenate([one.moves.axis for _, one in operations])
+    line = np.concatenate([one.moves.line for _, one in operations])
+    tilts, has_axis, has_travel = _tilts(axis), np.zeros(len(tip), np.bool_), np.zeros(len(tip), np.bool_)
+    machines = {id(machine): machine for machine, _ in operations}
+    whose = np.repeat([id(machine) for machine, _ in operations], [len(one.moves) for _, one in operations])
+    for key, machine in machines.items():
+        rows = np.flatnonzero(whose == key)
+        found = reached_points(machine, tip[rows][:, None], axis[rows], step)
+        has_axis[rows], has_travel[rows] = found.axis, found.travel
     return PathReach(
         file,
         len(tip),
         (float(tilts.min()), float(tilts.max())),
-        *_first(~found.axis, line),
-        *_first(found.axis & ~found.travel, line),
+        *_first(~has_axis, line),
+        *_first(has_axis & ~has_travel, line),
     )
 
 

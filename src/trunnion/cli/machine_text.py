@@ -145,7 +145,7 @@ def _cells(machine: Machine) -> tuple[str, ...]:
         kind,
         ", ".join(_turn_text(axis) for axis in reversed(rotary)),
         _slide_travel(sorted(slides, key=lambda each: each.name)),
-        load_control(machine.control.unread_copy()).name,
+        load_control(machine.control).name,
         machine.name,
     )
 

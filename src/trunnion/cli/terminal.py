@@ -94,7 +94,7 @@ def warn_of_old(names: Iterable[str]) -> None:
     """Say of programs and papers that are there that they are not those of a post that has just failed."""
     old = [name for name in names if name != "-" and Path(name).is_file()]
     if old:
-        tell(f"{', '.join(old)}: warning: of before this change: do not run until it is posted again")
+        tell(f"{', '.join(old)}: warning: from before this change: do not run it until it is posted again")
 
 
 def check_unnamed(target: str, *, alone: bool = True) -> None:

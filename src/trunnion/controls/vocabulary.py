@@ -92,8 +92,9 @@ PROGRAM_MEANINGS: Final = {
     "stays, and retracts elsewhere.",
     "keep_rotary": "With on, the rotary axes stay at their tilt on the way home where the next operation begins with "
     "it; with same_tool only where the tool stays, too.",
-    "first_approach": "With in_turn, axes move one group after the other at the start of an operation: the rotary "
-    "axes, those across the tool, the one along it; as_control does so where the control's definition says it.",
+    "first_approach": "With in_turn, axes move one group after the other at the start of an operation, and behind "
+    "turns to another plane or hole within one: the rotary axes, those across the tool, the one along it; as_control "
+    "does so where the control's definition says it.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.

@@ -39,6 +39,7 @@ CATALOGUES: Final = {
     "RCH": "capability",
     "SIM": "simulation",
     "TWN": "twin",
+    "comparison": "comparison",
 }
 
 #: The files of what checks say, of sentences that stand around others, and of parts that stand in others.
@@ -71,11 +72,12 @@ class Words:
 LIBRARY: Final = Words()
 
 
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True, init=False, repr=False)
 class Wording:
     """What is said, as data: a text of the catalogues and what is filled in.
 
-    code        such as ``CL110``; the key of the check that says it, or ``all`` for what all checks say
+    code        such as ``CL110``; the key of the check that says it, or ``all``
+                for what all checks say; or ``comparison``
     variant     which text of the code; empty: the parameters ``what`` and ``cure`` are the text, which is another's
     parameters  numbers, texts and other wordings by name, in alphabetical order
     around      sentences that stand around it, the inner one first: their names and their parameters
@@ -104,6 +106,10 @@ class Wording:
 
     def __str__(self) -> str:
         return self.what
+
+    def __repr__(self) -> str:
+        """Return what a notebook shows of it, in records too: the data would hide what is said."""
+        return f"Wording({self.what!r})"
 
     def text(self, part: Part, words: Words = LIBRARY, language: str = "en") -> str:
         """Return the fault or its cure, in the words of who asks."""
@@ -203,7 +209,7 @@ def _inner_text(wording: Wording, part: Part, words: Words, language: str) -> st
     try:
         if not wording.code:
             return filled_in(catalogue(language, PHRASES)[wording.variant], words, parameters)
-        file = CATALOGUES.get(wording.code[:-3], CHECKS)
+        file = CATALOGUES.get(wording.code.rstrip("0123456789"), CHECKS)
         variant = catalogue(language, file)[wording.code][wording.variant]
         return filled_in(variant.get(part, ""), words, parameters)
     except (LookupError, OSError, ValueError, TypeError):

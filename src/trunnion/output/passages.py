@@ -4,10 +4,10 @@ In:     a program and its tools.
 Out:    for each motion that ends an operation, the way to the next one; heights along the tool.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import Final
 
 import numpy as np
@@ -16,6 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import DRAW_BACK, FOLLOWING, LEAVING
 from trunnion.machines import Machine, slide_positions
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CutterComp, CycleOff, CycleOn, Kind
 from trunnion.output.coordinates.approach_leg import height_at_home
@@ -47,11 +48,13 @@ class Way:
 
     keeps_rotary  the rotary axes do not return
     distance      how far the tool leaves along its axis, mm, with CLEARANCE
+    hindrance     why it is not the way that the settings ask for: a phrase; None: it is
     """
 
     passage: Passage = Passage.HOME
     keeps_rotary: bool = False
     distance: float = 0.0
+    hindrance: Wording | None = None
 
     def end_template(self, suffix: str) -> str:
         """Return the template that begins the way from an operation; empty for none."""
@@ -68,10 +71,17 @@ class Way:
 class Passages:
     """Knows the ways between the operations of a program."""
 
-    def __init__(self, program: Program, tools: ToolCalls) -> None:
-        self._program, self._tools = program, tools
+    def __init__(self, program: Program, tools: ToolCalls, *, subprograms: bool = False) -> None:
+        """Take a program, with a subprogram for each operation or none."""
+        self._program, self._tools, self._subprograms = program, tools, subprograms
         self._operation = list(accumulate(int(motion.starts_operation) for motion in program.motions))
         self._heights: dict[bytes, float] = {}
+
+    def ways(self) -> Iterator[tuple[Motion, Motion, Way]]:
+        """Yield the last motion of each operation, the first one of the next, and the way between them."""
+        for number, (before, motion) in enumerate(pairwise(self._program.motions)):
+            if motion.starts_operation:
+                yield before, motion, self.way(number)
 
     def way(self, number: int) -> Way:
         """Return the way from a motion, by its index, that ends an operation; that of the last one leads home."""
@@ -82,34 +92,53 @@ class Passages:
         setting = self._program.effective_setting("keep_rotary", before.operation)
         same_tool = self._same_tool(number)
         keeps = setting == "on" or (setting == "same_tool" and same_tool)
-        passage = self._passage(before, motion) if same_tool else Passage.HOME
-        same_pose = (keeps or passage is Passage.CLEARANCE) and self._same_pose(before, motion)
-        keeps = keeps and same_pose and not self._plane_stays_on(before, motion)
-        distance = self._distance(before, motion) if passage is Passage.CLEARANCE and same_pose else None
-        if passage is Passage.CLEARANCE and distance is None:
-            passage = Passage.RETRACT
-        return Way(passage, keeps, distance or 0.0)
+        passage = Passage(self._program.effective_setting("same_tool", before.operation) or Passage.HOME)
+        hindrance = self._enters_from_home(before) if same_tool and passage is not Passage.HOME else None
+        if self._subprograms:
+            return Way(hindrance=hindrance)
+        if not same_tool or hindrance is not None:
+            passage = Passage.HOME
+        keeps = keeps and self._same_pose(before, motion) and not self._plane_stays_on(before, motion)
+        if passage is not Passage.CLEARANCE:
+            return Way(passage, keeps, hindrance=hindrance)
+        if (hindrance := self._hindrance(before, motion)) is not None:
+            return Way(Passage.RETRACT, keeps, hindrance=hindrance)
+        axis = before.operation.moves.axis[-1]
+        return Way(passage, keeps, self.height(axis) - float(before.operation.moves.tip[-1] @ axis))
 
     def height(self, axis: Floats) -> float:
         """Return the height above all operations along a tool axis (3,), from the program's zero, mm."""
-        clearance = float(self._program.effective_setting("operation_clearance") or 0.0)
+        return self.highest(axis) + float(self._program.effective_setting("operation_clearance") or 0.0)
+
+    def highest(self, axis: Floats) -> float:
+        """Return how high the operations come along a tool axis (3,), from the program's zero, mm."""
         key = axis.tobytes()
         if key not in self._heights:
             self._heights[key] = highest_point(self._program.motions, axis)
-        return self._heights[key] + clearance
+        return self._heights[key]
 
     def first_leg(self, motion: Motion) -> Floats | None:
         """Return where the first leg of an approach under TCP ends, (3,) mm, straight above its first point along the
         tool, where axes move one group after the other: with that along the spindle at home, or above all operations.
+
+        None where they need not, or cannot: so high the linear axes do not reach.
         """
         if motion.mode is not MachiningMode.TCP or not self.in_turn(motion):
             return None
-        tip, axis = motion.operation.moves.tip[0], motion.operation.moves.axis[0]
-        home = height_at_home(self._program.machine, tip, motion.rotary[0])
-        return self.above(motion, self.height(axis) if home is None else home)
+        machine, tip, axis = (
+            self._program.machine_of(motion),
+            motion.operation.moves.tip[0],
+            motion.operation.moves.axis[0],
+        )
+        home = height_at_home(machine, tip, motion.rotary[0])
+        place = self.above(motion, self.height(axis) if home is None else home)
+        if not _beyond_travel(machine, place[None], motion.rotary):
+            return place
+        lowest = self.above(motion, self.highest(axis))
+        return None if _beyond_travel(machine, lowest[None], motion.rotary) else lowest
 
     def in_turn(self, motion: Motion) -> bool:
-        """Whether the axes move one group after the other in the first approach of an operation."""
+        """Whether the axes move one group after the other from home to an operation, and behind turns within it."""
         return self._program.effective_setting("first_approach", motion.operation) == "in_turn"
 
     def above(self, motion: Motion, height: float | None = None) -> Floats:
@@ -137,42 +166,54 @@ class Passages:
         suffixes = (self._program.template_suffix(motion) for motion in motions)
         return any(f"{DRAW_BACK}_{suffix}" in self._program.control.templates for suffix in suffixes)
 
-    def _passage(self, before: Motion, motion: Motion) -> Passage:
-        """Return the way that the settings ask for, where the control has it."""
+    def _enters_from_home(self, before: Motion) -> Wording | None:
+        """Return why the next operation begins at home, whatever the settings ask for; None: it need not."""
         program, templates = self._program, self._program.control.templates
-        asked = Passage(program.effective_setting("same_tool", before.operation) or Passage.HOME)
-        if {FOLLOWING, f"{LEAVING}_{program.template_suffix(before)}"} - templates.keys():
-            return Passage.HOME
         if program.effective_setting("restart") == "on":  # every operation can be entered
-            return Passage.HOME
-        stops = program.effective_setting("stop_between") == "on"
-        differs = program.template_suffix(before) != program.template_suffix(motion)
-        return Passage.RETRACT if asked is Passage.CLEARANCE and (stops or differs) else asked
+            return phrase("way_restart")
+        if self._subprograms:  # a subprogram depends on nothing before it
+            return phrase("way_subprograms")
+        needed = (FOLLOWING, f"{LEAVING}_{program.template_suffix(before)}")
+        missing = tuple(name for name in needed if name not in templates)
+        return phrase("way_templates", names=missing) if missing else None
 
-    def _distance(self, before: Motion, motion: Motion) -> float | None:
-        """Return how far the tool leaves along its axis to the height above all; None if it must retract instead."""
-        ends, begins = before.operation, motion.operation
-        if before.mode is MachiningMode.WITHOUT_TCP or not _same_plane(before, motion) or before.ends_in_hole:
-            return None
-        if any(isinstance(event, CycleOn | CycleOff) for each in (ends, begins) for event in each.events):
-            return None
+    def _hindrance(self, before: Motion, motion: Motion) -> Wording | None:
+        """Return why the tool cannot go on above all operations; None: it can."""
+        program, ends, begins = self._program, before.operation, motion.operation
+        if program.effective_setting("stop_between") == "on":
+            return phrase("way_stop")
+        if before.mode is MachiningMode.WITHOUT_TCP or motion.mode is MachiningMode.WITHOUT_TCP:
+            return phrase("way_without_tcp")
+        if program.template_suffix(before) != program.template_suffix(motion):
+            return phrase("way_other_mode")
+        if not self._same_pose(before, motion):
+            return phrase("way_turns")
+        if not _same_plane(before, motion):
+            return phrase("way_other_plane")
+        if before.ends_in_hole or any(isinstance(e, CycleOn | CycleOff) for e in (*ends.events, *begins.events)):
+            return phrase("way_holes")
         if any(isinstance(event, CutterComp) and event.row == len(ends.moves) for event in ends.events):
-            return None
-        if begins.moves.kind[0] != Kind.RAPID or not self._same_settings(before, motion):
-            return None
+            return phrase("way_compensation")
+        if begins.moves.kind[0] != Kind.RAPID:
+            return phrase("way_cuts")
+        if changed := self._changed(before, motion):
+            return phrase("way_settings", names=changed)
         axis, tips = ends.moves.axis[-1], (ends.moves.tip[-1], begins.moves.tip[0])
         height = self.height(axis)
         raised = np.array([tip + (height - float(tip @ axis)) * axis for tip in tips])
-        return height - float(tips[0] @ axis) if _within_travel(self._program.machine, raised, motion.rotary) else None
+        beyond = _beyond_travel(program.machine, raised, motion.rotary)
+        return phrase("way_travel", axes=beyond) if beyond else None
 
-    def _same_settings(self, before: Motion, motion: Motion) -> bool:
-        """Whether nothing changes that the approach of an operation states: work offset, tolerances, modes."""
-        given = [self._program.effective_settings(each.operation) for each in (before, motion)]
-        stated = [
-            (each.operation.intol, each.operation.outtol, self._program.method_of(each.operation))
-            for each in (before, motion)
-        ]
-        return given[0] == given[1] and stated[0] == stated[1]
+    def _changed(self, before: Motion, motion: Motion) -> tuple[str, ...]:
+        """Return what changes of all that the approach of an operation states: work offset, tolerances, modes."""
+        ends, begins = before.operation, motion.operation
+        one, other = (self._program.effective_settings(each) for each in (ends, begins))
+        found = [name for name in one | other if one.get(name) != other.get(name)]
+        found += ["INTOL"] if ends.intol != begins.intol else []
+        found += ["OUTTOL"] if ends.outtol != begins.outtol else []
+        if "method" not in found and self._program.method_of(ends) != self._program.method_of(begins):
+            found.append("method")
+        return tuple(found)
 
 
 def _same_plane(before: Motion, motion: Motion) -> bool:
@@ -182,12 +223,10 @@ def _same_plane(before: Motion, motion: Motion) -> bool:
     return bool(apart <= _SAME_PLANE) and before.plane.origin == motion.plane.origin
 
 
-def _within_travel(machine: Machine, tips: Floats, rotary: Floats) -> bool:
-    """Whether the linear axes reach tips (n, 3), as far as that is known."""
+def _beyond_travel(machine: Machine, tips: Floats, rotary: Floats) -> tuple[str, ...]:
+    """Return the linear axes that do not reach tips (n, 3), as far as that is known."""
     if machine.workpiece_zero is None or machine.tool_length is None:
-        return True
+        return ()
     joints = slide_positions(machine, tips, np.repeat(rotary[:1], len(tips), axis=0))
-    return all(
-        bool(((joints[:, k] >= machine.axes[k].low) & (joints[:, k] <= machine.axes[k].high)).all())
-        for k in machine.linear
-    )
+    axes = ((machine.axes[k], joints[:, k]) for k in machine.linear)
+    return tuple(axis.name for axis, at in axes if not bool(((at >= axis.low) & (at <= axis.high)).all()))

@@ -95,7 +95,7 @@ class _ProgramWriter:
         self._operation = 0
         self._edge = ""
         self._calls_each = program.effective_setting("restart") == "on"
-        self._passages = Passages(program, self._template_values.tools)
+        self._passages = Passages(program, self._template_values.tools, subprograms=subprograms is not None)
         self._way = Way()  # to the present operation
         self._previous_motion: Motion | None = None
         self._part: SweptPart | None = None
@@ -125,7 +125,7 @@ class _ProgramWriter:
                 raise error.at(self._program.file_of(motion.operation), motion.operation.line) from None
             if ends_operation:
                 self._switch_coolant_off(motion, k, ends_program)
-                self._way = self._way_from(k)
+                self._way = self._passages.way(k)
                 if "after_operation" in self._control.templates:
                     self._templates.write_place("after_operation", self._values(motion, k), motion)
                 self._end_operation_file(motion, k)
@@ -243,7 +243,7 @@ class _ProgramWriter:
         else:
             self._templates.write_place("between_planes", values, motion)
         from_plane = self._continues_from_plane(motion)
-        must_retract = from_plane and not self._may_turn_here(motion)
+        must_retract = from_plane and (self._passages.in_turn(motion) or not self._may_turn_here(motion))
         retracted = must_retract or not from_plane
         continues = motion.starts_operation and self._way.passage is Passage.CLEARANCE
         in_force = self._blocks.writer.modal_state() if continues else {}
@@ -258,7 +258,7 @@ class _ProgramWriter:
         else:
             self._approach(motion, suffix, values)
         self._templates.write_place("after_approach", values, motion)
-        way = self._way_from(number) if ends_operation else Way()
+        way = self._passages.way(number) if ends_operation else Way()
         if way.passage is Passage.CLEARANCE and way.distance > 0.0:
             motion = with_row_along_tool(motion, way.distance)
         written = replace(motion, operation=motion.as_written())
@@ -273,17 +273,11 @@ class _ProgramWriter:
         if ends_operation and end:
             self._templates.write(end, end_values, motion)
 
-    def _way_from(self, number: int) -> Way:
-        """Return the way from a motion that ends an operation; a subprogram of its own depends on nothing before it."""
-        return Way() if self._files is not None else self._passages.way(number)
-
     def _first_leg(self, motion: Motion, planned: Motion, *, continues: bool) -> Floats | None:
-        """Return where the first leg to an operation ends, (3,) mm in coordinates of its blocks; None: the control's.
+        """Return where the first leg from home ends, (3,) mm in coordinates of the blocks; None: the control's.
 
-        planned  the motion in coordinates of the workpiece
+        planned  the motion in coordinates of the workpiece: an operation, or what follows behind a turn within one
         """
-        if not motion.starts_operation:
-            return None
         if self._passages.in_turn(motion) and motion.mode is not MachiningMode.TCP:
             self._blocks.xy_before_z = True
         leg = self._passages.above(planned) if continues else self._passages.first_leg(planned)
@@ -324,7 +318,7 @@ class _ProgramWriter:
         ends_program = ends_program and self._files is None
         off, end = (
             f"M{self._control.coolant['OFF']}",
-            self._way_from(number).end_template(self._program.template_suffix(motion)),
+            self._passages.way(number).end_template(self._program.template_suffix(motion)),
         )
         ends = [end] if end else []
         ends += ["program_end"] if ends_program else []

@@ -1,6 +1,6 @@
 """What is found about the place of a part."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Annotated, ClassVar
@@ -175,6 +175,7 @@ class Placement:
     toolpaths  of CL files; empty for NC programs
     clamping  how the part is clamped, as the files state; turns and tilts come after that. None: they state nothing
     tool_length_mm    of the tool that linear axes keep their limits with; None: it is not known
+    tool_lengths_mm   of tools that have lengths of their own, by number or name, as they were stated
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     left_out  names of pairs of bodies that are not judged: at home they overlap, on one side of the machine
     table     of the machine's definition; None: it states none
@@ -201,6 +202,7 @@ class Placement:
         Figure("tilt_deg", take=attrgetter("tilt"), within="stated"),
     ] = None
     tool_length_mm: Annotated[float | None, NOT_DATA] = None
+    tool_lengths_mm: Annotated[Mapping[str, float], NOT_DATA] = field(default_factory=dict)
     nearest_anywhere: BodyDistance | None = None
     most_distance_mm: float | None = None
     left_out: tuple[tuple[str, str], ...] = ()

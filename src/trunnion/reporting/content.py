@@ -26,6 +26,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
 from trunnion.reporting.recorded_content import RecordedContent, recorded_content
 from trunnion.reporting.remarks import RemarkGroup, remark_groups
+from trunnion.reporting.set_up_values import OffsetZero, ToolLength, lengths_of, zeros_of
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
@@ -77,6 +78,8 @@ class ReportContent:
         Figure("turn_deg", take=attrgetter("turn"), after="program_units"),
         Figure("tilt_deg", take=attrgetter("tilt")),
     ] = None
+    zeros: Annotated[tuple[OffsetZero, ...], Figure("work_offsets", after="tilt_deg")] = ()
+    lengths: Annotated[tuple[ToolLength, ...], Figure("tool_lengths", after="work_offsets")] = ()
 
     @property
     def verdict(self) -> Verdict:
@@ -123,6 +126,8 @@ def collect_content(
         recorded=recorded_content(verification),
         clamping=verification.clamping,
         remarks=remark_groups(verification.remarks),
+        zeros=zeros_of(run),
+        lengths=lengths_of(run),
     )
 
 

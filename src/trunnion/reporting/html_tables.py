@@ -24,6 +24,7 @@ from trunnion.reporting.html_text import (
     with_unit,
 )
 from trunnion.reporting.remarks import RemarkGroup
+from trunnion.reporting.set_up_values import lengths_text, zeros_text
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification import Verdict, stand_lines
@@ -68,6 +69,8 @@ def _title(content: ReportContent) -> str:
     items = [
         ("Machine", content.machine),
         ("Control", content.control),
+        ("Workpiece zero, mm", zeros_text(content.zeros) if content.zeros else ""),
+        ("Tool length, mm", lengths_text(content.lengths)),
         ("Motions", f"{content.motions:,}".replace(",", "\u202f") if content.motions else ""),
         ("Time", format_duration(content.seconds) if content.motions else ""),
         ("in cuts", format_duration(content.cutting_seconds) if content.motions else ""),

@@ -148,6 +148,8 @@ class SetupSheet:
         Figure("program_units", take=attrgetter("units"), after="made_by"),
         Figure("turn_deg", take=lambda content: content.clamping and content.clamping.turn, after="zero"),
         Figure("tilt_deg", take=lambda content: content.clamping and content.clamping.tilt),
+        Figure("zeros", take=attrgetter("zeros"), after="work_offsets"),
+        Figure("tool_lengths", take=attrgetter("lengths"), after="tool_length"),
         Figure("seconds", take=attrgetter("seconds"), after="coordinates"),
         Figure("cutting_seconds", take=attrgetter("cutting_seconds")),
         Figure("axes", take=lambda content: to_data(content.axes, only=_OF_AXIS), after="operations"),

@@ -20,6 +20,7 @@ from trunnion.reporting.html_text import (
     prose,
     source_hash,
 )
+from trunnion.reporting.set_up_values import lengths_text, zeros_text
 from trunnion.reporting.setup_sheet import Range, SetupSheet, SheetOperation, SheetTool
 from trunnion.results import as_json, to_data
 from trunnion.verification import Verdict, stand_lines
@@ -74,26 +75,20 @@ def _title(sheet: SetupSheet) -> str:
         verdict = f'<div class="verdict{state}">{word.word}<small>{said}{warning}</small></div>'
     else:
         verdict = f'<div class="verdict bad">MUST NOT RUN AS IT IS<small>{escape(standing.told)}</small></div>'
-    zero = (
-        "not stated"
-        if sheet.zero is None
-        else " ".join(f"{name}{format_fixed(value)}" for name, value in zip("XYZ", sheet.zero, strict=True))
-    )
     items = [
         ("Machine", content.machine),
         ("Control", content.control),
         ("Title", sheet.title),
         ("Part", sheet.part),
         ("Work offset", ", ".join(sheet.offsets) or "none"),
-        ("Workpiece zero on the machine, mm", zero),
+        ("Workpiece zero on the machine, mm", zeros_text(content.zeros)),
         ("Program counts from", sheet.system),
         ("Machining time", format_duration(content.seconds)),
         ("of which in cuts", format_duration(content.cutting_seconds)),
         ("Not in these times", sheet.untimed),
         ("Lengths in the program", " and ".join(content.units)),
     ]
-    if sheet.tool_length is not None:
-        items.append(("Tool length from the gauge point, mm", format_fixed(sheet.tool_length)))
+    items.append(("Tool length from the gauge point, mm", lengths_text(content.lengths)))
     shown = ((name, escape(value)) for name, value in items if value)
     entries = "".join(f"<div><dt>{name}</dt><dd><bdi>{value}</bdi></dd></div>" for name, value in shown)
     return (

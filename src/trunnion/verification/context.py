@@ -1,5 +1,6 @@
 """What checks are given: the run, the settings, and the expected path with its matching; and how they name places."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import islice
@@ -55,6 +56,7 @@ class ExpectedValues:
     by_operation           tool, work offset and edge of single operations, by their names
     swivel_data            names of the swivel data set (_TC of CYCLE800) that the settings give; empty: any
     clearance              how far above all operations the tool may go from one to the next, mm; None: it must not
+    operation_clearance    how high above all operations the setting same_tool=clearance leads, mm, whether it is given
     in_turn                axes move one group after the other from home to an operation
     left_out               numbers of the OPSKIP of the CL files whose points are left out, counted through all of them
     stop_between           an optional stop stands between operations
@@ -90,13 +92,18 @@ class ExpectedValues:
     left_out: frozenset[int] = frozenset()
     stop_between: bool = False
     clearance: float | None = None
+    operation_clearance: float = math.inf
     in_turn: bool = False
     has_settings: frozenset[str] = frozenset()
     demands: tuple[str, ...] = ()
 
-    def repeated(self, fault: Wording, name: str, value: object) -> Wording:
-        """Return a fault with the setting of the post that would explain it, if the control has that setting."""
-        return fault.within("if_posted", name=name, value=value) if name in self.has_settings else fault
+    def repeated(self, fault: Wording, name: str, value: object, **others: object) -> Wording:
+        """Return a fault with the settings of the post that would explain it, if the control has them."""
+        given = {name: value, **others}
+        if not given.keys() <= self.has_settings:
+            return fault
+        texts = tuple(f"{key}={each}" for key, each in given.items())
+        return fault.within("if_posted", settings=texts)
 
     def for_operation(self, name: str) -> OperationSettings:
         """Tool, work offset and edge of an operation."""

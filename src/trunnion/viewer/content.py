@@ -164,7 +164,7 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
                    go together
     """
     differences = [
-        Mark("difference", row, *_place(first, row), each.text)
+        Mark("difference", row, *_place(first, row), each.wording.what)
         for each in alignment.differences
         for row in (first.rows.row(each.one),)
     ]

@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 import trunnion
 from tests.support.locations import YL569
 from trunnion.cli import main
-from trunnion.errors import InputError
+from trunnion.errors import InputError, MissingExtraError
 from trunnion.jobs.capability.fitting import FitStatus, MachineFit
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.loading import EXAMPLES
@@ -106,6 +107,12 @@ def test_a_part_that_is_turned_fits_where_it_did_not(tmp_path: Path) -> None:
     assert found.turn_deg == 90.0
     assert found.zero_mm is not None
     assert trunnion.place(file, machine="yl569", turns=[90.0]).margin_at(found.zero_mm, 90.0) > 0.0
+
+
+def test_without_a_package_no_machine_is_said_not_to_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    with pytest.raises(MissingExtraError, match=r"needs scipy\.optimize, which is not installed"):
+        trunnion.fit(tilted(tmp_path, 10.0), machines=["yl569", "dmu65"], tool_length=100.0)
 
 
 def test_what_is_wrong_with_one_machine_ends_no_other(tmp_path: Path, capfd: Capture) -> None:

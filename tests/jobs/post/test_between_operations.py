@@ -2,12 +2,14 @@
 
 import functools
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import trunnion
 from trunnion.options.words import PROOF_SETTINGS
+from trunnion.verification import Check
 
 MACHINES = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt", "linuxcnc_5axis")
 
@@ -68,11 +70,11 @@ class _Programs:
         assert result.passed
         return (result.text or "").splitlines()
 
-    def told(self, lines: list[str], base: str, path: str) -> str:
+    def checks(self, lines: list[str], base: str, path: str) -> dict[str, Check]:
         program = self._folder / "changed.nc"
         program.write_text("\n".join(lines) + "\n", encoding="utf-8")
         found = trunnion.verify(program, machine=base, cl=self._source(path))
-        return next(check.summary for check in found.checks if check.key == "order")
+        return {check.key: check for check in found.checks}
 
     def failing(self, lines: list[str], base: str, path: str, *settings: tuple[str, str]) -> set[str]:
         program = self._folder / "changed.nc"
@@ -153,7 +155,10 @@ def test_a_height_that_is_lost_or_too_low_is_a_fault(base: str, path: str, progr
     higher = ("operation_clearance", "12")
     assert "order" in programs.failing(lines, base, path, _CLEARANCE, higher)
     assert "order" in programs.failing(lines, base, path)  # where nothing allows the way
-    assert "posted with same_tool=clearance, repeat that setting" in programs.told(lines, base, path)
+    assert (
+        "posted with same_tool=clearance, repeat that (--set same_tool=clearance)"
+        in programs.checks(lines, base, path)["order"].summary
+    )
 
 
 @pytest.mark.parametrize("base", MACHINES)
@@ -210,3 +215,89 @@ def test_operations_of_other_tools_and_tilts_go_home(programs: _Programs) -> Non
     stopping = programs.post("yl569", "three", _CLEARANCE, ("stop_between", "on"))
     stop = next(k for k, line in enumerate(stopping) if _plain(line) == "M1")
     assert any(_HOME.search(_plain(line)) for line in stopping[stop - 4 : stop])
+
+
+@pytest.mark.parametrize("height", ["10", "3.5", "25"])
+@pytest.mark.parametrize("base", ["yl569", "dmu65", "xyzac_trt"])
+def test_faults_of_a_way_above_all_operations_name_the_settings_with_which_it_passes(
+    base: str, height: str, programs: _Programs
+) -> None:
+    lines = programs.post(base, "tilted", _CLEARANCE, ("operation_clearance", height))
+    told = programs.checks(lines, base, "tilted")
+    assert {key for key, check in told.items() if check.state == "FAIL"} == {"order", "home"}
+    for key in ("order", "home"):
+        (options,) = re.findall(r"repeat that \((.*)\)", told[key].summary)
+        assert options.startswith("--set same_tool=clearance")
+        assert ("operation_clearance=3.5" in options) == (height == "3.5")
+        settings = dict(option.split("=") for option in re.findall(r"--set (\S+)", options))
+        assert programs.failing(lines, base, "tilted", *settings.items()) == set()
+
+
+def test_a_way_below_the_points_of_other_operations_names_no_setting(programs: _Programs) -> None:
+    lines = programs.post("yl569", "three", _CLEARANCE)
+    up, across = _heights(lines)
+    low = [re.sub(r"Z40\.", "Z30.5", line) if k in (up, across) else line for k, line in enumerate(lines)]
+    assert low != lines
+    told = programs.checks(low, "yl569", "three")
+    assert "without a retract" in told["home"].summary
+    assert "repeat" not in told["home"].summary + told["order"].summary
+
+
+#: An operation between whose holes the tool axis changes, so that the table or the head turns within it.
+_HOLES = _OPERATION.format(name="HOLES", x=0.0, end=10.0, axis=_UP, last=_UP, tool=1).removesuffix("END-OF-PATH\n") + (
+    "GOTO/0.0,0.0,50.0\nCYCLE/DRILL,RAPTO,3.0,FEDTO,-5.0,MMPM,100.0\nGOTO/0.0,0.0,0.0\nGOTO/10.0,20.0,0.0\n"
+    f"GOTO/10.0,40.0,0.0,{_TILTED}\nGOTO/30.0,40.0,0.0,{_TILTED}\nCYCLE/OFF\nEND-OF-PATH\n"
+)
+PATHS["holes"] = _HOLES
+_WITHOUT_TCP = (("tcp", "off"), ("zero", "0,0,-100"), ("tool_length", "50"))
+_BEHIND_TURNS = [
+    *((base, ()) for base in MACHINES),
+    *((base, (("mode", "tcp"),)) for base in MACHINES),
+    ("xyzac_trt", _WITHOUT_TCP),
+]
+
+
+def _together(lines: list[str]) -> list[str]:
+    """The program with both legs behind its last turn to a cut in one block."""
+    turn = _last_turn(lines)
+    move = re.compile(r"(G0?[01] |G43 H\d+ |L )?[XYZ][-+.\d]")
+    across, along = [k for k in range(turn + 1, len(lines)) if move.match(_plain(lines[k]))][:2]
+    words = [word for word in re.findall(r"[XY][-+.\d]+", lines[across]) if f" {word[0]}" not in lines[along]]
+    height = re.sub(r" FMAX$|$", lambda end: f" {' '.join(words)}{end[0]}", lines[along], count=1)
+    return [height if k == along else line for k, line in enumerate(lines) if k != across]
+
+
+def _last_turn(lines: list[str]) -> int:
+    """The line of the last turn before a hole."""
+    last = max(k for k, line in enumerate(lines) if re.search(r"(F|Q206=\+)100\.?($| )", line))
+    return max(k for k, line in enumerate(lines[:last]) if _TURN.search(_plain(line).removesuffix(" D1")))
+
+
+def _modal_places(lines: list[str], base: str, way: tuple[tuple[str, str], ...], programs: _Programs) -> list[int]:
+    """The lines of motions that the proof finds to move axes together."""
+    program = programs._folder / "behind.nc"
+    program.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    machine = trunnion.load_machine(base)
+    if ("tcp", "off") in way:
+        machine = replace(machine, workpiece_zero=(0.0, 0.0, -100.0), tool_length=50.0)
+    found = trunnion.verify(program, machine=machine, cl=programs._source("holes"), settings=dict([_IN_TURN]))
+    modal = next(check for check in found.checks if check.key == "modal")
+    return [place.nc_line for place in modal.places if "together" in place.wording.what]
+
+
+@pytest.mark.parametrize(("base", "way"), _BEHIND_TURNS)
+def test_axes_go_in_turn_behind_a_turn_within_an_operation(
+    base: str, way: tuple[tuple[str, str], ...], programs: _Programs
+) -> None:
+    lines = programs.post(base, "holes", _IN_TURN, *way)
+    assert _modal_places(lines, base, way, programs) == []
+    joined = _together(lines)
+    assert [line for line in _modal_places(joined, base, way, programs) if line > _last_turn(joined)]
+
+
+@pytest.mark.parametrize(("base", "way"), [(base, way) for base, way in _BEHIND_TURNS if way and base != "hs664rt"])
+def test_a_program_that_moves_axes_together_behind_a_turn_is_faulted_where_turns_are_wanted(
+    base: str, way: tuple[tuple[str, str], ...], programs: _Programs
+) -> None:
+    lines = programs.post(base, "holes", *way)
+    assert [line for line in _modal_places(lines, base, way, programs) if line > _last_turn(lines)]

@@ -220,9 +220,70 @@ def test_a_value_that_cannot_be_is_told(two_tools: Path, name: str, value: objec
         trunnion.verify(two_tools, machine="matsuura_mx330", **{name: value})  # type: ignore[arg-type]
 
 
-def test_a_command_without_tools_takes_one_length() -> None:
-    with pytest.raises(trunnion.InputError, match="no tool and no work offset is called here"):
-        trunnion.reach("generic_head_head_ca", tool_length={"1": 100.0}, step=30)
+ZEROS = {"G54": (0.0, 0.0, 0.0), "G55": (9.0, 0.0, 0.0)}
+
+
+def test_points_are_reached_with_the_tool_of_their_operation(two_tools: Path) -> None:
+    machine = limited("generic_head_head_ca")
+    short, long = 100.0, 250.0
+    for lengths in ({"1": short, "2": long}, {"1": long, "2": short}, {"D10": short}):
+        found = trunnion.reach(machine, cl=two_tools, zero=(0, 0, 5), tool_length=lengths, step=45)
+        assert found.machine.tool_length == max(lengths.values())
+        told = [each.what for each in found.remarks if each.code == "RCH140"]
+        assert told == [
+            f"tilts, volumes and the part are judged with the longest tool, {max(lengths.values()):g} mm; points of CL "
+            "files each with their own"
+        ]
+    each = {
+        length: trunnion.reach(machine, cl=two_tools, zero=zero, tool_length=length, step=45).paths[0].no_travel
+        for zero in [(0.0, 0.0, 400.0)]
+        for length in (short, long)
+    }
+    both = trunnion.reach(machine, cl=two_tools, zero=(0, 0, 400), tool_length={"1": short, "2": long}, step=45)
+    assert each[short] != each[long]
+    assert both.paths[0].no_travel == sum(each.values()) // 2
+    only = trunnion.reach(machine, tool_length={"1": short, "2": long}, step=45)
+    assert only.machine.tool_length == long
+
+
+def test_a_length_that_is_missing_and_zeros_of_offsets_are_told(two_tools: Path) -> None:
+    machine = limited("generic_head_head_ca")
+    with pytest.raises(trunnion.InputError, match="no CL file says in which of them its points are; write one zero"):
+        trunnion.reach(machine, cl=two_tools, zero=ZEROS, step=45)
+    with pytest.raises(trunnion.InputError, match="one place of the part is looked for"):
+        trunnion.place(two_tools, machine=machine, zero=ZEROS, turns=[0.0])
+    cl = two_tools.with_name("unknown.cls")
+    cl.write_text(TWO_TOOLS.replace("TLDATA/MILL,10.0,0.0,75.0,0.0,0.0", "TLDATA/MILL,10.0,0.0,0.0,0.0,0.0"))
+    lengths = {"1": 100.0}
+    for command in (
+        lambda: trunnion.reach(machine, cl=cl, tool_length=lengths, step=45),
+        lambda: trunnion.place(cl, machine=machine, tool_length=lengths, turns=[0.0]),
+        lambda: trunnion.fit(cl, machines=[machine], tool_length=lengths, turns=[0.0]),
+    ):
+        with pytest.raises(trunnion.InputError, match="has no length of tool 2, and the files that are read state"):
+            command()
+
+
+def test_place_and_fit_take_the_length_of_each_tool(two_tools: Path) -> None:
+    machine = limited("generic_head_head_ca")
+    lengths = {"1": 100.0, "2": 250.0}
+    found = trunnion.place(two_tools, machine=machine, tool_length=lengths, turns=[0.0])
+    assert not [each for each in found.remarks if each.code == "PLC210"]
+    one = trunnion.place(two_tools, machine=machine, tool_length=100.0, turns=[0.0])
+    other = trunnion.place(two_tools, machine=machine, tool_length=250.0, turns=[0.0])
+    ranges = [{each.axis: (each.least_mm, each.greatest_mm) for each in placed.best.axes}["Z"]
+              for placed in (found, one, other) if placed.best is not None]  # fmt: skip
+    spans = [high - low for low, high in ranges]
+    assert spans[0] == pytest.approx(spans[1] + 150.0)
+    assert spans[1] == pytest.approx(spans[2])
+    posted = trunnion.post_placed(found, machine=machine)
+    assert posted.passed
+    assert posted.run is not None
+    assert [posted.run.length_of(name) for name in ("1", "2")] == [100.0, 250.0]
+    (fits,) = trunnion.fit(two_tools, machines=[machine], tool_length=lengths, turns=[0.0])
+    assert str(fits.status) == "fits"
+    left = {each.axis: each.margin for each in fits.margins}
+    assert left["Z"] == pytest.approx(min(each.margin_mm for each in found.best.axes if each.axis == "Z"))  # type: ignore[union-attr]
 
 
 def test_a_project_states_them_in_tables(two_tools: Path, tmp_path: Path) -> None:

@@ -54,7 +54,7 @@ def test_one_program_that_must_not_run_leaves_all_as_they_were(tmp_path: Path, c
     assert main(["post", str(path)]) == 1
     assert contents(tmp_path) == before
     err = capsys.readouterr().err
-    assert f"{tmp_path / 'bottom.mpf'}: warning: of before this change: do not run" in err
+    assert f"{tmp_path / 'bottom.mpf'}: warning: from before this change: do not run" in err
     assert "(set-up top)" in err
     assert "(set-up bottom)" not in err
     assert "bottom" in err, "the next set-up is judged as well"

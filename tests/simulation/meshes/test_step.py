@@ -99,7 +99,7 @@ def test_without_the_extra_the_message_says_what_to_install(tmp_path: Path, monk
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
     monkeypatch.setitem(sys.modules, "cascadio", None)
     with pytest.raises(
-        trunnion.InputError, match=r'needs cascadio, which is not installed; pip install "trunnion\[cad\]"'
+        trunnion.InputError, match=r'needs cascadio, which is not installed; run ".+" -m pip install "trunnion\[cad\]"'
     ):
         load_mesh(path)
 

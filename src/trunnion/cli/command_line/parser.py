@@ -21,6 +21,10 @@ from trunnion.wording import nearest_word
 _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 _NEGATIVE_LIST: Final = re.compile(r"-[0-9.]+(?:,[-+0-9.eE]+)+")
 
+#: An option of one letter, which no command has, and a number.
+_SHORT_OPTION: Final = re.compile(r"-[A-Za-z]")
+_NUMBER: Final = re.compile(r"[-+]?[0-9.]+")
+
 #: How argparse names numbers of words.
 _NARGS: Final = {Many.MAYBE: "?", Many.ANY: "*", Many.SOME: "+", Many.TWO: 2, Many.LIST: "+"}
 
@@ -37,6 +41,8 @@ def parse(words: Sequence[str]) -> Given:
         _fail("trunnion", Wording("ARG120", "no_command"))
     if words[0] in ("-h", "--help"):
         _print(overview())
+    if words[0] == "help":
+        _print(command_help(JOBS[words[1]]) if words[1:] and words[1] in JOBS else overview())
     if words[0] not in JOBS:
         _fail("trunnion", _no_command(words[0]))
     job = JOBS[words[0]]
@@ -67,7 +73,7 @@ def _values(words: list[str], job: Job) -> dict[str, Any]:
     values = vars(found)
     values.pop(_GIVEN, None)
     if unknown:
-        _fail_command(job, Wording("ARG120", "one_too_many", word=repr(unknown[0])))
+        _fail_command(job, _one_too_many(unknown[0], words, job))
     if missing := [*_missing(values, job)]:
         _fail_command(job, _are_missing(missing, values, job))
     for option in job.options:
@@ -76,6 +82,17 @@ def _values(words: list[str], job: Job) -> dict[str, Any]:
         if len(stated) > 1:
             _fail_command(job, Wording("ARG120", "either", option=stated[1].flag, other=stated[0].flag))
     return values
+
+
+def _one_too_many(word: str, words: Sequence[str], job: Job) -> Wording:
+    """Return what is said of a word that nothing takes: a short option, a number of a list, or any other."""
+    if _SHORT_OPTION.match(word):
+        return _no_option(word, job)
+    if _NUMBER.fullmatch(word):
+        before = [each for each in words[: words.index(word)] if _OPTION.fullmatch(each)]
+        if before:
+            return Wording("ARG120", "number_apart", word=repr(word), option=before[-1])
+    return Wording("ARG120", "one_too_many", word=repr(word))
 
 
 def _missing(values: Mapping[str, Any], job: Job) -> Iterator[str]:
@@ -274,7 +291,9 @@ def _no_option(name: str, job: Job) -> Wording:
     if others:
         variant = "option_of_other" if len(others) == 1 else "option_of_others"
         return Wording("ARG120", variant, option=name, command=job.name, others=tuple(others[:3]))
-    if near := nearest_word(name, [each.flag for each in job.flags]):
+    flags = [each.flag for each in job.flags]
+    short = next((flag for flag in flags if flag[1:].startswith(name)), "") if _SHORT_OPTION.match(name) else ""
+    if near := short or nearest_word(name, flags):
         return Wording("ARG120", "unknown_option_but_near", option=name, command=job.name, near=near)
     return Wording("ARG120", "unknown_option", option=name, command=job.name)
 

@@ -12,13 +12,13 @@ import numpy as np
 
 from trunnion.cl.read import ClReading
 from trunnion.definitions import load_table
-from trunnion.errors import InputError, Problem, Severity, TrunnionError, argument_problem
+from trunnion.errors import InputError, MissingExtraError, Problem, Severity, TrunnionError, argument_problem
 from trunnion.jobs.arguments import FitArguments, taken
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
 from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
-from trunnion.jobs.inputs.stated_setup import LengthLike, set_up_for_all
+from trunnion.jobs.inputs.stated_setup import LengthLike, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.placing import place, unknown_length
 from trunnion.jobs.place.posting import post_placed
@@ -122,8 +122,8 @@ def fit(
     zero : (3,) float, mm
         Workpiece zero of the NC program on its own machine, where it moves linear axes to positions of the machine.
     tool_length
-        Of the tool, gauge point to tip, mm, on all machines; by default the greatest that the CL files state for tools
-        in the spindle. Where none is known the answer is open at best.
+        Of the tool, gauge point to tip, mm, on all machines, or ``{"1": 110.0, "2": 85.0}`` of each tool; by default
+        the greatest that the CL files state for tools in the spindle. Where none is known the answer is open at best.
     units, dialect, strict
         How the CL files are read, as ``trunnion.read_cl`` has it.
     hooks
@@ -260,14 +260,14 @@ def _fit(
     """Return what a machine makes of it; whatever is wrong with the machine is its reason."""
     key, hooks = asked.key if isinstance(asked, Machine) else os.fspath(asked), stated["hooks"]
     try:
-        machine = set_up_for_all(as_machine(asked, "machines"), None, tool_length)
+        machine = set_up_machine(as_machine(asked, "machines"), None, tool_length)
         if not np.isfinite(machine.limits[list(machine.linear)]).any():
             return _without_limits(machine, toolpaths, hooks)
         found = place(toolpaths, machine=machine, turns=stated["turns"], hooks=hooks)
     except TrunnionError as error:
         if any(problem.argument in _OF_ALL for problem in error.problems):
             raise
-        return MachineFit(key, FitStatus.NOT, _reasons(error))
+        return _does_not_fit(error, key)
     if not found.fits:
         return replace(_beyond(asked, machine, found), not_measured=found.not_measured)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes) if found.best else ()
@@ -276,7 +276,7 @@ def _fit(
     try:
         posted = post_placed(found, machine=machine, hooks=hooks)
     except TrunnionError as error:
-        return MachineFit(machine.key, FitStatus.NOT, _reasons(error), None, margins, None, *place_of)
+        return replace(_does_not_fit(error, machine.key, margins), zero_mm=place_of[0], turn_deg=place_of[1])
     reasons = _open_reasons(machine)
     status = FitStatus.OPEN if reasons else FitStatus.FITS
     margins += _rotary_margins(machine, posted)
@@ -289,10 +289,17 @@ def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath], hooks: Sequ
     try:
         posted = post(toolpaths, machine=machine, hooks=hooks)
     except TrunnionError as error:
-        return MachineFit(machine.key, FitStatus.NOT, _reasons(error))
+        return _does_not_fit(error, machine.key)
     margins = _rotary_margins(machine, posted)
     fits = MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins)
     return replace(fits, not_measured=_not_measured(posted))
+
+
+def _does_not_fit(error: TrunnionError, key: str, margins: tuple[AxisMargin, ...] = ()) -> MachineFit:
+    """Return what an error says of a machine; without a package there is nothing to say of any."""
+    if isinstance(error, MissingExtraError):
+        raise error
+    return MachineFit(key, FitStatus.NOT, _reasons(error), None, margins)
 
 
 def _not_measured(posted: PostResult) -> tuple[str, ...]:

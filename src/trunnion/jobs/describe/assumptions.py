@@ -100,7 +100,7 @@ def _left_open(machine: Machine) -> Iterator[str]:
     if machine.workpiece_zero is None:
         yield (
             "Workpiece zero: not stated, and taken for the origin. Linear axes are checked for whether the program "
-            "fits their travel anywhere; programs without TCP want setting zero=X,Y,Z."
+            "fits their travel anywhere; programs without TCP need setting zero=X,Y,Z."
         )
     yield "Tool lengths: not known, for no definition has them. Programs without TCP want setting tool_length=MM."
     if not machine.spindle_point_is_stated:

@@ -13,7 +13,7 @@ from trunnion.machines import Machine
 def written_control(machine: Machine) -> Control | None:
     """Return the control of a machine; None where its programs can be read but not written."""
     try:
-        return load_control(machine.control.unread_copy())
+        return load_control(machine.control)
     except InputError:
         return None
 

@@ -64,16 +64,19 @@ def set_up_machine(machine: Machine, zero: ZeroLike | None, tool_length: LengthL
     return machine
 
 
-def set_up_for_all(machine: Machine, zero: ZeroLike | None, tool_length: LengthLike | None) -> Machine:
-    """Return the machine with one zero and one length, for work in which no tool and no work offset is called.
+def check_one_zero(machine: Machine, why: Wording) -> None:
+    """Refuse zeros of single work offsets where none is selected.
 
-    Raises ``InputError`` of the argument if it has several, or cannot be.
+    Raises ``InputError`` of the argument.
     """
-    found = set_up_machine(machine, zero, tool_length)
-    for name, single in (("zero", found.zeros), ("tool_length", found.tool_lengths)):
-        if single:
-            raise InputError(as_argument(setting_problem(name, Wording("ARG220", "one_value_for_all")), name))
-    return found
+    if machine.zeros:
+        raise InputError(as_argument(setting_problem("zero", why), "zero"))
+
+
+def length_of_tool_missing(tool: str) -> InputError:
+    """Return the error of lengths of single tools where that of one is missing."""
+    wording = Wording("ARG220", "length_of_tool_missing", tool=f"tool {tool}" if tool else "the tool in the spindle")
+    return InputError(as_argument(setting_problem("tool_length", wording), "tool_length"))
 
 
 def _divided(text: str) -> tuple[str, list[tuple[str, str]]]:

@@ -7,8 +7,10 @@ from typing import Final, Literal
 from trunnion.errors import InputError, Problem, Severity, argument_problem, warning
 from trunnion.jobs.inputs.bodies import MeshLike, fixture_meshes, known_tools, read_mesh
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.inputs.stated_setup import length_of_tool_missing
 from trunnion.jobs.place.inputs import PlacedInput
 from trunnion.machines import Machine
+from trunnion.machines.machine import tool_key
 from trunnion.messages import Wording
 from trunnion.placing.collisions.best_clearance import Guard
 from trunnion.placing.collisions.guarded_pairs import (
@@ -79,8 +81,8 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is
     if could_meet and not guard.is_changed:
         problems.append(argument_problem("goal", Wording("PLC270", "bodies_always_alike"), severity=Severity.WARNING))
     problems += _other_lengths(placed, lengths, machine)
-    if machine.tool_length is None and lengths:
-        machine = replace(machine, tool_length=max(lengths.values()))
+    if (machine.tool_length is None or machine.tool_lengths) and lengths:
+        machine = replace(machine, tool_length=max(lengths.values()), tool_lengths={})
     return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
 
 
@@ -141,8 +143,9 @@ def _lengths(
 ) -> dict[int, float]:
     """Lengths of the tools, gauge point to tip, mm, by their number; those that nobody states are left out."""
     lengths = {}
+    stated = stated_lengths(placed, machine) if machine.tool_lengths else {}
     for number in placed.used_tools:
-        length = (tools[number].length if number in tools else 0.0) or machine.tool_length
+        length = (tools[number].length if number in tools else 0.0) or stated.get(number, machine.tool_length)
         if length:
             lengths[number] = length
         elif is_asked:
@@ -154,19 +157,30 @@ def _lengths(
     return lengths
 
 
-def stated_lengths(placed: PlacedInput) -> dict[int, float]:
-    """Lengths of the tools in the spindle as the CL files state them, mm, by their number in ``placed.tools``.
+def stated_lengths(placed: PlacedInput, machine: Machine) -> dict[int, float]:
+    """Lengths of the tools in the spindle, mm, by their number in ``placed.tools``: stated ones, then those of the CL
+    files.
 
     Empty unless each tool has one, and only one.
+
+    Raises ``InputError`` if lengths of single tools are stated, and one is missing.
     """
     of_call: dict[str, set[float]] = {}
+    names: dict[str, set[str]] = {}
     for each in tools_of_toolpaths(placed.toolpaths):
         called = each.tool.name if each.number is None else str(each.number)
         of_call.setdefault(called, set()).add(each.tool.set_length)
-    found = {number: of_call.get(placed.tools[number], {0.0}) for number in placed.used_tools}
-    if any(len(lengths) > 1 or 0.0 in lengths for lengths in found.values()):
-        return {}
-    return {number: max(lengths) for number, lengths in found.items()}
+        names.setdefault(called, set()).add(each.tool.name)
+    found = {}
+    for number in placed.used_tools:
+        called = placed.tools[number]
+        keys = [tool_key(name) for name in (called, *sorted(names.get(called, ())))]
+        stated = next((machine.tool_lengths[key] for key in keys if key in machine.tool_lengths), machine.tool_length)
+        found[number] = of_call.get(called, {0.0}) if stated is None else {stated}
+    unknown = [number for number, lengths in found.items() if len(lengths) > 1 or 0.0 in lengths]
+    if unknown and machine.tool_lengths:
+        raise length_of_tool_missing(placed.tools[unknown[0]])
+    return {} if unknown else {number: max(lengths) for number, lengths in found.items()}
 
 
 def _other_lengths(placed: PlacedInput, lengths: Mapping[int, float], machine: Machine) -> Iterable[Problem]:

@@ -11,7 +11,7 @@ from trunnion.jobs.arguments import PlaceArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import as_texts
-from trunnion.jobs.inputs.stated_setup import apply_setup, set_up_machine
+from trunnion.jobs.inputs.stated_setup import apply_setup, check_one_zero, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.bodies import BodiesInput, read_bodies, stated_lengths
 from trunnion.jobs.place.inputs import read_input
@@ -70,8 +70,8 @@ def place(
     zero : (3,) float, mm
         The present place of the workpiece zero; by default that of the definition.
     tool_length
-        Of the tool, gauge point to tip, mm; by default that of the definition, or of each tool its own where the CL
-        files state all of them, or 0.
+        Of the tool, gauge point to tip, mm, or ``{"1": 110.0, "2": 85.0}`` of each tool; by default that of the
+        definition, or of each tool its own where the CL files state all of them, or 0.
     settings, units, dialect, strict
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
@@ -122,6 +122,8 @@ def place(
     loaded = set_up_machine(apply_setup(as_machine(machine), of_setup), stated["zero"], stated["tool_length"])
     if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
         raise InputError(argument_problem("machine", Wording("PLC130", "no_limits", machine=loaded.key)))
+    check_one_zero(loaded, Wording("ARG220", "one_place"))
+    asked = loaded
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
     remarks: list[Problem] = []
     among = BodiesInput(
@@ -137,8 +139,8 @@ def place(
         bodies = read_bodies(among, read, loaded, is_needed=goal == Goal.COLLISIONS)
         loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
         read = replace(read, rows=replace(read.rows, length=lengths_of(bodies.guard.lengths, read.tool)))
-    elif loaded.tool_length is None and (own := stated_lengths(read)):
-        loaded = replace(loaded, tool_length=max(own.values()))
+    elif (loaded.tool_length is None or loaded.tool_lengths) and (own := stated_lengths(read, loaded)):
+        loaded = replace(loaded, tool_length=max(own.values()), tool_lengths={})
         read = replace(read, rows=replace(read.rows, length=lengths_of(own, read.tool)))
     problems = [*read.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
     observer.problems(problems)
@@ -149,6 +151,8 @@ def place(
         found, remarks=tuple(problems), toolpaths=read.toolpaths, clamping=read.clamping,
         not_measured=_not_measured(loaded, found),
     )  # fmt: skip
+    if asked.tool_lengths:
+        found = replace(found, tool_length_mm=asked.tool_length, tool_lengths_mm=asked.tool_lengths)
     if bodies is None or goal == Goal.COLLISIONS:
         return found
     touching = touch_warnings(found)
@@ -174,7 +178,7 @@ def _not_measured(machine: Machine, found: Placement) -> tuple[str, ...]:
 def unknown_length(machine: Machine) -> list[Problem]:
     """Return a warning where places depend on a tool length that nobody has stated."""
     axes = tuple(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
-    if machine.tool_length is not None or not axes:
+    if machine.tool_length is not None or machine.tool_lengths or not axes:
         return []
     return [
         argument_problem(

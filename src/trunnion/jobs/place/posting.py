@@ -58,8 +58,9 @@ def post_placed(
     if found.best is None or not found.fits:
         raise InputError(Problem(found.files[0], 0, Wording("PLC150", "fits_nowhere")))
     texts = as_texts(given.get("settings"))
-    if found.tool_length_mm is not None:
-        texts.setdefault("tool_length", str(found.tool_length_mm))
+    every = [] if found.tool_length_mm is None else [str(found.tool_length_mm)]
+    if lengths := [*every, *(f"{name}={length}" for name, length in found.tool_lengths_mm.items())]:
+        texts.setdefault("tool_length", ",".join(lengths))
     best = found.best
     stated: Any = {
         **given, "settings": {**texts, "zero": best.zero_mm}, "turn": best.turn_deg, "tilt": best.tilt_deg

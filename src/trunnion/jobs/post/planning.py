@@ -29,6 +29,7 @@ from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
+from trunnion.output.validation.ways import way_problems
 from trunnion.planning.holes.sideways import sideways_problems
 from trunnion.planning.retracts.tool_retract import with_tool_retract
 
@@ -216,7 +217,8 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     conflicts = tool_conflicts(program, uses_length_numbers=by_register)
     leaning = _leaning_operations(planned, number_setting(job.settings, "max_tilt"))
     sideways = sideways_problems(toolpaths) if job.settings.get("drills_sideways") != "allowed" else []
-    found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program), *leaning, *sideways]
+    ways = way_problems(program, subprograms=job.settings.get("programs") == "operations")
+    found = [*merge_repeated(planned.problems), *ways, *conflicts, *insert_problems(program), *leaning, *sideways]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))

@@ -80,7 +80,7 @@ def diff(
         others = (_skipping(runs[0], levels), _skipping(runs[1], levels))
         other = compared(*others)
         if not other.same:
-            return other.with_words(f"; {words_of(levels, *runs)}")
+            return other.within("with_meaning", meaning=words_of(levels, *runs))
     return result
 
 

@@ -3,6 +3,7 @@
 Posts and verifications ask the same function; each adds what it alone knows.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Final
 
@@ -49,6 +50,7 @@ def expected_values(
         swivel_data=tuple({each["swivel_data"] for each in everywhere if "swivel_data" in each}),
         rapid_feed=rapid_feed,
         clearance=float(settings["operation_clearance"]) if settings.get("same_tool") == "clearance" else None,
+        operation_clearance=float(settings.get("operation_clearance") or math.inf),
         in_turn=settings.get("first_approach") == "in_turn",
         stop_between=settings.get("stop_between") == "on",
         below_rapid_feed=slower,

@@ -31,6 +31,11 @@ class BlockTable:
         """Write a word in the flagged rows even if it is modal and unchanged."""
         self.forced[word] = np.asarray(flags, np.int64) | self.forced.get(word, 0)
 
+    def write_if_changed(self, word: str, row: int) -> None:
+        """Write a word in a row only where it is new there."""
+        if word in self.forced:
+            self.forced[word][row] = 0
+
     def set_words(self, row: int, words: Mapping[str, int]) -> None:
         """Put words, as counts, into a row."""
         for word, count in words.items():

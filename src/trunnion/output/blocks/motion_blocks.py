@@ -274,6 +274,8 @@ class MotionBlockWriter:
             if rapid[0] and (self.xy_before_z or self.first_leg is not None):
                 words = table.words_of_row(0)
                 first_words = self.legs.write(motion, moves.tip[0], words, first_words, self.first_leg)
+                if self._axis_coordinates is not None:
+                    table.write_if_changed("X", 0)  # Z moves alone behind the leg
             table.set_words(0, first_words)
         for event in joining_events:
             table.set_words(event.row - start, self.event_words(event))

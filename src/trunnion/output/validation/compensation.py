@@ -47,25 +47,29 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
         if float(np.abs(in_plane).max()) <= _ASKEW and not by_deltas:
             continue
         plane = event.plane or "XYPLAN"
-        has_planes = MachiningMode.TILTED in program.control.modes({})
+        would_help = plane == "XYPLAN" and not float(np.ptp(axes, axis=0).max()) and _takes_tilted(program, motion)
         problems.append(
             Problem(
                 program.file_of(operation),
                 event.line,
                 (
                     Wording("CTL220", "cutcom_where_control", mode=motion.mode)
-                    if has_planes
+                    if would_help
                     else Wording("CTL220", "cutcom_where_control_takes", mode=motion.mode)
                 )
                 if by_deltas
                 else (
                     Wording("CTL220", "cutcom_where_tool", plane=plane, mode=motion.mode)
-                    if has_planes
+                    if would_help
                     else Wording("CTL220", "cutcom_where_tool_not", plane=plane, mode=motion.mode)
                 ),
             )
         )
     return problems
+
+
+def _takes_tilted(program: Program, motion: Motion) -> bool:
+    return motion.mode is not MachiningMode.TILTED and MachiningMode.TILTED in program.control.modes({})
 
 
 def register_problems(program: Program) -> list[Problem]:

@@ -10,6 +10,7 @@ from trunnion.arrays import Ints
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import EventValue, Run, RunEvent
 from trunnion.verification.context import ComparedContext, check_from_places
+from trunnion.verification.event_words import event_word
 from trunnion.verification.expected.states import all_coolants, coolant_states
 from trunnion.verification.results import Check, Place
 
@@ -130,9 +131,9 @@ def check_coolant(context: ComparedContext) -> Check:
     anywhere = {words.names.get(word) for word in all_coolants(context.expected)}
     for _, name, event in words.changes:
         if not unread and None not in anywhere and name not in asked | anywhere | {"off"}:
-            places.append(context.place_of_event(event, 0.0, Wording("coolant", "never_asked", kind=_kind(name))))
+            places.append(context.place_of_event(event, 0.0, Wording("coolant", "never_asked", kind=event_word(name))))
     places.sort(key=lambda place: place.nc_line)
-    good = Wording("coolant", "good", kinds=tuple(map(_kind, sorted(asked)))) if asked else None
+    good = Wording("coolant", "good", kinds=tuple(map(event_word, sorted(asked)))) if asked else None
     found = check_from_places("coolant", places, good)
     missing = () if places else tuple(phrase("coolant_unread", kind=kind) for kind in sorted(unread))
     return replace(found, missing=missing)
@@ -145,11 +146,6 @@ class _Fault:
     row: int
     said: Wording
     at_point: bool = True
-
-
-def _kind(name: str) -> Wording | str:
-    """Return a kind of coolant in words; others have the name that their definition gives them."""
-    return Wording("coolant", name) if name in ("off", "flood", "mist", "through") else name
 
 
 def _fault(words: _CoolantWords, wanted: str, row: int, last: int, *, readable: bool) -> _Fault | None:
@@ -168,8 +164,8 @@ def _fault(words: _CoolantWords, wanted: str, row: int, last: int, *, readable: 
             return _Fault(last, Wording("coolant", "still_on")) if still_on else None
     now = words.at(row)
     if differs(now):
-        return _Fault(row, Wording("coolant", "other", has=_kind(now), wanted=_kind(wanted)))
+        return _Fault(row, Wording("coolant", "other", has=event_word(now), wanted=event_word(wanted)))
     for changed, state in words.between(row, last):
         if differs(state):
-            return _Fault(changed, Wording("coolant", "changes", wanted=_kind(wanted)), at_point=False)
+            return _Fault(changed, Wording("coolant", "changes", wanted=event_word(wanted)), at_point=False)
     return None

@@ -131,8 +131,10 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     faults = [*arc_chord_faults(context), *splines.places] if isinstance(context, ComparedContext) else []
     if row >= 0 and off_tip > 0.0 and not (faults and row == deviation_row):
         rows = tip.rows or [(row, off_tip)]
-        variant = "tip_off" if asked or not errors.tip.count else "tip_off_long"
-        places += [context.place(r, v, Wording("span", variant, off=v)) for r, v in rows]
+        unasked = not asked and errors.tip.count > 0
+        for r, v in rows:
+            variant = "tip_off" if not unasked else "tip_off_long" if errors.is_long(r) else "tip_off_cut"
+            places.append(context.place(r, v, Wording("span", variant, off=v)))
     answer = Wording("span", "on_way" if on_way else "half_way", tip=off_tip, axis=axis.value)
     if axis.row >= 0:
         answer = Wording("span", "in_block", measured=answer, block=context.block_name(axis.row))

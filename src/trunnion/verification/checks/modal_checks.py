@@ -10,19 +10,18 @@ from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.approach_faults import approaches_through_part
+from trunnion.verification.checks.approach_order import not_in_turn
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
 from trunnion.verification.checks.low_rapids import low_rapids, skipped_retracts
-from trunnion.verification.checks.passages import not_in_turn
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import ComparedContext, Context, check_from_places
+from trunnion.verification.event_words import event_word
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
 from trunnion.verification.spindle_words import TURNING, both_senses, started_behind_cuts
 
 _FAULTS: Final = ("no_feed", "spindle_off", "no_time")
-
-_SENSES: Final = {"clockwise": "clockwise", "counter-clockwise": "counter_clockwise"}
 
 #: Smaller rotary motion, degrees, is none.
 _STILL: Final = 1e-3
@@ -85,8 +84,8 @@ def _changed_while_turning(context: Context) -> Iterator[Place]:
 def _odd_spindle_words(context: Context) -> Iterator[Place]:
     """Yield blocks with both senses of the spindle, and the start of a spindle that nothing needs and nothing stops."""
     for before, event in both_senses(context.run):
-        senses = [Wording("modal", _SENSES[str(each.value)]) for each in (before, event)]
-        yield context.place_of_event(event, 0.0, Wording("modal", "both_senses", first=senses[0], second=senses[1]))
+        said = Wording("modal", "both_senses", first=event_word(before.value), second=event_word(event.value))
+        yield context.place_of_event(event, 0.0, said)
     if (start := started_behind_cuts(context.run)) is not None:
         yield context.place_of_event(start, 0.0, Wording("modal", "started_behind_cuts"))
 

@@ -8,7 +8,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.cuts_left_out import cuts_left_out
-from trunnion.verification.checks.passages import passage_rows, rows_of_clearance
+from trunnion.verification.checks.passages import passage_rows, settings_to_repeat
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -43,12 +43,14 @@ def check_order(context: ComparedContext) -> Check:
     stands_still = [row in known and _stands_still(run, row) for row in unexplained]
     still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
     extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
-    missing = Wording("order", "no_block")
+    missing, no_point = Wording("order", "no_block"), Wording("order", "no_point")
     places = [context.place_of_missing(cl, missing) for cl in matching.missing[:MAX_PLACES]]
-    above = rows_of_clearance(context) if extra else set()
-    no_point = Wording("order", "no_point")
-    posted = context.settings.repeated(no_point, "same_tool", "clearance")
-    places += [context.place(row, 0.0, posted if row in above else no_point) for row in extra[:MAX_PLACES]]
+    to_repeat = settings_to_repeat(context) if extra else {}
+    posted = [
+        context.settings.repeated(no_point, **to_repeat[row]) if row in to_repeat else no_point
+        for row in extra[:MAX_PLACES]
+    ]
+    places += [context.place(row, 0.0, told) for row, told in zip(extra[:MAX_PLACES], posted, strict=True)]
     left_out = list(cuts_left_out(context, set(extra)))
     places += left_out[:MAX_PLACES]
     if not places:

@@ -5,7 +5,8 @@ height, and straight down to the first point. From home it comes to such a heigh
 These motions have no CL point; they are recognized by what they do. Any other motion without a CL point stays a fault.
 """
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -24,9 +25,8 @@ from trunnion.verification.results import Place
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
 
-#: Rotary motion of less than this is none, degrees; so far may a tool leave its axis by rounding, mm.
-_TURNS = 1e-3
-_ASIDE = 2e-3
+#: No setting leads lower above all operations, mm.
+_LEAST_CLEARANCE = 1.0
 
 #: Motions between two operations at most: up, across.
 _MOST_ROWS = 2
@@ -36,17 +36,36 @@ def passage_rows(context: ComparedContext) -> set[int]:
     """Return the motions without a CL point that lead from one operation to the next above all of them, or from home
     to a place above all of them from which the next motion goes straight down.
     """
-    return _passage_rows(context, context.settings.clearance)
+    clearance = context.settings.clearance
+    wanted = math.inf if clearance is None else clearance - _near(context)
+    return {row for rows, margin in _passages(context) if margin >= wanted for row in rows}
 
 
-def rows_of_clearance(context: ComparedContext) -> set[int]:
-    """Return the motions without a CL point that would be lawful if the tool might go on above all operations."""
-    return set() if context.settings.clearance is not None else _passage_rows(context, 0.0) - passage_rows(context)
+def settings_to_repeat(context: ComparedContext) -> dict[int, dict[str, str]]:
+    """Return motions without a CL point that would be lawful if the tool might go on above all operations, each with
+    the settings that say so.
+    """
+    found: dict[int, dict[str, str]] = {}
+    for rows, margin in _passages(context):
+        told = {"name": "same_tool", "value": "clearance"}
+        if margin < _LEAST_CLEARANCE:
+            continue
+        if margin < context.settings.operation_clearance - _near(context):
+            told["operation_clearance"] = f"{math.floor((margin + _near(context)) * 1e3) / 1e3:g}"
+        found.update(dict.fromkeys(rows, told))
+    return found
 
 
-def _passage_rows(context: ComparedContext, clearance: float | None) -> set[int]:
+def _near(context: ComparedContext) -> float:
+    """How far a printed height may be off, mm."""
+    return 4.0 * context.expected.max_tip_tolerance + 1e-6
+
+
+def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]:
+    """Yield motions without a CL point that lead from one operation to the next, and how far they stay above all CL
+    points, mm; endless for a leg from home that needs no setting.
+    """
     run, extra = context.run, context.matching.extra
-    found: set[int] = set()
     rows: Ints = np.array(extra, np.int64)
     for unbroken in np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1):
         if not 0 < len(unbroken) <= _MOST_ROWS or unbroken[0] == 0 or unbroken[-1] + 1 >= len(run):
@@ -56,12 +75,9 @@ def _passage_rows(context: ComparedContext, clearance: float | None) -> set[int]
         if len(unbroken) == 1 and _comes_from_home(run, first):
             # Whatever the settings: above all points the leg is harmless. A plane has first legs of its own.
             if run.state.tcp[first] and way.comes_down_from(context.highest_point(way.axis)):
-                found.add(first)
-        elif clearance is None or not _begins_operation(context, down):
-            continue
-        elif way.leaves_above(context.highest_point(way.axis) + clearance):
-            found.update(unbroken.tolist())
-    return found
+                yield [first], math.inf
+        elif _begins_operation(context, down) and (height := way.height) is not None:
+            yield unbroken.tolist(), height - context.highest_point(way.axis)
 
 
 def _comes_from_home(run: Run, row: int) -> bool:
@@ -84,7 +100,7 @@ def without_retract(context: Context) -> Iterator[Place]:
     away = rows_away(context)
     if away is None:
         return
-    lawful = passage_rows(context)
+    lawful, to_repeat = passage_rows(context), settings_to_repeat(context)
     changes = [event.before_row for event in context.run.events if event.kind == "tool_change"]
     stated = "tool_change" in context.run.machine.home_at
     for last, first, operation in _bounds(context):
@@ -93,37 +109,10 @@ def without_retract(context: Context) -> Iterator[Place]:
         if end > begin or (stated and any(last < change <= first for change in changes)):
             continue
         if not (between and all(row in lawful for row in between)):
-            yield context.place(first, 0.0, Wording("home", "goes_on", operation=operation))
-
-
-def not_in_turn(context: Context) -> Iterator[Place]:
-    """Yield the first row of each operation that moves axes together on the way from home, where the settings want one
-    group after the other: the rotary axes, those across the tool, the one along it.
-    """
-    away = rows_away(context) if isinstance(context, ComparedContext) and context.settings.in_turn else None
-    if away is None or not isinstance(context, ComparedContext):
-        return
-    run, last = context.run, -1
-    for section in context.expected.sections:
-        begin, end = context.matching.pair_range(section.first, section.end)
-        if begin == end:
-            continue
-        row, before, last = context.matching.nc[begin], last, context.matching.nc[end - 1]
-        first_row = context.matching.cl[begin] == section.first and section.kept is None
-        from_home = bool(((away > before) & (away <= row)).any())
-        if first_row and from_home and run.kind[row] == Kind.RAPID and row > 0 and not _moves_along_tool(run, row):
-            yield context.place(row, 0.0, Wording("modal", "together"))
-
-
-def _moves_along_tool(run: Run, row: int) -> bool:
-    """Whether a row moves the tool along its axis alone, or one linear axis alone."""
-    positions = run.positions(np.array([row - 1, row]))
-    step, axis = positions.tip[1] - positions.tip[0], positions.axis[1]
-    joints = np.abs(positions.joints[1] - positions.joints[0])
-    if joints[list(run.machine.rotary)].max() > _TURNS:
-        return False
-    aside = float(np.linalg.norm(step - float(step @ axis) * axis))
-    return aside <= _ASIDE or int((joints[list(run.machine.linear)] > _ASIDE).sum()) <= 1
+            fault = Wording("home", "goes_on", operation=operation)
+            if between and all(row in to_repeat for row in between):
+                fault = context.settings.repeated(fault, **to_repeat[between[0]])
+            yield context.place(first, 0.0, fault)
 
 
 def _bounds(context: ComparedContext) -> Iterator[tuple[int, int, str]]:
@@ -156,7 +145,7 @@ class _Way:
     def __init__(self, context: ComparedContext, first: int, down: int) -> None:
         run: Run = context.run
         rows = np.arange(first, down + 1)
-        self._near = 4.0 * context.expected.max_tip_tolerance + 1e-6
+        self._near = _near(context)
         self._positions: RowPositions = run.positions(np.arange(first - 1, down + 1))
         self.axis: Floats = self._positions.axis[-1]
         turned = np.abs(self._positions.axis[1:] - self.axis).max() > _SAME_AXIS
@@ -169,15 +158,15 @@ class _Way:
         """Whether the last row goes straight down from a height or above."""
         return self._is_free and self._goes_down() and self._heights[-2] >= height - self._near
 
-    def leaves_above(self, height: float) -> bool:
-        """Whether the first row goes straight up to a height or above, and the last one straight down from there."""
+    @property
+    def height(self) -> float | None:
+        """Where the first row goes straight up and the last one straight down, how high the tool stays in between."""
         up, *_ = self._steps
         aside = float(np.linalg.norm(up - float(up @ self.axis) * self.axis))
         same = np.abs(self._positions.axis[0] - self.axis).max() <= _SAME_AXIS
         starts_up = bool(aside <= self._near and float(up @ self.axis) >= -self._near and same)
         # One row may be all: the operations end and begin over one place, or at the height itself.
-        level = bool((self._heights[1:-1] >= height - self._near).all())
-        return self._is_free and self._goes_down() and starts_up and level
+        return float(self._heights[1:-1].min()) if self._is_free and self._goes_down() and starts_up else None
 
     @property
     def _steps(self) -> Floats:

@@ -1,12 +1,12 @@
 """Follows two programs together and notes where they differ."""
 
-from collections import Counter
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
@@ -18,7 +18,6 @@ from trunnion.verification.comparison.row_states import compared_states
 from trunnion.verification.comparison.states import DifferentStretch, StateComparison
 from trunnion.verification.matching.resync import find_resync
 from trunnion.verification.row_ranges import CHUNK
-from trunnion.wording import counted
 
 #: Motions that are compared at first, and after each difference.
 _FEW: Final = 64
@@ -28,9 +27,6 @@ _WINDOWS: Final = (8, 64, 512)
 
 #: Differences between paths that are looked into; after them the programs simply count as different.
 _MAX_DIFFERENCES: Final = 1000
-
-#: What most diagnostics of unknown words begin with.
-_UNKNOWN: Final = "not understood: "
 
 #: Differences that are kept with their places.
 _MOST_NOTED: Final = 2000
@@ -80,7 +76,7 @@ class Comparer:
         found = []
         for each in self._noted:
             rows = (_row(one, each.i), _row(two, each.j))
-            found.append(DifferentRows(*rows, each.text))
+            found.append(DifferentRows(*rows, each.wording))
         return Alignment(np.concatenate(spans), tuple(found), self._count)
 
     def compare(self) -> Comparison:
@@ -111,8 +107,8 @@ class Comparer:
                 self._compare_events((i, j), after)
                 i, j = after
         if (i < len(one) or j < len(two)) and self._path_count < _MAX_DIFFERENCES:
-            which = "first" if i < len(one) else "second"
-            self._note(i, j, float("inf"), f"only the {which} program goes on")
+            goes_on = Wording("comparison", "first_goes_on" if i < len(one) else "second_goes_on")
+            self._note(i, j, float("inf"), goes_on)
         elif i == len(one) and j == len(two):
             self._compare_events((i, j), (i + 1, j + 1))
             self._compare_ways(i, j, *(np.array([len(each.run) - 1]) for each in (one, two)))
@@ -164,10 +160,10 @@ class Comparer:
         if not self._events:
             return
         one, two = (events.take(first, last) for events, first, last in zip(self._events, begin, end, strict=True))
-        if one != two:
+        if {said: len(each) for said, each in one.items()} != {said: len(each) for said, each in two.items()}:
             self._count += 1
-            alone = [", ".join((Counter(a) - Counter(b)).elements()) or "nothing" for a, b in ((one, two), (two, one))]
-            self._note_first(_PathDifference(*begin, 0.0, " against ".join(alone)))
+            said = Wording("comparison", "events", one=_alone(one, two), two=_alone(two, one))
+            self._note_first(_PathDifference(*begin, 0.0, said))
 
     def _compare_states(self, i: int, j: int, count: int) -> None:
         a, b = self._one.rows[i : i + count], self._two.rows[j : j + count]
@@ -176,9 +172,9 @@ class Comparer:
             self._note_first(stretch)
 
     def _compare_ways(self, i: int, j: int, a: Ints, b: Ints) -> None:
-        for k, text in self._ways.follow(a, b) if self._ways else ():
+        for k, said in self._ways.follow(a, b) if self._ways else ():
             self._count += 1
-            self._note_first(_PathDifference(i + k, j + k, 0.0, text))
+            self._note_first(_PathDifference(i + k, j + k, 0.0, said))
 
     def _same_circle(self, i: int, j: int) -> bool:
         one, two = self._one.circle(i), self._two.circle(j)
@@ -226,27 +222,29 @@ class Comparer:
             p, q = int(one.rows[i + k]), int(two.rows[j + k])
             apart = float(np.linalg.norm(one.run.tip[p] - two.run.tip[q]))
             angle = float(np.degrees(np.linalg.norm(one.run.axis[p] - two.run.axis[q])))
-            text = f"tips are {apart:.6f} mm apart, tool axes {angle:.6f} degrees"
+            said = Wording("comparison", "tips_apart", apart=apart, angle=angle)
             if a != b:
-                text += f"; the {'first' if a > b else 'second'} program has {counted(abs(a - b), 'more point')}"
-            self._note(i + k, j + k, apart + angle, text)
+                variant = "first_has_more" if a > b else "second_has_more"
+                said = Wording("comparison", variant, difference=said, count=abs(a - b))
+            self._note(i + k, j + k, apart + angle, said)
             if a != b:
                 break
 
-    def _difference_in_way(self, a: int, b: int) -> str:
+    def _difference_in_way(self, a: int, b: int) -> Wording:
         """Return what differs between row ``a`` and row ``b``, which go to the same point another way."""
         kinds = [Kind(int(run.kind[row])) for run, row in ((self._one.run, a), (self._two.run, b))]
         if kinds[0] != kinds[1]:
-            return f"{_KINDS[kinds[0]]} against {_KINDS[kinds[1]]}"
-        return "circles about other centres, or the other way round"
+            one, two = (Wording("comparison", _KINDS[kind]) for kind in kinds)
+            return Wording("comparison", "kinds", one=one, two=two)
+        return Wording("comparison", "other_circles")
 
-    def _note(self, i: int, j: int, value: float, text: str) -> None:
+    def _note(self, i: int, j: int, value: float, said: Wording) -> None:
         """Note a difference between the paths."""
         self._count += 1
         self._path_count += 1
         if self._ways:
             self._ways.forget()
-        place = _PathDifference(i, j, value, text)
+        place = _PathDifference(i, j, value, said)
         self._note_first(place)
         if self._worst is None or value > self._worst.value:
             self._worst = place
@@ -262,11 +260,12 @@ class Comparer:
             return None
         blocks = self._one.block_name(found.i), self._two.block_name(found.j)
         if isinstance(found, _PathDifference):
-            return Difference(*blocks, found.value, found.text)
-        text = found.text
+            return Difference(*blocks, found.value, found.wording)
+        said = found.wording
         if found.last != (found.i, found.j):
-            text += f", up to {self._one.block_name(found.last[0])} against {self._two.block_name(found.last[1])}"
-        return Difference(*blocks, 0.0, text)
+            one, two = self._one.block_name(found.last[0]), self._two.block_name(found.last[1])
+            said = said.within("up_to", one=one, two=two)
+        return Difference(*blocks, 0.0, said)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -276,7 +275,13 @@ class _PathDifference:
     i: int
     j: int
     value: float
-    text: str
+    wording: Wording
+
+
+def _alone(one: dict[str, list[Wording]], two: dict[str, list[Wording]]) -> tuple[Wording, ...]:
+    """Return what stands in one program only, or more often than in the other."""
+    alone = [said for text, each in one.items() for said in each[len(two.get(text, ())) :]]
+    return tuple(alone) or (Wording("comparison", "nothing"),)
 
 
 def _row(program: MovingRows, motion: int) -> int:
@@ -286,8 +291,8 @@ def _row(program: MovingRows, motion: int) -> int:
 
 def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:
     """Words that are not understood: what they do may depend on all that comes before, so that they prove nothing."""
+    begin = Wording("comparison", "not_understood", word="").what  # as most of them do
+    words = ((error, error.text.removeprefix(begin)) for run in (one, two) for error in run.errors)
     return tuple(
-        f"{error.file}:{error.line}: {_UNKNOWN}{error.text.removeprefix(_UNKNOWN)}"
-        for run in (one, two)
-        for error in run.errors
+        f"{each.file}:{each.line}: {Wording('comparison', 'not_understood', word=word)}" for each, word in words
     )

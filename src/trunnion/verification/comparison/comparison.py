@@ -60,8 +60,8 @@ def _elsewhere(one: Run, two: Run, compared: Callable[[Run, Run], Comparison]) -
     found = compared(*runs)
     if found.same:
         return None
-    stated = " and ".join(dict.fromkeys(missing_values(one.machine) + missing_values(two.machine)))
-    return found.with_words(f"; with {stated}, as nobody has stated them")
+    values = tuple(dict.fromkeys(missing_values(one.machine) + missing_values(two.machine)))
+    return found.within("with_nominal", values=values)
 
 
 def align(one: Run, two: Run) -> Alignment:

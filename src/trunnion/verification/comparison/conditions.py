@@ -10,46 +10,49 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.model.run import Run
+from trunnion.messages import Wording
+from trunnion.model.run import EventValue, Run
+from trunnion.verification.event_words import event_word
 from trunnion.verification.spindle_words import TURNING, both_senses
 
 _STOPS: Final = ("stop", "optional_stop")
 _PLANES: Final = ("tilt", "plane", "cycle800")
 
 
-def conditions(run: Run) -> Iterator[tuple[int, str]]:
+def conditions(run: Run) -> Iterator[tuple[int, Wording]]:
     """Yield what holds, by the row before which it does."""
     row = run.first_without_units
     if row is not None:
-        yield row, "moves before the program says whether it counts in mm or inches"
+        yield row, Wording("comparison", "no_units")
     yield from _of_spindle(run)
     yield from _after_stops(run)
     yield from _turns_in_planes(run)
 
 
-def _of_spindle(run: Run) -> Iterator[tuple[int, str]]:
+def _of_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
     """Yield tool changes while the spindle turns, and blocks that start it in both senses."""
     for before, event in both_senses(run):
-        yield event.before_row, f"one block turns the spindle {before.value} and {event.value}"
-    turns = ""
+        senses = {"first": event_word(before.value), "second": event_word(event.value)}
+        yield event.before_row, Wording("comparison", "both_senses", **senses)
+    turns: EventValue = None
     for event in run.events:
         if event.kind == "spindle":
-            turns = str(event.value) if event.value in TURNING else ""
+            turns = event.value if event.value in TURNING else None
         elif event.kind == "tool_change" and turns:
-            yield event.before_row, f"tool change while the spindle turns {turns}"
+            yield event.before_row, Wording("comparison", "change_while_turning", sense=event_word(turns))
 
 
-def _after_stops(run: Run) -> Iterator[tuple[int, str]]:
+def _after_stops(run: Run) -> Iterator[tuple[int, Wording]]:
     """Yield words of coolant after a stop: many machines turn it off there, and it is off without them."""
     stopped = -1
     for event in run.events:
         if event.kind in _STOPS:
             stopped = event.before_row
         elif event.kind == "coolant" and event.before_row == stopped:
-            yield stopped, f"coolant {event.value} after a stop"
+            yield stopped, Wording("comparison", "coolant_after_stop", word=event_word(event.value))
 
 
-def _turns_in_planes(run: Run) -> Iterator[tuple[int, str]]:
+def _turns_in_planes(run: Run) -> Iterator[tuple[int, Wording]]:
     """Yield rows that turn a rotary axis while a tilted plane is on: one that has been used, or machine coordinates."""
     begins, on = [0], [False]
     for event in run.events:
@@ -67,4 +70,4 @@ def _turns_in_planes(run: Run) -> Iterator[tuple[int, str]]:
     rows = np.flatnonzero(turns)
     for row, k in zip(rows.tolist(), np.searchsorted(begins, rows, side="right").tolist(), strict=True):
         if on[k - 1] and (in_machine[row] or used[row] > used[begins[k - 1]]):
-            yield row, "rotary axes turn while a tilted plane is on"
+            yield row, Wording("comparison", "turns_in_plane")

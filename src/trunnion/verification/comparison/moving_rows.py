@@ -4,6 +4,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import forward
+from trunnion.messages import Wording
 from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -11,7 +12,7 @@ from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.matching.rows_to_match import workpiece_rows
 from trunnion.verification.row_ranges import CHUNK
 
-_SENSES = {1: "clockwise", -1: "counterclockwise", 0: "off"}
+_SENSES = {1: "clockwise_at", -1: "counterclockwise_at", 0: "off_at"}
 
 
 class MovingRows:
@@ -100,22 +101,22 @@ class MovingRows:
         m = int(np.searchsorted(self.run.arcs.row, self.rows[k]))
         return int(self.run.arcs.full_turns[m])
 
-    def spindle_words(self, row: int) -> str:
+    def spindle_words(self, row: int) -> Wording:
         """Speed and sense of the spindle in a row."""
-        return f"S{self.run.rpm[row]:g} {_SENSES[int(self.run.spindle[row])]}"
+        return Wording("comparison", _SENSES[int(self.run.spindle[row])], speed=self.run.rpm[row])
 
-    def tool_name(self, row: int) -> str:
+    def tool_name(self, row: int) -> Wording | str:
         """Return the tool in the spindle in a row."""
-        return self.run.tools[self.run.tool[row]] or "none"
+        return self.run.tools[self.run.tool[row]] or Wording("comparison", "none")
 
-    def block_name(self, k: int) -> str:
+    def block_name(self, k: int) -> Wording:
         """Line and block number of motion ``k``; of the last one if the program has ended."""
         if not len(self.run):
-            return "0"
+            return Wording("comparison", "at_line", line=0)
         row = int(self.rows[k]) if k < len(self.rows) else len(self.run) - 1
         number = int(self.run.block_number[row])
-        end = "" if k < len(self.rows) else ", after its last motion"
-        return f"{int(self.run.line[row])}" + (f" (N{number}{end})" if number >= 0 else f"{end}")
+        in_block, at_line = ("in_block", "at_line") if k < len(self.rows) else ("behind_block", "behind_line")
+        return Wording("comparison", in_block if number >= 0 else at_line, line=self.run.line[row], number=number)
 
 
 def _tool_name(name: str) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine
 from trunnion.machines.inverse import kinematic_parameters
+from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Run
 from trunnion.model.run_columns import BY_PARAMETER
@@ -29,10 +30,11 @@ LENGTH: Final = 100.0
 _STILL: Final = 1e-6
 
 
-def missing_values(machine: Machine) -> list[str]:
-    """Return what nobody has stated, in words."""
-    zero = [f"workpiece zero {', '.join(f'{value:g}' for value in ZERO)}"] if machine.workpiece_zero is None else []
-    return zero + ([f"tool length {LENGTH:g}"] if machine.tool_length is None else [])
+def missing_values(machine: Machine) -> list[Wording]:
+    """Return the nominal values of what nobody has stated."""
+    zero = Wording("comparison", "zero", values=tuple(f"{value:g}" for value in ZERO))
+    length = Wording("comparison", "length", length=LENGTH)
+    return [*([zero] if machine.workpiece_zero is None else []), *([length] if machine.tool_length is None else [])]
 
 
 def with_nominal_values(run: Run) -> Run:

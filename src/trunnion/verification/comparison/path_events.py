@@ -6,30 +6,35 @@ Out:    which events come before each of these motions, and after the last one: 
         right-hand one does).
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.model.run import Run, RunEvent
+from trunnion.messages import Wording
+from trunnion.model.run import EventValue, Run, RunEvent
 from trunnion.model.spindle_work import SpindleHole, SpindleTask
 from trunnion.verification.checks.compensation_faults import blind_corners
 from trunnion.verification.comparison.conditions import conditions
+from trunnion.verification.event_words import event_word
+from trunnion.verification.spindle_words import TURNING
 
-#: What every control has, and messages call it.
-_OF_ALL: Final = {"stop": "stop", "optional_stop": "optional stop", "dwell": "dwell"}
+#: What every control has.
+_OF_ALL: Final = ("stop", "optional_stop", "dwell")
 
 _TASKS: Final = {
-    SpindleTask.STOP: "a bore that is left with the spindle standing",
-    SpindleTask.LIFT: "a bore that is left with the tool lifted off",
-    SpindleTask.MANUAL: "a bore that is left by hand",
-}
+    SpindleTask.STOP: "bore_standing", SpindleTask.LIFT: "bore_lifted", SpindleTask.MANUAL: "bore_by_hand",
+}  # fmt: skip
+_THREADS: Final = {1: "right_hand_thread", -1: "left_hand_thread", 0: "thread"}
 
-_SENSES: Final = {1: "turns clockwise", -1: "turns counter-clockwise", 0: "stands"}
+_THEN: Final = {1: "then_clockwise", -1: "then_counter_clockwise", 0: "then_stands"}
 
 #: Words that mean the same on the same machine only: those of its builder, and what ends a program of its control.
-_OF_MACHINE: Final = {"m": "M", "h": "H", "known": "", "end": "end of the program", "retract": "retract by"}
+_OF_MACHINE: Final = ("m", "h", "known", "end", "retract")
+
+#: Stops that have a word besides.
+_WITH_WORD: Final = {"stop": "stop_for", "optional_stop": "optional_stop_for"}
 
 #: Of diagnostics of what the next program begins with.
 _LEFT_ON: Final = "NC351"
@@ -47,29 +52,34 @@ class PathEvents:
     """
 
     def __init__(self, run: Run, rows: Ints, most: int, *, same_machine: bool) -> None:
-        names = {**_OF_ALL, **(_OF_MACHINE if same_machine else {})}
-        found = [(event.before_row, text) for event, text in _texts(run, names)]
+        kinds = (*_OF_ALL, *(_OF_MACHINE if same_machine else ()))
+        found = [(event.before_row, said) for event, said in _events(run, kinds)]
         found += list(conditions(run)) if same_machine else []
         found += [
-            (row, f"{blocks} blocks without motion within radius compensation, where the control reads {most}")
+            (row, Wording("comparison", "blocks_compensated", blocks=blocks, most=most))
             for row, blocks in blind_corners(run, most)
         ]
-        found += [(hole.first, _spindle_words(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
-        found += [(len(run), f"left to the next program: {text}") for text in _left_on(run)] if same_machine else []
-        found += [(len(run), text) for text in _switched_behind(run, same_machine)]
+        found += [(hole.first, _spindle_work(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
+        left_on = _left_on(run) if same_machine else ()
+        found += [(len(run), Wording("comparison", "left_on", what=what)) for what in left_on]
+        found += [(len(run), said) for said in _switched_behind(run, same_machine)]
         at = np.searchsorted(rows, [row for row, _ in found])
-        self._events: dict[int, list[str]] = {}
-        for motion, (_, text) in zip(at.tolist(), found, strict=True):
-            self._events.setdefault(motion, []).append(text)
+        self._events: dict[int, list[Wording]] = {}
+        for motion, (_, said) in zip(at.tolist(), found, strict=True):
+            self._events.setdefault(motion, []).append(said)
         self.motions: Ints = np.unique(at).astype(np.int64)
 
-    def take(self, first: int, end: int) -> list[str]:
-        """Return what comes before the motions from ``first`` to ``end`` (exclusive) and has not been taken yet, in
-        words.
+    def take(self, first: int, end: int) -> dict[str, list[Wording]]:
+        """Return what comes before the motions from ``first`` to ``end`` (exclusive) and has not been taken yet, by
+        what is said of it: that is the same for what is the same.
 
         Sorted, as the order of what comes at one place makes no difference.
         """
-        return sorted(words for motion in self.motions_in(first, end) for words in self._events.pop(motion, ()))
+        found: dict[str, list[Wording]] = {}
+        for motion in self.motions_in(first, end):
+            for said in self._events.pop(motion, ()):
+                found.setdefault(said.what, []).append(said)
+        return dict(sorted(found.items()))
 
     def motions_in(self, first: int, end: int) -> list[int]:
         """Return the motions from ``first`` to ``end`` (exclusive) that something comes before."""
@@ -77,62 +87,65 @@ class PathEvents:
         return [int(motion) for motion in self.motions[low:high]]
 
 
-def _texts(run: Run, names: Mapping[str, str]) -> Iterator[tuple[RunEvent, str]]:
-    """Yield the events that are compared, in words; a stop says whether the spindle turns there."""
-    turns = ""
+def _events(run: Run, kinds: Sequence[str]) -> Iterator[tuple[RunEvent, Wording]]:
+    """Yield the events of some kinds, and what is said of them: of a stop, whether the spindle turns there."""
+    turns: EventValue = None
     for event in run.events:
         if event.kind == "spindle":
-            turns = str(event.value) if event.value in ("clockwise", "counter-clockwise") else ""
-        elif event.kind in names:
-            text = _words(names[event.kind], event)
-            yield event, f"{text} while the spindle turns {turns}" if turns and event.kind == "stop" else text
+            turns = event.value if event.value in TURNING else None
+        elif event.kind in kinds:
+            said = _said(event)
+            if turns and event.kind == "stop":
+                said = Wording("comparison", "stop_while_turning", stop=said, sense=event_word(turns))
+            yield event, said
 
 
-def _switched_behind(run: Run, same_machine: bool) -> list[str]:
+def _switched_behind(run: Run, same_machine: bool) -> list[Wording]:
     """Return what becomes of spindle and coolant behind the last motion: no row shows it. On another machine what the
     end of a program switches off may have no word.
     """
     found = {event.kind: event.value for event in run.events if event.before_row == len(run)}
     if not same_machine and any(event.kind == "end" for event in run.events):
         found = {kind: value for kind, value in found.items() if value != "off"}
-    return [f"{kind} {found[kind]} behind the last motion" for kind in ("spindle", "coolant") if kind in found]
+    kinds = [kind for kind in ("spindle", "coolant") if kind in found]
+    return [Wording("comparison", kind, word=event_word(found[kind])) for kind in kinds]
 
 
-def _left_on(run: Run) -> list[str]:
+def _left_on(run: Run) -> list[Wording]:
     """Return what the program leaves on at its end, or sets behind its last motion, each once."""
-    found = [each.wording.what for each in run.diagnostics if each.code == _LEFT_ON]
+    found = [each.wording for each in run.diagnostics if each.code == _LEFT_ON]
     modes = {each.mode: each.word for each in run.mode_words if each.before_row == len(run)}
-    found += [f"{mode} {word}" for mode, word in modes.items() if word]
+    found += [Wording("comparison", "mode_left_on", mode=mode, word=word) for mode, word in modes.items() if word]
     frames = [event.value for event in run.events if event.kind == "frame"]
-    found += [f"a frame, by {frames[-1]}"] if frames and frames[-1] else []
-    found += ["TCP on" for event in run.events if event.kind == "end" and event.tcp]
-    return list(dict.fromkeys(found))
+    found += [Wording("comparison", "frame_left_on", word=frames[-1])] if frames and frames[-1] else []
+    found += [Wording("comparison", "tcp_left_on") for event in run.events if event.kind == "end" and event.tcp]
+    return list({said.what: said for said in found}.values())
 
 
-def _spindle_words(run: Run, hole: SpindleHole, *, chuck: bool) -> str:
-    """Return what a cycle does with the spindle, in words that are the same for what is the same.
+def _spindle_work(run: Run, hole: SpindleHole, *, chuck: bool) -> Wording:
+    """Return what a cycle does with the spindle, which is said in the same way where it is the same.
 
     chuck  a compensating chuck counts: another machine may do without
     """
     work, row = hole.work, hole.first
     sense = int(run.spindle[row])
     after = work.after if work.after is not None else sense
-    then = f", after which the spindle {_SENSES[after]}"
     if work.task is not SpindleTask.TAP:
-        return _TASKS[work.task] + then
-    hand = {1: "right-hand", -1: "left-hand"}.get(work.hand or sense, "")
-    stroke = f" in strokes of {work.stroke:g} mm" if work.stroke else ""
-    held = " in a compensating chuck" if chuck and work.floating else ""
-    return f"{hand} thread".strip() + held + stroke + then
+        return Wording("comparison", _THEN[after], work=Wording("comparison", _TASKS[work.task]))
+    said = Wording("comparison", _THREADS[work.hand or sense])
+    if chuck and work.floating:
+        said = Wording("comparison", "in_chuck", work=said)
+    if work.stroke:
+        said = Wording("comparison", "in_strokes", work=said, stroke=f"{work.stroke:g}")
+    return Wording("comparison", _THEN[after], work=said)
 
 
-def _words(name: str, event: RunEvent) -> str:
-    if event.kind == "end":
-        return name
-    value = event.value
-    if event.kind == "dwell" and isinstance(value, int | float):
+def _said(event: RunEvent) -> Wording:
+    value, kind = event.value, event.kind
+    if kind == "dwell" and isinstance(value, int | float):
         amount = round(float(value), _DIGITS)
-        return f"{name} of {-amount:g} revolutions" if amount < 0 else f"{name} of {amount:g} s"
-    if isinstance(value, int | float):
-        return f"{name}{value:g}"
-    return name if value is None or not isinstance(value, str) else f"{name} {value}".strip()
+        return Wording("comparison", "dwell_of_turns" if amount < 0 else "dwell_of_seconds", amount=f"{abs(amount):g}")
+    if not value and not isinstance(value, int | float):
+        return Wording("comparison", kind, word="")
+    word = f"{value:g}" if isinstance(value, int | float) else str(value)
+    return Wording("comparison", _WITH_WORD.get(kind, kind), word=word)

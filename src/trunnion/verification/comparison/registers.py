@@ -11,11 +11,12 @@ change can be compared.
 from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -30,6 +31,9 @@ _LOST: Final = -1
 
 _SIDES: Final = {1: "left", -1: "right", 0: "off"}
 
+#: What a register is called in a row.
+_Said: TypeAlias = Wording | str | tuple[Wording, ...]
+
 #: Words that add to the length and to the radius of a tool, by what they do.
 _DELTAS: Final = {"DL": "length", "TOFFL": "length", "DR": "radius", "TOFFR": "radius"}
 
@@ -38,7 +42,7 @@ _DELTAS: Final = {"DL": "length", "TOFFL": "length", "DR": "radius", "TOFFR": "r
 class Register:
     """A register of both runs.
 
-    name      what messages call it
+    variant   what is said where it differs
     columns   of the first run and of the second: its values by numbers
     words     what each run calls a value in a row
     counts    in which rows of a run it counts
@@ -46,9 +50,9 @@ class Register:
     within    values that differ by no more are the same
     """
 
-    name: str
+    variant: str
     columns: tuple[StepColumn, StepColumn]
-    words: tuple[Callable[[int], str], Callable[[int], str]]
+    words: tuple[Callable[[int], _Said], Callable[[int], _Said]]
     counts: Callable[[Run, Ints], Flags]
     of_path: bool = False
     within: float = 0.0
@@ -77,7 +81,7 @@ def _state(one: Run, two: Run, register: Register) -> ComparedState:
         lambda a, b: register.counts(one, a) & register.counts(two, b),
         same,
         values,
-        lambda a, b: f"{register.name} {register.words[0](a)} against {register.words[1](b)}",
+        lambda a, b: Wording("comparison", register.variant, one=register.words[0](a), two=register.words[1](b)),
     )
 
 
@@ -87,35 +91,35 @@ def _registers(one: Run, two: Run, same_words: bool) -> Iterator[Register]:
     offsets = [_offset_column(run) for run in runs]
     if not same_words:
         offsets = [_in_order(run.state.work_offset) for run in runs]
-    yield replace(_register("work offset", runs, offsets, _offset_words, _in_workpiece), of_path=True)
+    yield replace(_register("offset", runs, offsets, _offset_words, _in_workpiece), of_path=True)
     sides = [run.state.compensation for run in runs]
-    yield replace(_register("radius compensation", runs, sides, _side_words, _everywhere), of_path=True)
+    yield replace(_register("side", runs, sides, _side_words, _everywhere), of_path=True)
     numbers: dict[Hashable, int] = {}
     digit = _LAST_DIGIT_OF_INCHES if any(run.state.inches.values.any() for run in runs) else _LAST_DIGIT
     deltas = [_delta_column(run, same_words, digit, numbers) for run in runs]
-    yield replace(_register("added to the tool:", runs, deltas, _delta_words, _everywhere), of_path=True)
+    yield replace(_register("deltas", runs, deltas, _delta_words, _everywhere), of_path=True)
     if not same_words:
         return
-    name = "tool length" if one.uses_length_numbers else "cutting edge"
-    yield _register(name, runs, [run.state.edge for run in runs], _edge_words, _in_workpiece)
-    yield _register("radius of", runs, [run.state.radius for run in runs], _radius_words, _compensated)
+    variant = "length_number" if one.uses_length_numbers else "edge"
+    yield _register(variant, runs, [run.state.edge for run in runs], _edge_words, _in_workpiece)
+    yield _register("radius", runs, [run.state.radius for run in runs], _radius_words, _compensated)
     tolerances = [_tolerance_column(run) for run in runs]
     yield replace(_register("tolerance", runs, tolerances, _tolerance_words, _cutting), within=digit)
     turns = [_tolerance_column(run, "orientation_tolerance") for run in runs]
-    yield replace(_register("tolerance of the tool axis", runs, turns, _turn_words, _cutting), within=_LAST_DIGIT)
+    yield replace(_register("axis_tolerance", runs, turns, _turn_words, _cutting), within=_LAST_DIGIT)
 
 
 def _register(
-    name: str,
+    variant: str,
     runs: tuple[Run, Run],
     columns: list[StepColumn],
-    words: Callable[[Run, int], str],
+    words: Callable[[Run, int], _Said],
     counts: Callable[[Run, Ints], Flags],
 ) -> Register:
     """Return a register that counts for the rest of the comparison only."""
     one, two = runs
     first, second = columns
-    return Register(name, (first, second), (partial(words, one), partial(words, two)), counts)
+    return Register(variant, (first, second), (partial(words, one), partial(words, two)), counts)
 
 
 def _offset_column(run: Run) -> StepColumn:
@@ -205,26 +209,28 @@ def _column(run: Run, rows: list[int], values: list[Any]) -> StepColumn:
 # What they are called
 
 
-def _offset_words(run: Run, row: int) -> str:
+def _offset_words(run: Run, row: int) -> Wording | str:
     code = int(_offset_column(run)[row])
-    return "none since TRAORI" if code == _LOST else run.work_offset_name(code) if code else "none"
+    if code > 0:
+        return run.work_offset_name(code)
+    return Wording("comparison", "cleared" if code == _LOST else "none")
 
 
-def _side_words(run: Run, row: int) -> str:
-    return _SIDES[int(run.state.compensation[row])]
+def _side_words(run: Run, row: int) -> Wording:
+    return Wording("comparison", _SIDES[int(run.state.compensation[row])])
 
 
-def _edge_words(run: Run, row: int) -> str:
+def _edge_words(run: Run, row: int) -> Wording | str:
     number = int(run.state.edge[row])
-    return f"{'H' if run.uses_length_numbers else 'D'}{number}" if number >= 0 else "none"
+    return f"{'H' if run.uses_length_numbers else 'D'}{number}" if number >= 0 else Wording("comparison", "none")
 
 
-def _radius_words(run: Run, row: int) -> str:
+def _radius_words(run: Run, row: int) -> Wording | str:
     number = int(run.state.radius[row])
-    return f"D{number}" if number >= 0 else "the tool"
+    return f"D{number}" if number >= 0 else Wording("comparison", "the_tool")
 
 
-def _delta_words(run: Run, row: int) -> str:
+def _delta_words(run: Run, row: int) -> tuple[Wording, ...]:
     held: dict[str, float] = {}
     for event in run.events:
         if event.before_row > row:
@@ -233,14 +239,17 @@ def _delta_words(run: Run, row: int) -> str:
             held.clear()
         elif event.kind == "delta" and isinstance(event.value, tuple):
             held[str(event.value[0])] = float(event.value[1] or 0.0)
-    return ", ".join(f"{name} {value:g} mm" for name, value in held.items() if value) or "nothing"
+    found = (Wording("comparison", "delta", word=name, value=value) for name, value in held.items() if value)
+    return tuple(found) or (Wording("comparison", "nothing"),)
 
 
-def _tolerance_words(run: Run, row: int, kind: str = "tolerance", unit: str = "mm") -> str:
+def _tolerance_words(run: Run, row: int, kind: str = "tolerance", variant: str = "millimetres") -> Wording:
     found = [event.value for event in run.events if event.kind == kind and event.before_row <= row]
     value = float(found[-1]) if found and isinstance(found[-1], int | float) else 0.0
-    return ("any" if np.isinf(value) else f"{value:g} {unit}") if value else "none"
+    if not value or np.isinf(value):
+        return Wording("comparison", "any" if value else "none")
+    return Wording("comparison", variant, value=value)
 
 
-def _turn_words(run: Run, row: int) -> str:
+def _turn_words(run: Run, row: int) -> Wording:
     return _tolerance_words(run, row, "orientation_tolerance", "degrees")

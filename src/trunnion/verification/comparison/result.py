@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 from trunnion.arrays import Ints
-from trunnion.results import FIRST, Figure
-from trunnion.wording import counted
+from trunnion.messages import Wording
+from trunnion.results import FIRST, NOT_DATA, Figure
 
 #: Words that are not understood which a result names one by one.
 _MOST_NAMED: Final = 10
@@ -19,13 +19,19 @@ class Difference:
     one, two  the blocks of both programs
     value     its size, by which the worst one is found: millimetres between tips plus degrees between tool axes; 0
               where only words differ
-    text      what it is
+    wording   what it is
     """
 
-    one: str
-    two: str
+    one: Annotated[Wording, Figure(take=str)]
+    two: Annotated[Wording, Figure(take=str)]
     value: float
-    text: str
+    wording: Annotated[Wording, NOT_DATA]
+
+    @property
+    @Figure()
+    def text(self) -> str:
+        """What it is."""
+        return self.wording.what
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +40,7 @@ class DifferentRows:
 
     one: int
     two: int
-    text: str
+    wording: Wording
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,29 +85,37 @@ class Comparison:
         """Whether both programs make the tool do the same; those that move nothing, or are not understood, do not."""
         return self.count == 0 and self.points > 0 and not self.unknown_words
 
-    def with_words(self, words: str) -> "Comparison":
-        """Return it with words behind those of its differences."""
-        differences = [each and replace(each, text=each.text + words) for each in (self.first, self.worst)]
-        return replace(self, first=differences[0], worst=differences[1])
+    def within(self, sentence: str, /, **parameters: object) -> "Comparison":
+        """Return it with its differences within another sentence of the catalogue ``around``."""
+        first, worst = (
+            each and replace(each, wording=each.wording.within(sentence, **parameters))
+            for each in (self.first, self.worst)
+        )
+        return replace(self, first=first, worst=worst)
 
     def lines(self) -> Iterator[str]:
         """Yield the result for a terminal."""
-        points = counted(self.points, "point")
-        within = f"tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
+        if not self.same:
+            yield from self.unknown_words[:_MOST_NAMED]
+        yield from map(str, self._wordings())
+
+    def _wordings(self) -> Iterator[Wording]:
+        reached = {"points": self.points, "tip": self.tip, "axis": self.axis}
         if self.same:
-            yield f"same: {points}, {within}"
+            yield Wording("comparison", "same", **reached)
             return
-        yield from self.unknown_words[:_MOST_NAMED]
-        if len(self.unknown_words) > _MOST_NAMED:
-            yield f"and {counted(len(self.unknown_words) - _MOST_NAMED, 'word')} more that are not understood"
-        if self.count:
-            reached = f"{points}, {within}" if self.points else points
-            yield f"different: {counted(self.count, 'place')}; on the same path: {reached}"
-        elif self.unknown_words:
-            words = counted(len(self.unknown_words), "word")
-            yield f"not compared: {words} not understood; otherwise the same: {points}"
+        unknown = len(self.unknown_words)
+        if unknown > _MOST_NAMED:
+            yield Wording("comparison", "more_words", count=unknown - _MOST_NAMED)
+        if self.count and self.points:
+            yield Wording("comparison", "different", count=self.count, **reached)
+        elif self.count:
+            yield Wording("comparison", "different_everywhere", count=self.count)
+        elif unknown:
+            yield Wording("comparison", "words_not_understood", count=unknown, points=self.points)
         else:
-            yield "not compared: neither program moves the tool"
-        for name, what in (("first", self.first), ("worst", self.worst)):
-            if what is not None and (name == "first" or what != self.first):
-                yield f"{name}: {self.programs[0]}:{what.one} against {self.programs[1]}:{what.two}: {what.text}"
+            yield Wording("comparison", "nothing_moves")
+        for variant, what in (("first", self.first), ("worst", self.worst)):
+            if what is not None and (variant == "first" or what != self.first):
+                blocks = {"program": self.programs[0], "one": what.one, "other": self.programs[1], "two": what.two}
+                yield Wording("comparison", variant, **blocks, difference=what.wording)

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 
@@ -33,7 +34,7 @@ class RotaryWays:
         """Begin again with the next point: the programs have gone other ways that are noted already."""
         self._before = None
 
-    def follow(self, a: Ints, b: Ints) -> Iterator[tuple[int, str]]:
+    def follow(self, a: Ints, b: Ints) -> Iterator[tuple[int, Wording]]:
         """Yield at which of the rows ``a`` and ``b``, (k,) each, the ways to them differ, and what differs."""
         if not len(a):
             return
@@ -43,7 +44,7 @@ class RotaryWays:
         steps = np.abs(np.diff(np.concatenate((first, apart)), axis=0))
         for k in np.flatnonzero((steps > _WAY).any(axis=1)).tolist():
             axis = int(np.argmax(steps[k])) % len(self._names)
-            yield k, f"{self._names[axis]} turns another way: {float(steps[k].max()):g} degrees apart"
+            yield k, Wording("comparison", "other_way", axis=self._names[axis], degrees=steps[k].max())
 
     def _apart(self, a: Ints, b: Ints) -> Floats:
         """How far the angles, and the ways to them, are apart in both programs, (k, 4)."""

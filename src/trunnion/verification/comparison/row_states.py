@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import forward
+from trunnion.messages import Wording
 from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
@@ -22,8 +23,8 @@ _RPM: Final = 0.5
 _BENT: Final = 1.75e-5
 
 _WAYS: Final = {
-    int(Orientation.ANGLES): "rotary axes turn evenly between points",
-    int(Orientation.GREAT_CIRCLE): "the tool axis turns on a great circle between points",
+    int(Orientation.ANGLES): "by_angles",
+    int(Orientation.GREAT_CIRCLE): "on_great_circle",
 }
 
 
@@ -36,13 +37,13 @@ def compared_states(one: MovingRows, two: MovingRows, *, path: bool) -> list[Com
         _everywhere,
         lambda a, b: np.asarray(one.tool[a] == two.tool[b]),
         lambda a, b: (one.tool[a], two.tool[b]),
-        lambda a, b: f"tool {one.tool_name(a)} against {two.tool_name(b)}",
+        lambda a, b: Wording("comparison", "tools", one=one.tool_name(a), two=two.tool_name(b)),
     )
     coolants = ComparedState(
         _everywhere,
         lambda a, b: np.asarray(one.coolant[a] == two.coolant[b]),
         lambda a, b: (one.coolant[a], two.coolant[b]),
-        lambda _a, _b: "coolant differs",
+        lambda _a, _b: Wording("comparison", "coolants"),
     )
     states += said_modes(one.run, two.run)
     return [*states, _feeds(one, two), _spindles(one, two), tools, coolants]
@@ -58,7 +59,7 @@ def _frames(one: MovingRows, two: MovingRows) -> ComparedState:
         _everywhere,
         lambda a, b: np.asarray(one.in_machine(a) == two.in_machine(b)),
         lambda a, b: (one.in_machine(a), two.in_machine(b)),
-        lambda _a, _b: "machine coordinates against coordinates of the workpiece, whose zero is not known",
+        lambda _a, _b: Wording("comparison", "frames"),
     )
 
 
@@ -76,11 +77,12 @@ def _orientations(one: Run, two: Run) -> Iterator[ComparedState]:
         found[at] = _bends(one, a[at]) & _bends(two, b[at])
         return found
 
-    def words(a: int, b: int) -> str:
-        return f"{_WAYS[int(one.orientation[a])]} against {_WAYS[int(two.orientation[b])]}"
+    def said(a: int, b: int) -> Wording:
+        ways = [Wording("comparison", _WAYS[int(way)]) for way in (one.orientation[a], two.orientation[b])]
+        return Wording("comparison", "orientations", one=ways[0], two=ways[1])
 
     yield ComparedState(
-        counts, lambda a, _b: np.zeros(len(a), np.bool_), lambda a, b: (one.orientation[a], two.orientation[b]), words
+        counts, lambda a, _b: np.zeros(len(a), np.bool_), lambda a, b: (one.orientation[a], two.orientation[b]), said
     )
 
 
@@ -99,15 +101,14 @@ def _feeds(one: MovingRows, two: MovingRows) -> ComparedState:
         feeds = one.feeds(a)
         return np.asarray(np.abs(feeds - two.feeds(b)) <= np.maximum(_FEED, 1e-4 * feeds))
 
-    def words(a: int, b: int) -> str:
-        feeds = one.feeds(np.array([a]))[0], two.feeds(np.array([b]))[0]
-        return f"feed {feeds[0]:g} against {feeds[1]:g} mm/min"
+    def said(a: int, b: int) -> Wording:
+        return Wording("comparison", "feeds", one=one.feeds(np.array([a]))[0], two=two.feeds(np.array([b]))[0])
 
     return ComparedState(
         lambda a, b: np.asarray((one.run.kind[a] != Kind.RAPID) & (two.run.kind[b] != Kind.RAPID)),
         same,
         lambda a, b: (one.programmed_feeds(a), two.programmed_feeds(b)),
-        words,
+        said,
     )
 
 
@@ -124,5 +125,5 @@ def _spindles(one: MovingRows, two: MovingRows) -> ComparedState:
         _everywhere,
         same,
         lambda a, b: (speeds(one, a), speeds(two, b)),
-        lambda a, b: f"spindle {one.spindle_words(a)} against {two.spindle_words(b)}",
+        lambda a, b: Wording("comparison", "spindles", one=one.spindle_words(a), two=two.spindle_words(b)),
     )

@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -55,14 +56,15 @@ def _state(
         cuts = np.asarray((runs[0].kind[a] != Kind.RAPID) & (runs[1].kind[b] != Kind.RAPID))
         return cuts & (columns[0].at(a) >= 0) & (columns[1].at(b) >= 0) if mode in _OF_BOTH else cuts
 
-    def name(number: int) -> str:
-        return "not stated" if number < 0 else texts[number] or "stated"
+    def name(number: int) -> Wording | str:
+        said = texts[number] if number >= 0 else ""
+        return said or Wording("comparison", "not_stated" if number < 0 else "stated")
 
     return ComparedState(
         counts,
         lambda a, b: np.asarray(columns[0].at(a) == columns[1].at(b)),
         lambda a, b: (columns[0].at(a), columns[1].at(b)),
-        lambda a, b: f"{mode} {name(columns[0][a])} against {name(columns[1][b])}",
+        lambda a, b: Wording("comparison", "modes", mode=mode, one=name(columns[0][a]), two=name(columns[1][b])),
     )
 
 

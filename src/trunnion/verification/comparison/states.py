@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Flags, Ints
+from trunnion.messages import Wording
 
 #: Values of rows of the first run and of as many of the second, (k,) each.
 Values: TypeAlias = tuple[NDArray[Any], NDArray[Any]]
@@ -25,13 +26,13 @@ class ComparedState:
     counts  in which of them it counts in both runs, (k,) bool: the others neither begin nor end a stretch
     same    in which of them it is the same, (k,) bool
     values  what it is: where these change a new stretch begins
-    words   what differs in one row of either run, for messages
+    said    what differs in one row of either run
     """
 
     counts: Callable[[Ints, Ints], Flags]
     same: Callable[[Ints, Ints], Flags]
     values: Callable[[Ints, Ints], Values]
-    words: Callable[[int, int], str]
+    said: Callable[[int, int], Wording]
 
 
 @dataclass(slots=True, eq=False)
@@ -47,9 +48,9 @@ class DifferentStretch:
     last: tuple[int, int]
 
     @property
-    def text(self) -> str:
+    def wording(self) -> Wording:
         """What differs."""
-        return self.state.words(self.a, self.b)
+        return self.state.said(self.a, self.b)
 
 
 class StateComparison:

@@ -37,6 +37,9 @@ _ARITHMETIC: Final = 1e-6
 #: Smaller rotary motion, degrees, makes no error.
 _STILL: Final = 1e-9
 
+#: How far the tip may leave a line of a cut without TCP where nothing says it, mm; or INTOL and OUTTOL together.
+LEAST_TIP: Final = 0.05
+
 #: Phases in which the tool does not touch the part.
 _FREE_PHASES: Final = (Phase.RAPID, Phase.APPROACH, Phase.DEPARTURE, Phase.TRAVERSE)
 
@@ -87,7 +90,7 @@ class LinearizationErrors:
     between its own ends.
 
     tip   mm from the straight line, without TCP; where no setting limits it, of motions that turn a rotary axis by more
-          than half a turn, which no step of a CL file asks for
+          than half a turn, which no step of a CL file asks for, and of cuts along lines of the CL file
     axis  degrees from the great circle, wherever the control interpolates rotary angles
     """
 
@@ -104,6 +107,7 @@ class LinearizationErrors:
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._is_rotary = np.array([axis.is_rotary for axis in run.machine.axes])
         self._expected = expected
+        self._behind_holes = np.array(sorted(expected.hole_exits) if expected is not None else (), np.int64)
         self._matching = matching
         self._by_default = limits.by_default
         self._tip_is_limited = math.isfinite(limits.tip)
@@ -118,6 +122,7 @@ class LinearizationErrors:
         if self._expected is not None and self._matching is not None:
             for nc, cl in self._matching.all_pair_chunks():
                 no_line = np.isin(cl, self._expected.first_rows) | (self._expected.kind(cl) == Kind.ARC)
+                no_line |= np.isin(cl, self._behind_holes)  # the tool comes from where the hole has left it
                 cl_row[nc] = np.where(no_line, -1, cl)
         return cl_row
 
@@ -126,7 +131,8 @@ class LinearizationErrors:
         kind = self._run.kind[first:end]
         tcp = self._run.state.tcp.part(first, end)
         long = self._long_turns(first, end, positions, tcp)
-        rows = self._rows_to_sample(first, end, positions, tcp, long)
+        cuts = self._cuts_without_tcp(first, end, positions, tcp)
+        rows = self._rows_to_sample(first, end, positions, tcp, long, cuts)
         off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
         on_arcs = np.flatnonzero(long & (kind == Kind.ARC))
         off_tip[on_arcs] = _off_arcs(self._run.machine_at(first), positions.joints, self._rotary, on_arcs)
@@ -140,7 +146,9 @@ class LinearizationErrors:
             kind[rows] == Kind.RAPID, tcp, self._tip_uncertainty, off_tip, off_axis,
         )  # fmt: skip
         if not self._tip_is_limited:
-            off_tip[~long] = 0.0
+            off_tip[~(long | cuts)] = 0.0
+            small = np.flatnonzero(cuts & ~long)
+            off_tip[small] = np.where(off_tip[small] > self._allowed_tip(first + small), off_tip[small], 0.0)
             off_axis[kind == Kind.RAPID] = 0.0
         self.tip.add(first, off_tip)
         if self._by_default is not None:
@@ -185,11 +193,39 @@ class LinearizationErrors:
         long[[k for k in rapids.tolist() if comes_from_home(self._run, first + k)]] = False
         return np.asarray(long)
 
-    def _rows_to_sample(self, first: int, end: int, positions: RowPositions, tcp: Flags, long: Flags) -> Ints:
+    def is_long(self, row: int) -> bool:
+        """Whether a row turns a rotary axis by more than half a turn."""
+        joints = self._run.positions(np.array([max(row - 1, 0), row])).joints[:, self._rotary]
+        return bool(np.abs(joints[1] - joints[0]).max() > _HALF_TURN)
+
+    def _cuts_without_tcp(self, first: int, end: int, positions: RowPositions, tcp: Flags) -> Flags:
+        """Which rows turn a rotary axis without TCP on a line of the CL file at feed, (end - first,)."""
+        run = self._run
+        turns = np.abs(np.diff(positions.joints[:, self._rotary], axis=0)).max(axis=1)
+        cuts = (turns > _STILL) & ~tcp & (run.kind[first:end] == Kind.LINEAR)
+        cuts &= ~run.state.machine_frame.part(first, end)
+        if self._tip_is_limited or not self._judges_turns or not cuts.any():
+            return np.zeros(end - first, np.bool_)
+        return np.asarray(cuts & (self._cl_row[first:end] >= 0))
+
+    def _allowed_tip(self, rows: Ints) -> Floats:
+        """How far the tip may leave the lines of the CL file that rows are on, (k,) mm; infinite where none is cut."""
+        allowed, cl = np.full(len(rows), np.inf), self._cl_row[rows]
+        for section in self._expected.sections if self._expected is not None else ():
+            here = np.flatnonzero((cl >= section.first) & (cl < section.end))
+            operation = section.operation
+            limit = max((operation.intol or 0.0) + (operation.outtol or 0.0), LEAST_TIP) + self._tip_uncertainty
+            free = np.isin(operation.moves.phase[cl[here] - section.first], _FREE_PHASES)
+            allowed[here] = np.where(free, math.inf, limit)
+        return allowed
+
+    def _rows_to_sample(
+        self, first: int, end: int, positions: RowPositions, tcp: Flags, long: Flags, cuts: Flags
+    ) -> Ints:
         """Rows, counted from ``first``, in which rotary motion may lead the tool off its path.
 
         Rapids count only where the tip has a limit, or in ``long`` turns, and those that only position rotary axes
-        never do.
+        never do. ``cuts`` count whatever they turn.
         """
         run = self._run
         kind, frame = run.kind[first:end], run.state.machine_frame.part(first, end)
@@ -198,7 +234,7 @@ class LinearizationErrors:
         sampled = (turns > _STILL).any(axis=1) & ~frame & (kind != Kind.ARC)
         if self._by_default is not None and not self._tip_is_limited:
             total = np.radians(turns[:, 0] + turns[:, 1])
-            sampled &= 0.25 * total * total > math.radians(self._by_default.tolerance.finishing)
+            sampled &= (0.25 * total * total > math.radians(self._by_default.tolerance.finishing)) | cuts
         sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & self._tip_is_limited) | long
         by_angles = run.orientation_between(first, end) == Orientation.ANGLES
         # No great circle leads round by more than half a turn: the words of rotary axes do.

@@ -219,14 +219,14 @@ def test_a_refused_post_tells_of_the_files_that_are_there(tmp_path: Path, capsys
     old, sheet = tmp_path / "a.mpf", tmp_path / "a.html"
     arguments = ["post", str(cl), "--machine", "yl569", "--output", str(old), "--sheet", str(sheet)]
     assert main(arguments) == 0
-    assert "of before this change" not in capsys.readouterr().err
+    assert "from before this change" not in capsys.readouterr().err
     cl.write_text((HEAD + FOOT).replace("0.0,0.0,1.0", "0.0,0.7071068,-0.7071068"), encoding="utf-8")
     assert main(arguments) == 1
-    assert f"{old}, {sheet}: warning: of before this change: do not run" in capsys.readouterr().err
+    assert f"{old}, {sheet}: warning: from before this change: do not run" in capsys.readouterr().err
     sheet.unlink()
     old.unlink()
     assert main(arguments) == 1
-    assert "of before this change" not in capsys.readouterr().err
+    assert "from before this change" not in capsys.readouterr().err
 
 
 @needs_browser
@@ -493,5 +493,11 @@ def test_a_sheet_has_the_lengths_and_numbers_of_its_tools_and_the_zeros_that_are
     trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", settings=settings, sheet=sheet)
     data = json.loads(sheet.read_text(encoding="utf-8"))
     assert [(tool["set_length"], tool["register"]) for tool in data["tools"]] == [(110.0, 1), (85.0, 2)]
+    assert data["zeros"] == [{"name": "G54", "zero_mm": [-200.0, -200.0, 100.0]}, {"name": "G55", "zero_mm": None}]
+    assert [(each["tool"], each["length_mm"]) for each in data["tool_lengths"]] == [("1", 110.0), ("2", 85.0)]
+    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", settings=settings, sheet=tmp_path / "a.html")
+    page = (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert "<bdi>G54 X−200.000 Y−200.000 Z100.000; G55 not stated</bdi>" in page
+    assert "<bdi>1: 110; 2: 85</bdi>" in page
     assert any("proven for it, and not for G55" in task for task in data["to_check"])
     assert any(task.startswith("Check that work offsets G54 and G55 are set to") for task in data["to_check"])

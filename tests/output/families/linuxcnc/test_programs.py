@@ -131,7 +131,7 @@ def test_feed_per_revolution_wants_a_spindle_speed(post: Post) -> None:
 def test_tools_have_no_names(post: Post) -> None:
     code, lines, err = post.all(HEAD.replace("LOAD/TOOL,1,ADJUST,1\n", "") + FOOT)
     assert (code, lines) == (2, [])
-    assert "LinuxCNC: tools are called by number, and not as D10; write --set tool=NUMBER" in err
+    assert "LinuxCNC: tools are called by number, and not as D10; write --set tool=OPERATION:NUMBER" in err
 
 
 def test_a_line_longer_than_the_control_reads_is_refused(post: Post) -> None:

@@ -229,7 +229,7 @@ def test_a_tool_without_number_and_name_is_an_error_that_names_the_setting(post:
     code, out, err = post.all(HEAD.replace("LOAD/TOOL,1,ADJUST,1\n", "").replace(",TOOL,D10", ",TOOL,") + FOOT)
     assert (code, out) == (2, [])
     assert "operation OP1 has no LOAD/TOOL, and its tool has no name" in err
-    assert "--set tool=NUMBER" in err
+    assert "--set tool=OPERATION:NUMBER" in err
 
 
 def test_a_missing_spindle_speed_is_said(post: Post) -> None:
