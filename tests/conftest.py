@@ -45,11 +45,12 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 @pytest.hookimpl(trylast=True)  # Hypothesis has marked its own
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the slow ones, and part those of nightly from the others."""
+    """Mark the slow ones, let them begin first, and part those of nightly from the others."""
     slow = {path for path in {item.path for item in items} if is_slow(path)}
     for item in items:
         if item.path in slow:
             item.add_marker(pytest.mark.slow)
+    items.sort(key=lambda item: item.path not in slow)  # a long one that began last would have one worker wait
     nightly = config.getoption("nightly")
     rest = [item for item in items if not is_wanted(item, nightly=nightly)]
     if rest:

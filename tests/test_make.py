@@ -9,7 +9,7 @@ import make
 import pytest
 
 from tests.support.locations import ROOT
-from tests.support.reached import files_of, import_graph, reached_tests
+from tests.support.reached import files_of, import_graph, reached_tests, reaches_site
 
 SOURCE = (ROOT / "make.py").read_text(encoding="utf-8")
 
@@ -75,3 +75,8 @@ def test_slow_tests_run_with_a_change_of_themselves_or_their_namesake_only() -> 
     assert "tests/matrix/test_matrix.py" in files_of([slow], ["tests/matrix/test_matrix.py"])
     assert "tests/cli/test_place.py" in files_of(["tests.cli.test_place"], ["src/trunnion/cli/place.py"])
     assert "tests/cli/test_place.py" not in files_of(["tests.cli.test_place"], ["src/trunnion/cli/post.py"])
+
+
+def test_the_site_is_built_for_pages_and_for_docstrings_that_it_shows() -> None:
+    assert all(reaches_site([file]) for file in ("docs/cl.md", "CHANGELOG.md", "src/trunnion/jobs/post/posting.py"))
+    assert not reaches_site(["src/trunnion/verification/verify.py", "src/trunnion/output/families/fidia/writer.py"])

@@ -161,9 +161,9 @@ def test_an_end_mark_of_dos_and_a_line_end_behind_a_comment_are_no_fault(read: R
 )
 def test_a_word_glued_to_another_is_a_damaged_one(major: str, meant: str) -> None:
     for dialect in DIALECTS.values():
-        assert acts_on_machine(major, words_that_count(dialect)) == f"may be a damaged {meant}"
+        assert acts_on_machine(major, words_that_count(dialect)) == (f"may be a damaged {meant}", (meant,))
     for known in ("MODELS", "LOADCASE", "STOPPER", "FROMAT", "SHOPEV"):
-        assert acts_on_machine(known, words_that_count(DIALECTS["clsf"])) == ""
+        assert acts_on_machine(known, words_that_count(DIALECTS["clsf"])) is None
 
 
 def test_the_name_of_a_tool_stands_behind_the_word_in_lower_case_too(read: Read) -> None:

@@ -33,7 +33,7 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 #: What is compared apart, or names the places where it stands.
-_PLACED = ("control", "assumed", "unmeasured")
+_PLACED = ("control", "assumed", "unmeasured", "inherited")
 
 
 def same_machine(one: Machine, other: Machine) -> bool:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.jobs.post.test_between_operations import PATHS
+from tests.support.two_operations import PATHS
 
 CUTS_FIRST = PATHS["three"].replace("RAPID\nGOTO/40.0,0.0,30.0", "FEDRAT/MMPM,500.0\nGOTO/40.0,0.0,30.0")
 HOLE = "CYCLE/DRILL,RAPTO,3,FEDTO,-5,MMPM,100\nGOTO/50,0,0\nCYCLE/OFF\n"

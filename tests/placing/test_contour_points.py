@@ -68,7 +68,9 @@ def test_what_is_not_known_is_reported(tmp_path: Path) -> None:
     told, cl = Remembering(SILENT), tmp_path / "boss.cls"
     cl.write_text(re.sub(r"TLDATA.*\n", "", BOSS.read_text()))
     trunnion.reach("yl569", cl=[cl], observer=told, step=30)
-    assert "the radius of the tool is not known: the programmed path is taken" in " ".join(map(str, told.found))
+    assert "the radius of the tool is not known: they are taken for those of the tool's centre" in " ".join(
+        map(str, told.found)
+    )
     told = Remembering(SILENT)
     trunnion.reach("hs664rt", cl=[BOSS], observer=told, step=30)
     assert [each.code for each in told.found if "radius compensation" in each.what] == ["SIM164"]
@@ -77,11 +79,12 @@ def test_what_is_not_known_is_reported(tmp_path: Path) -> None:
 def test_a_program_is_placed_by_the_path_of_the_centre_or_with_a_warning(tmp_path: Path) -> None:
     program, tool = tmp_path / "pocket.mpf", "1=flat:12,length=75,flutes=30"
     trunnion.post(CONTOUR, machine="yl569", output=program, settings={"radius_register": "radius"})
-    for settings, tools, width, codes in (
+    for given, tools, width, codes in (
         ({"radius_register": "radius"}, [tool], 80.0, []),
+        ({"settings": {"radius_register": "radius"}}, [tool], 80.0, []),
         ({"radius_register": "radius"}, [], 92.0, ["SIM147"]),
         ({}, [tool], 92.0, ["SIM147"]),
     ):
-        found = trunnion.place(program, machine="yl569", turns=[0.0], settings=settings, tools=tools, tool_length=120)
+        found = trunnion.place(program, machine="yl569", turns=[0.0], tools=tools, tool_length=120, **given)
         assert used(found)["X"] == pytest.approx(width, abs=0.01)
         assert [each.code for each in found.remarks if each.code in ("SIM147", "SIM164")] == codes

@@ -13,11 +13,11 @@ OTHERS = f"{{said}}\nT1 M6\nG54 S500 M3\n{MOVES}\nM5\nM30\n"
 
 #: Machines, their programs, and what is assumed of one that says nothing.
 PROGRAMS = [
-    ("matsuura_mx330", FANUC, ("G90", "G17", "G40", "G94")),
+    ("matsuura_mx330", FANUC, ("G90", "G17", "G40", "G94", "G69")),
     ("haas_umc750", FANUC, ("G90", "G17", "G40", "G94")),
     ("xyzac_trt", FANUC.replace("%\nO0001\n", "").replace("%\n", ""), ("G90", "G17", "G40", "G94")),
-    ("hs664rt", OTHERS, ("G90", "G17", "G40")),
-    ("yl569", OTHERS, ("G90", "G17", "G40", "G94", "G71")),
+    ("hs664rt", OTHERS, ("G90", "G17", "G40", "G69")),
+    ("yl569", OTHERS, ("G90", "G17", "G40", "G94", "G71", "TRAFOOF")),
 ]
 
 
@@ -39,23 +39,73 @@ def test_what_no_program_says_before_it_moves_is_assumed(
 
 
 def test_a_word_behind_the_first_motion_comes_too_late(tmp_path: Path) -> None:
-    late = FANUC.format(said=" G17 G40 G80").replace("G1 Z5.", "G90 G94 G1 Z5.")
+    late = FANUC.format(said=" G17 G40 G80 G69").replace("G1 Z5.", "G90 G94 G1 Z5.")
     assert assumed("matsuura_mx330", late, tmp_path) == ("G90",), "the feed mode matters in the first cut"
 
 
 def test_any_word_of_a_motion_ends_a_cycle(tmp_path: Path) -> None:
     for machine, text, words in PROGRAMS[:2]:
-        assert assumed(machine, text.format(said="").replace("G0 X0.", "X0."), tmp_path) == (*words, "G80")
+        found = assumed(machine, text.format(said="").replace("G0 X0.", "X0."), tmp_path)
+        assert set(found) == {*words, "G80"}
+
+
+CYCLE = "G0 X0. Y0. Z50.\n{}G81 X10. Y0. Z-5. R3. F100.\nX20. Y0.\nG80\nG0 Z50."
+
+
+@pytest.mark.parametrize(
+    ("machine", "text", "word"),
+    [("matsuura_mx330", FANUC, "G98"), ("haas_umc750", FANUC, "G98"), ("xyzac_trt", PROGRAMS[2][1], "G99")],
+)
+def test_a_cycle_relies_on_where_it_ends(machine: str, text: str, word: str, tmp_path: Path) -> None:
+    text = text.format(said=" G90 G17 G40 G94 G69 G80" if "xyz" not in machine else " G90 G17 G40 G94 G80")
+    drilled = text.replace(MOVES, CYCLE)
+    assert assumed(machine, drilled.format(""), tmp_path) == (word,)
+    for said in ("G98 ", "G99 ", "G99\n", "G98\n"):
+        assert assumed(machine, drilled.format(said), tmp_path) == ()
+    early = drilled.replace("T1 M6", f"{word}\nT1 M6")
+    assert assumed(machine, early.format(""), tmp_path) == ()
+    files = [tmp_path / f"{name}.nc" for name in ("said", "unsaid", "early")]
+    for file, program in zip(files, (drilled.format(f"{word} "), drilled.format(""), early.format("")), strict=True):
+        file.write_text(program, encoding="utf-8")
+    assert not trunnion.diff(files[0], files[1], machine=machine).same
+    assert trunnion.diff(files[0], files[2], machine=machine).same
+
+
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "xyzac_trt"])
+def test_a_move_at_the_part_relies_on_the_length_being_off(machine: str, tmp_path: Path) -> None:
+    text = (FANUC if "xyz" not in machine else PROGRAMS[2][1]).replace("G43 H1\n", "")
+    said = " G90 G17 G40 G94 G80" + ("" if "xyz" in machine else " G69")
+    assert assumed(machine, text.format(said=said), tmp_path) == ("G49",)
+    assert assumed(machine, text.format(said=said + "\nG49"), tmp_path) == ()
+    home = text.format(said=said).replace("T1 M6", "G53 G0 Z0.\nT1 M6").replace("G54 S500", "G49 G54 S500")
+    assert assumed(machine, home, tmp_path) == (), "positions of the machine have no length"
+
+
+def test_a_rotation_that_was_left_on_is_assumed_off(tmp_path: Path) -> None:
+    text = FANUC.format(said=" G90 G17 G40 G94 G80{}")
+    files = [tmp_path / "with.nc", tmp_path / "without.nc"]
+    for file, said in zip(files, (" G69", ""), strict=True):
+        file.write_text(text.format(said), encoding="utf-8")
+    assert assumed("matsuura_mx330", files[1].read_text(encoding="utf-8"), tmp_path) == ("G69",)
+    assert not trunnion.diff(*files, machine="matsuura_mx330").same
+
+
+def test_centres_of_arcs_rely_on_how_they_count_on_a_linuxcnc(tmp_path: Path) -> None:
+    text = PROGRAMS[2][1].format(said=" G90 G17 G40 G94 G80")
+    arc = text.replace("X10.\n", "G2 X10. Y0. I5. J0.\n")
+    assert assumed("xyzac_trt", arc, tmp_path) == ("G91.1",)
+    assert assumed("xyzac_trt", arc.replace("I5. J0.", "R5."), tmp_path) == ()
+    assert assumed("xyzac_trt", arc.replace("T1", "G91.1 T1"), tmp_path) == ()
 
 
 def test_what_only_a_skipped_block_says_is_assumed(tmp_path: Path) -> None:
-    text = FANUC.format(said=" G17 G40\n/G90 G94")
+    text = FANUC.format(said=" G17 G40 G69\n/G90 G94")
     assert assumed("matsuura_mx330", text, tmp_path) == ("G90", "G94")
 
 
 def test_who_asks_for_start_modes_gets_an_error_and_a_definition_may_state_them(tmp_path: Path) -> None:
     program, machine = tmp_path / "part.nc", tmp_path / "mine.toml"
-    program.write_text(FANUC.format(said=" G40 G94"), encoding="utf-8")
+    program.write_text(FANUC.format(said=" G40 G94 G69"), encoding="utf-8")
     head = 'extends = "matsuura_mx330"\n[proof]\nrequire = ["start_modes"]\n'
     machine.write_text(head, encoding="utf-8")
     found = trunnion.verify(program, machine=machine)

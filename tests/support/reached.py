@@ -2,6 +2,7 @@
 
 ``make.py quick`` runs them. A change is what differs from the point where this branch left ``main``, committed or not.
 Nothing is printed where nothing can be said: without git, without a change, or if what all tests share has changed.
+``docs`` is printed besides where the change can be seen on the site.
 """
 
 import subprocess
@@ -13,10 +14,17 @@ import grimp
 
 from tests.support.locations import ROOT, TESTS
 from tests.support.slow import is_slow
+from trunnion import _MODULES
 from trunnion.families import FAMILIES
 
 #: Files that may change the outcome of every test.
 SHARED_BY_ALL = ("pyproject.toml", "make.py", "tests/conftest.py")
+
+#: Beginnings of what the site is made from: pages, and modules whose docstrings it shows.
+SITE = (
+    "docs/", "CHANGELOG.md", "CONTRIBUTING.md", "src/trunnion/__init__.py", "src/trunnion/jobs/arguments.py",
+    *(f"src/trunnion/{name.replace('.', '/')}{end}" for name in _MODULES.values() for end in (".py", "/__init__.py")),
+)  # fmt: skip
 
 #: Texts of the modules of tests.
 TEXTS = {
@@ -111,12 +119,19 @@ def namesake(file: str) -> str:
     return str(PurePosixPath("tests", *path.parts[2:-1], f"test_{path.name}"))
 
 
+def reaches_site(changed: Iterable[str]) -> bool:
+    """Whether a change can be seen on the site."""
+    return any(file.startswith(SITE) for file in changed)
+
+
 def main() -> None:
     """Print the files of the tests, one a line."""
     changed = set(changed_files())
     if changed and not changed.intersection(SHARED_BY_ALL):
         tests = reached_tests(changed, import_graph())
-        sys.stdout.write("".join(f"{file}\n" for file in files_of(tests, changed)) if tests is not None else "")
+        if tests is not None:
+            site = ["docs"] if reaches_site(changed) else []
+            sys.stdout.write("".join(f"{file}\n" for file in (*files_of(tests, changed), *site)))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,16 @@ from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
 
 
+@pytest.fixture(autouse=True)
+def texts_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A text that is missing, or whose parameters are, fails here, where a user is told what is known of it."""
+
+    def fail(variant: str, parameters: object) -> str:
+        raise AssertionError(f"{variant} has no text for {parameters}")
+
+    monkeypatch.setattr("trunnion.messages._unfilled", fail)
+
+
 @pytest.fixture(scope="session")
 def yl569() -> Machine:
     return load_machine("yl569")

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.support.examples import THIRDS
 from tests.support.jobs import post_job
 from tests.support.pole_paths import around_pole
 from tests.support.verifying import CL_FOOT, CL_HEAD, check
@@ -104,9 +105,10 @@ def test_without_its_declaration_it_fails(leaning: Posted) -> None:
     assert "axis" in failed(leaning.verified(deviations=Deviations.none()))
 
 
-def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
+@pytest.mark.parametrize("third", THIRDS)
+def test_a_wrong_rotary_position_is_found_in_every_row(third: int, leaning: Posted) -> None:
     tried = 0
-    for k, line in enumerate(leaning.text):
+    for k, line in list(enumerate(leaning.text))[third::3]:
         for letter in "BC":
             if any(word.startswith(letter) and word[1:2] in "-.0123456789" for word in line.split(" ")) and "X" in line:
                 for change in (2e-5, 0.3):
@@ -116,7 +118,7 @@ def test_a_wrong_rotary_position_is_found_in_every_row(leaning: Posted) -> None:
                     )
                     if "SUPA" not in line:
                         assert "axis" in failed(found), (line, change)
-    assert tried > 4 * len(leaning.deviations.leaned_rows)
+    assert tried > len(leaning.deviations.leaned_rows)
 
 
 def test_a_lean_beyond_the_requested_one_is_not_accepted(leaning: Posted) -> None:

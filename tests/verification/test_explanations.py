@@ -43,7 +43,7 @@ def stated(tree: ast.Module, shared: dict[str, int]) -> Iterator[str]:
     }
     places = shared | key_places(tree)
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(".check") and len(node.args) == 3:
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(".check") and len(node.args) == 2:
             # A collector makes it: ``Faults.check``.
             key = node.args[0]
             found = key.value if isinstance(key, ast.Constant) else constants.get(ast.unparse(key))

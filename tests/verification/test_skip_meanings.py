@@ -232,6 +232,73 @@ def test_all_combinations_of_three_levels_are_judged_and_not_those_of_four(tmp_p
     )
 
 
+#: What an OPSKIP may hold: motions, holes, and what stands between motions.
+WITHIN = {
+    "cuts": "GOTO/5,0,6\nGOTO/5,7,6\n",
+    "a cut out and back": "GOTO/5,0,6\nRAPID\nGOTO/0,0,30\n",
+    "holes": "CYCLE/DRILL,RAPTO,3,FEDTO,8,MMPM,200,RTRCTO,20\nGOTO/5,5,2\nGOTO/9,5,2\nCYCLE/OFF\nRAPID\nGOTO/9,5,30\n",
+    "a dwell": "DELAY/2\n",
+    "a stop": "STOP\nSPINDL/RPM,1000,CLW\n",
+    "coolant": "COOLNT/FLOOD\n",
+    "another speed": "SPINDL/RPM,1500,CLW\n",
+}
+
+
+def with_opskip(within: str) -> str:
+    """A CL file in which the operator may skip something."""
+    before, behind = CL.split("OPSKIP/ON\n")[0], CL.split("OPSKIP/OFF\n")[1]
+    return f"{before}OPSKIP/ON\n{within}OPSKIP/OFF\n{behind}"
+
+
+@pytest.mark.parametrize("machine", [*MACHINES, "generic_head_head_ca"])
+@pytest.mark.parametrize("within", WITHIN)
+def test_an_opskip_of_which_no_block_may_be_skipped_fails(machine: str, within: str, tmp_path: Path) -> None:
+    cl, program = tmp_path / "p.cls", tmp_path / "p.nc"
+    cl.write_text(with_opskip(WITHIN[within]), encoding="utf-8")
+    trunnion.post(cl, machine=machine, output=program)
+    sound = trunnion.verify(program, machine=machine, cl=cl)
+    assert sound.passed
+    assert "1 OPSKIP" in next(check.summary for check in sound.checks if check.key == "stops")
+    lines = program.read_text(encoding="utf-8").splitlines()
+    first = min(k for k, line in enumerate(lines) if line.startswith("/"))
+    program.write_text("\n".join([*(line.removeprefix("/") for line in lines), ""]), encoding="utf-8")
+    lost = trunnion.verify(program, machine=machine, cl=cl)
+    assert [check.key for check in lost.checks if not check.passed] == ["stops"]
+    place = next(check.places[0] for check in lost.checks if check.key == "stops")
+    assert place.text == "the CL file has OPSKIP here, and no block may be skipped (/)"
+    assert place.cl_line == cl.read_text(encoding="utf-8").splitlines().index("OPSKIP/ON") + 1
+    assert abs(place.nc_line - first - 1) <= 12  # of holes: the block behind them
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_one_of_two_opskip_may_not_be_lost(machine: str, tmp_path: Path) -> None:
+    cl, program = tmp_path / "p.cls", tmp_path / "p.nc"
+    second = "RAPID\nGOTO/10,7,30\nOPSKIP/ON\nGOTO/20,7,6\nRAPID\nGOTO/20,7,30\nOPSKIP/OFF\nRAPID\nGOTO/30,0,50\n"
+    cl.write_text(CL.replace("RAPID\nGOTO/30,0,50\n", second), encoding="utf-8")
+    trunnion.post(cl, machine=machine, output=program)
+    assert trunnion.verify(program, machine=machine, cl=cl).passed
+    lines = program.read_text(encoding="utf-8").splitlines()
+    at = [k for k, line in enumerate(lines) if line.startswith("/")]
+    split = next(i for i in range(1, len(at)) if any(line.strip() for line in lines[at[i - 1] + 1 : at[i]]))
+    for own in (at[:split], at[split:]):
+        text = [line.removeprefix("/") if k in own else line for k, line in enumerate(lines)]
+        program.write_text("\n".join([*text, ""]), encoding="utf-8")
+        lost = trunnion.verify(program, machine=machine, cl=cl)
+        stops = next(check for check in lost.checks if check.key == "stops")
+        assert [place.text for place in stops.places] == [
+            "the CL file has OPSKIP here, and no block may be skipped (/)"
+        ]
+
+
+def test_an_opskip_that_changes_nothing_needs_no_block(tmp_path: Path) -> None:
+    cl, program = tmp_path / "p.cls", tmp_path / "p.nc"
+    cl.write_text(with_opskip("SPINDL/RPM,1000,CLW\n").replace("GOTO/0,0,5", "COOLNT/FLOOD\nGOTO/0,0,5"))
+    trunnion.post(cl, machine="yl569", output=program)
+    text = program.read_text(encoding="utf-8")
+    program.write_text("\n".join(line.removeprefix("/") for line in text.splitlines()) + "\n", encoding="utf-8")
+    assert trunnion.verify(program, machine="yl569", cl=cl).passed
+
+
 _CUT = (
     "TOOL PATH/ONE,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\n"
     "RAPID\nGOTO/20,-40,40,0,0,1\nRAPID\nGOTO/20,-40,2\nFEDRAT/MMPM,500\nGOTO/20,-40,-5\nGOTO/20,40,-5\n"

@@ -11,7 +11,7 @@ from tests.support.locations import YL569
 from tests.support.verifying import CL_FOOT, CL_HEAD, FOOT, HEAD, Verifier
 from trunnion.definitions.marked_values import MarkedValue
 from trunnion.errors import InputError, Severity
-from trunnion.machines import Machine, load_machine
+from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.unmeasured import unmeasured_values
 from trunnion.messages import foreign
 from trunnion.reporting.html_text import verdict_banner
@@ -66,7 +66,7 @@ def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured
     ok, every = sound.standing.ok, len(sound.checks)
     assert sound.standing.told == (
         f"Passed in part: {ok} of {every} checks; {every - ok} not checked; stands on 2 values nobody measured; "
-        "assumed: the control starts with G40"
+        "assumed: the control starts with G40, TRAFOOF"
     )
 
 
@@ -174,14 +174,40 @@ def test_only_values_that_matter_to_a_program_are_counted(tmp_path: Path, verifi
     file = tmp_path / "own.toml"
     file.write_text(MARKED.replace("# measure\n", "# measure: software limits\n"))
     still = stands_on(verified(PROGRAM, machine=load_machine(file)))
-    # X alone moves: no point of a rotary axis matters, and nothing of Y and B.
-    assert still["travel"] == ["X limits_mm"]
-    assert still["speed"] == ["X rapid_mm_min"]
+    # X and Z move: no point of a rotary axis matters, and nothing of Y and B. The limits of Z are those of a yl569.
+    assert still["travel"] == ["X limits_mm", "Z limits_mm"]
+    assert still["speed"] == ["X rapid_mm_min", "Z rapid_mm_min"]
     assert still["acceleration"] == still["words"] == []
     turned = PROGRAM.replace("G1 X10 F500", "G1 X10 C30 F500")
     assert stands_on(verified(turned, machine=load_machine(file)))["travel"] == [
-        "spindle gauge_point_mm", "C point_mm", "X limits_mm",
+        "spindle gauge_point_mm", "C point_mm", "X limits_mm", "C endless", "C output", "Z limits_mm",
     ]  # fmt: skip
+
+
+def test_what_another_machine_has_been_measured_for_is_not_measured_for_the_one_that_extends_it(
+    tmp_path: Path, verified: Verifier
+) -> None:
+    """It is that of the file which names it; a file without a name changes the machine that it extends."""
+    (tmp_path / "named.toml").write_text('schema = 1\nextends = "matsuura_mx330"\nname = "Own"\n')
+    (tmp_path / "changed.toml").write_text('schema = 1\nextends = "named.toml"\n[workpiece]\nzero_mm = [0, 0, 5]\n')
+    (tmp_path / "same.toml").write_text('schema = 1\nextends = "matsuura_mx330"\n[control.settings]\nshop = ""\n')
+    names = [value.name for value in load_machine(tmp_path / "named.toml").inherited]
+    assert names[:2] == ["spindle gauge_point_mm", "spindle max_rpm"]
+    assert {"C point_mm", "X limits_mm", "X home_mm", "A limits_deg", "C endless", "rotary table shape"} <= set(names)
+    assert [value.name for value in load_machine(tmp_path / "changed.toml").inherited] == names
+    assert not load_machine(tmp_path / "same.toml").inherited
+    assert all(not load_machine(name).inherited for name in shipped_machines())
+    turned = PROGRAM.replace("G1 X10 F500", "G1 X10 C30 F500")
+    for own, counts in (("", True), ("[spindle]\ngauge_point_mm = [1, 2, 3]\n", False)):
+        text = 'schema = 1\nextends = "yl569"\nname = "Own"\n'
+        (tmp_path / "base.toml").write_text(f"{text}[spindle]\ngauge_point_mm = [1, 2, 3]\n")
+        (tmp_path / "own.toml").write_text(f'schema = 1\nextends = "base.toml"\nname = "Second"\n{own}')
+        machine = load_machine(tmp_path / "own.toml", {"proof": {"require": ["measured"]}})
+        found = verified(turned, machine=machine)
+        assert ("spindle gauge_point_mm" in stands_on(found)["travel"]) == counts
+        basis = next(check for check in found.checks if check.key == "basis")
+        assert not basis.passed
+        assert ("gauge_point_mm (base.toml:5)" in basis.summary) == counts
 
 
 def test_a_demand_for_measured_values_counts_those_that_matter(tmp_path: Path, verified: Verifier) -> None:

@@ -27,9 +27,10 @@ def definition_like(machine: Machine, name: str) -> str:
 
 def _spindle(machine: Machine) -> Iterator[str]:
     lines = []
-    if any(axis.is_rotary and axis.mount is Mount.TOOL for axis in machine.axes):
-        point = written(list(machine.spindle_point))
-        lines.append(f"gauge_point_mm = {point} # measure: with the pivot of the head, where tool lengths begin")
+    has_head = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in machine.axes)
+    if has_head or machine.spindle_point_is_stated:
+        point, pivot = written(list(machine.spindle_point)), "with the pivot of the head, " if has_head else ""
+        lines.append(f"gauge_point_mm = {point} # measure: {pivot}where tool lengths begin, all axes at zero")
     if machine.spindle_max_rpm is not None:
         lines.append(f"max_rpm = {written(machine.spindle_max_rpm)} # measure: the plate of the spindle")
     if lines:

@@ -235,7 +235,8 @@ class ClInterpreter:
         if self._glued is None:
             self._state.note_unknown(statement, f"{statement.major} is not known")
             return
-        why = acts_on_machine(statement.major, self._words)
+        found = acts_on_machine(statement.major, self._words)
+        why = found.why if found else ""
         if statement.major.startswith("->") and not why and not self._state.strict:
             what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
             self._diagnostics.remark(self._state.line, Wording("CL220", "comment_all_but", major=statement.major[:40]))
@@ -250,7 +251,7 @@ class ClInterpreter:
         if not why and _is_system(statement, 9, 12) and statement.values not in _NO_SYSTEMS:
             why = "may be the coordinate system of the points behind it"
         what = f"{statement.major} {why if why.startswith('may') else 'is not known'}"
-        self._state.note_unknown(statement, what, acts=bool(why))
+        self._state.note_unknown(statement, what, acts=bool(why), meant=found.meant if found else ())
 
 
 def _is_system(statement: Statement, *counts: int) -> bool:

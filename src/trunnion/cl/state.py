@@ -227,15 +227,18 @@ class ReaderState:
         else:
             self.first_inch_feed = self.first_inch_feed or self.line
 
-    def note_unknown(self, statement: Statement, what: str, *words: str, acts: bool = True) -> None:
+    def note_unknown(
+        self, statement: Statement, what: str, *words: str, acts: bool = True, meant: tuple[str, ...] = ()
+    ) -> None:
         """Note that a statement, or some ``words`` of it, are not known: one event a statement, which says why.
 
-        ``acts``: it may change the machine, as all known statements with unknown words do.
+        ``acts``: it may change the machine, as all known statements with unknown words do. ``meant``: the words that it
+        may be, damaged or in one line.
         """
         events = self.builder.events
         if self.strict:
             self.diagnostics.error(self.line, Wording("CL210", "unknown_in_strict", unknown=what))
-        found = UnknownStatement(self.operation_row, self.line, statement.source, words, what, acts)
+        found = UnknownStatement(self.operation_row, self.line, statement.source, words, what, acts, meant)
         for k in range(len(events) - 1, -1, -1):
             before = events[k]
             if before.line != self.line:

@@ -8,8 +8,6 @@ from trunnion.errors import Problem, merge_repeated, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import ShopStatement, Toolpath, UnknownStatement
 
-_CURE = "a program is refused unless the control's definition says what becomes of it ([control.statements])"
-
 
 def statement_words(text: str) -> tuple[str, frozenset[str]]:
     """Return the major word of a statement, and its values as text; no words if it cannot be read."""
@@ -43,20 +41,29 @@ def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
 def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
     """Return what is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
-        warning(toolpath.file, event.line, Wording("CL210", "unknown", unknown=event.what))
+        warning(toolpath.file, event.line, _said(event, Wording("CL210", "unknown", unknown=event.what)))
         if event.acts
         else warning(toolpath.file, event.line, Wording("CL220", "unknown", unknown=event.what))
         for event in _unknown_events(toolpath)
     )
 
 
-def unknown_statement_errors(toolpath: Toolpath, cure: str) -> tuple[Problem, ...]:
+def unknown_statement_errors(toolpath: Toolpath) -> tuple[Problem, ...]:
     """Why no program is made of a toolpath: statements that are not known and may change the machine."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, Wording("CL210", "unknown_refused", unknown=event.what, cure=cure))
+        Problem(toolpath.file, event.line, _said(event, Wording("CL210", "unknown_refused", unknown=event.what)))
         for event in _unknown_events(toolpath)
         if event.acts
     )
+
+
+def _said(event: UnknownStatement, otherwise: Wording) -> Wording:
+    """Return what is said of a statement: without the word that is meant, a program would lack what it does."""
+    if not event.meant:
+        return otherwise
+    if len(event.meant) > 1:
+        return Wording("CL210", "in_one_line", unknown=event.what, meant=event.meant)
+    return Wording("CL210", "damaged", unknown=event.what, meant=event.meant[0])
 
 
 def _unknown_events(toolpath: Toolpath) -> Iterator[UnknownStatement]:

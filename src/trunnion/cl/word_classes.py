@@ -7,7 +7,7 @@ like a damaged one of these.
 
 import re
 from collections.abc import Collection
-from typing import Final
+from typing import Final, NamedTuple
 
 from trunnion.cl.dialect import Dialect
 from trunnion.cl.dialects import DIALECTS
@@ -91,34 +91,44 @@ def words_that_count(dialect: Dialect) -> frozenset[str]:
     }
 
 
-def acts_on_machine(major: str, words: Collection[str]) -> str:
-    """Why a statement may have changed the machine, by its major word; empty if nothing suggests it.
+class Suspicion(NamedTuple):
+    """Why a statement may have changed the machine; ``meant``: the words that it may be, if any."""
+
+    why: str
+    meant: tuple[str, ...] = ()
+
+
+def acts_on_machine(major: str, words: Collection[str]) -> Suspicion | None:
+    """Why a statement may have changed the machine, by its major word; None if nothing suggests it.
 
     ``words``: those of its dialect (``words_that_count``), one of which may be damaged. A statement without a slash is
     all major word: each word between its commas counts.
     """
-    if not ACTING_WORDS.isdisjoint((major, *major.split(","))):
-        return "is not known"
+    parts = major.split(",")
+    if not ACTING_WORDS.isdisjoint((major, *parts)):
+        return Suspicion("is not known", tuple(part for part in parts if part in ACTING_WORDS) if parts[1:] else ())
+    meant = _damaged_word(major, words)
+    return Suspicion(f"may be a damaged {meant}", (meant,)) if meant else None
+
+
+def _damaged_word(major: str, words: Collection[str]) -> str:
+    """Return the word that a major word may be, damaged; empty if it looks like none."""
     if motion := next((word for word in _MOTION_WORDS if major.startswith(word) or major.endswith(word)), ""):
-        return f"may be a damaged {motion}"
+        return motion
     letters = _LETTERS.match(major)
     if letters and letters[0] != major and letters[0] in words:
-        return f"may be a damaged {letters[0]}"
+        return letters[0]
     if meant := next((word for word in sorted(words) if _is_one_letter_off(major, word)), ""):
-        return f"may be a damaged {meant.removeprefix('->')}"
+        return meant.removeprefix("->")
     lettered = major.replace("0", "O").replace("1", "I")
     if lettered != major and _is_known(lettered, words):
-        return f"may be a damaged {lettered}"
+        return lettered
     if glued := next(
         (word for word in _BARE_WORDS if major.startswith(word) and _is_known(major[len(word) :], words)), ""
     ):
-        return f"may be a damaged {glued}"
+        return glued
     first = major.partition(",")[0]
-    if meant := next(
-        (word for word in sorted(words) if first.startswith(word) and first[len(word) :] in _VALUE_WORDS), ""
-    ):
-        return f"may be a damaged {meant}"
-    return ""
+    return next((word for word in sorted(words) if first.startswith(word) and first[len(word) :] in _VALUE_WORDS), "")
 
 
 def _is_known(major: str, words: Collection[str]) -> bool:

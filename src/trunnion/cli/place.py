@@ -63,6 +63,7 @@ def run(given: Given) -> int:
         tilts=(_FREE_STEP if given.free else given.tilts) or (),
         zero=given.zero,
         tool_length=given.tool_length,
+        radius_register=given.radius_register,
         settings=settings,
         strict=given.strict,
         subprograms=given.subprograms,

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from trunnion.cli.post import old_files_told, print_dialects, print_summary
+from trunnion.cli.printing import tell
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.files import check_outputs
@@ -52,3 +53,5 @@ def _print_files(result: ProjectResult) -> None:
         seen.update(path.file for path in program.toolpaths)
     for program in result.results:
         print_summary(str(program.output), program)
+    if result.simulation is not None:
+        tell(f"simulation: {result.simulation.told}")

@@ -47,8 +47,8 @@ def fault_notice(file: str, line: int, fault: Fault, severity: Severity) -> Prob
 
 
 def unknown_radius(file: str, line: int) -> Problem:
-    """Return what is said where the radius of the tool is not known."""
-    return Problem(file, line, Wording("SIM147", "radius_not_known"), severity=Severity.WARNING)
+    """Return what is said of a CL file along a contour that does not state the radius of the tool."""
+    return Problem(file, line, Wording("SIM147", "contour_radius_not_known"), severity=Severity.WARNING)
 
 
 def unknown_corners(file: str, line: int) -> Problem:

@@ -162,6 +162,7 @@ class PlaceArguments(ReadingArguments, BodyArguments, SetUpArguments, total=Fals
     goal: str
     turns: float | Sequence[float] | None
     tilts: float | Sequence[float]
+    radius_register: Literal["unknown", "difference", "radius"] | None
     settings: Settings | None
     subprograms: Sequence[FilePath]
 

@@ -20,6 +20,7 @@ from trunnion.definitions.value_marks import ASSUMED, MARKS
 from trunnion.errors import InputError, Problem
 from trunnion.machines.body_tables import read_bodies
 from trunnion.machines.chain_checks import check_chain
+from trunnion.machines.inherited import inherited_values
 from trunnion.machines.machine import (
     AngleOutput,
     Axis,
@@ -156,6 +157,7 @@ def read_machine(table: Table, key: str) -> Machine:
         spindle_point_is_stated="gauge_point_mm" in spindle,
         unmeasured=tuple(marked_in(table.content, MARKS)),
         assumed=tuple(marked_in(table.content, ASSUMED)),
+        inherited=tuple(inherited_values(table, str(machine_library()))),
         demands=demands,
         home_at=home_at,
     )

@@ -204,6 +204,7 @@ class Machine:
     spindle_point_is_stated  the definition states the gauge point; else it is assumed to be in the machine's zero
     unmeasured          values that the definition marks as still to be measured or entered, with their places
     assumed             values that it marks as assumptions, with their places
+    inherited           measured values that it has from another machine, which it extends, with their places
     demands             what a proof must stand on: names of ``loading.DEMANDS``
     home_at             linear axes that must be at home before a ``tool_change`` and the ``end``; silent: all
     """
@@ -229,19 +230,25 @@ class Machine:
     spindle_point_is_stated: bool = True
     unmeasured: tuple[MarkedValue, ...] = ()
     assumed: tuple[MarkedValue, ...] = ()
+    inherited: tuple[MarkedValue, ...] = ()
     demands: tuple[str, ...] = ()
     home_at: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def nobody_measured(self) -> tuple[MarkedValue, ...]:
-        """What counts although nobody has measured it: marked values, and what is assumed if unstated."""
+        """What counts although nobody has measured it: marked values, those of another machine, and what is assumed if
+        unstated.
+        """
         homes = (
             MarkedValue(f"{axis.name} home_{'deg' if axis.is_rotary else 'mm'}", "", 0, "not stated", "axis")
             for axis in self.axes
             if not axis.home_is_stated
         )
         gauge = MarkedValue("spindle gauge_point_mm", "", 0, "not stated", "spindle")
-        return (*self.unmeasured, *self.assumed, *homes, *(() if self.spindle_point_is_stated else (gauge,)))
+        marked = (*self.unmeasured, *self.assumed)
+        names = {value.name for value in marked}
+        others = (value for value in self.inherited if value.name not in names)
+        return (*marked, *others, *homes, *(() if self.spindle_point_is_stated else (gauge,)))
 
     @property
     def names(self) -> tuple[str, ...]:

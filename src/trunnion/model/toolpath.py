@@ -275,16 +275,16 @@ class SetMode(Event):
 class UnknownStatement(Event):
     """A statement that is not known, or some of whose words are not: what is known of it are events of their own.
 
-    text   as it stands in the CL file
-    words  those that are not known; none if all of the statement is not
-    what   why, for messages
-    acts   it may move the machine, turn an axis, change a tool or switch something: no program is made without it
+    words  those of ``text``, as the CL file has it, that are not known; none if all of the statement is not
+    what   why, for messages; ``meant``: the words that it may be, damaged or in one line
+    acts   it may move or switch something: no program is made without it
     """
 
     text: str
     words: tuple[str, ...] = field(default=(), compare=False)
     what: str = field(default="", compare=False)
     acts: bool = field(default=True, compare=False)
+    meant: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)

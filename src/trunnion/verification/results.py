@@ -1,6 +1,6 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
@@ -200,6 +200,7 @@ class Verification:
     was recorded; None: it was not. ``remarks`` are the warnings that were given on the way.
     ``driven`` is the run of the tool's centre where the control compensates its radius; None: it goes as programmed.
     ``skip_levels`` has the levels of block skip (``/``) that each OPSKIP of the CL files has in the program.
+    ``lost_skips`` are the places, by their numbers, of those of which no block has ``/``.
     """
 
     program: str
@@ -215,6 +216,7 @@ class Verification:
     clamping: Clamping | None = None
     remarks: tuple[Problem, ...] = ()
     skip_levels: tuple[frozenset[int], ...] = ()
+    lost_skips: Mapping[int, Place] = field(default_factory=dict)
     driven: CentreRun | None = None
 
     @property

@@ -1,16 +1,19 @@
 """What else a program means: with the switches of block skip on, blocks with ``/`` are left out.
 
 In:     runs of programs, each with what it is in its other meanings (``Run.skipped``).
-Out:    the levels that are on in each other meaning; and checks that fail in one of them.
+Out:    the levels that are on in each other meaning; checks that fail in one of them; and the OPSKIP that a program has
+        lost: none of its blocks may be skipped.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.skip_switches import has_every_combination, skip_combinations
-from trunnion.verification.results import Check, Verification
+from trunnion.verification.context import MAX_PLACES, check_from_places
+from trunnion.verification.results import Check, Place, Verification
 
 
 def other_meanings(*runs: Run) -> list[frozenset[int]]:
@@ -29,7 +32,7 @@ def words_of(levels: frozenset[int], *runs: Run) -> Wording:
 def with_other_meanings(
     proof: Verification, verify: Callable[[Run, frozenset[int] | None], Verification], *, has_toolpaths: bool
 ) -> Verification:
-    """Return a proof that fails where the program fails with blocks skipped.
+    """Return a proof that fails where the program fails with blocks skipped, or does not let them be skipped.
 
     It is compared with the CL files without those of their OPSKIP whose blocks are left out in the program. Where an
     OPSKIP is left out only in part, and where blocks without an OPSKIP may be skipped, it is judged by itself.
@@ -51,7 +54,35 @@ def with_other_meanings(
     if has_toolpaths and not has_every_combination(used):
         alone.append(phrase("other_combinations", count=len(used)))
     checks = _worse_checks(proof.checks, others) if others else iter(proof.checks)
-    return replace(proof, checks=tuple(_with_missing(checks, alone)))
+    lost = _lost(proof, verify) if has_toolpaths else []
+    return replace(proof, checks=tuple(_with_lost(_with_missing(checks, alone), lost)))
+
+
+def _lost(proof: Verification, verify: Callable[[Run, frozenset[int] | None], Verification]) -> list[Place]:
+    """Return the places of the OPSKIP without which the CL files ask for another program, and of which no block has /.
+
+    What changes nothing, such as a mode that holds already, has no block of its own.
+    """
+
+    def matters(numbers: Iterable[int]) -> bool:
+        found = verify(proof.run, frozenset(numbers)).checks
+        return any(not check.passed and passed.get(check.key, False) for check in found)
+
+    passed = {check.key: check.passed for check in proof.checks}
+    if not proof.lost_skips or not matters(proof.lost_skips):
+        return []
+    first = dict(islice(proof.lost_skips.items(), MAX_PLACES))
+    found = [place for number, place in first.items() if matters([number])]
+    return found or list(first.values())
+
+
+def _with_lost(checks: Iterable[Check], lost: Sequence[Place]) -> Iterator[Check]:
+    """Yield the checks; that of block skip fails where an OPSKIP is lost."""
+    for check in checks:
+        if check.key == "stops" and lost:
+            yield check_from_places(check.key, [*([] if check.passed else check.places), *lost], None)
+        else:
+            yield check
 
 
 def _left_out(

@@ -14,7 +14,7 @@ from trunnion.model.run import Run
 from trunnion.model.tool_additions import with_added_lengths
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification.checks.driven_path import driven_path
-from trunnion.verification.checks.skip_faults import stretch_levels
+from trunnion.verification.checks.skip_faults import lost_skips, stretch_levels
 from trunnion.verification.checks.table import Compared, Measured, all_checks
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.declared_deviations import accept_deviations
@@ -65,10 +65,11 @@ def verify(
     context, motion = seen.context, seen.motion
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
+    levels = stretch_levels(context) if isinstance(context, ComparedContext) else ()
+    lost = lost_skips(context, levels) if isinstance(context, ComparedContext) else {}
     return Verification(
         run.files[0], run.machine, run, all_checks(seen), motion.seconds, motion.tip_feed, cl_line, operations,
-        waiting=motion.waiting, skip_levels=stretch_levels(context) if isinstance(context, ComparedContext) else (),
-        driven=None if centre.run is run else centre,
+        waiting=motion.waiting, skip_levels=levels, lost_skips=lost, driven=None if centre.run is run else centre,
     )  # fmt: skip
 
 

@@ -15,13 +15,11 @@ FOLDER = ROOT / "examples" / "impeller"
 SLACK = 0.01 + 0.0015
 
 
+@pytest.mark.nightly  # test_impeller_cutting says it of one machine in each run, tests/impeller of these impellers
 @pytest.mark.parametrize(
     ("name", "machine", "scallop", "round_part", "operation", "copies", "radius"),
     [
-        pytest.param(
-            "mixed_flow", "generic_head_head_ca", 0.3, "STOCK_ROUGHING", "ROOT_BLEND", 10, 2.5,
-            marks=pytest.mark.nightly,
-        ),
+        ("mixed_flow", "generic_head_head_ca", 0.3, "STOCK_ROUGHING", "ROOT_BLEND", 10, 2.5),
         ("turbo3d", "generic_nutated_b45_c", 0.15, "STOCK_FINISHING", "HUB_FINISH", 9, 1.0),
     ],
 )  # fmt: skip

@@ -10,6 +10,7 @@ import pytest
 import trunnion
 from tests.support.posting import FOOT, HEAD
 from trunnion.cli import main
+from trunnion.messages import catalogue
 
 #: One machine of each family of controls.
 MACHINES = ("yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt")
@@ -72,6 +73,34 @@ def test_what_looks_like_a_damaged_statement_is_refused_too(tmp_path: Path) -> N
         trunnion.post(part(tmp_path, *DAMAGED), machine="yl569")
     assert [problem.line for problem in caught.value.problems] == list(range(12, 12 + len(DAMAGED)))
     assert all("may be a damaged" in problem.what for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize(
+    ("statement", "meant"),
+    [
+        ("GTO/1,2,3", ["GOTO"]), ("GOTO1,2,3", ["GOTO"]), ("RAPID,GOTO/1,2,3", ["RAPID", "GOTO"]), ("RAPD", ["RAPID"]),
+        ("GODLT/1,2,3", ["GODLTA"]), ("GOHOM", ["GOHOME"]), ("CYCL/DRILL", ["CYCLE"]), ("CICLE/1,2,3", ["CIRCLE"]),
+    ],
+)  # fmt: skip
+def test_the_cure_of_a_damaged_motion_is_the_word_that_is_meant(
+    tmp_path: Path, statement: str, meant: list[str], machine: str
+) -> None:
+    """A line that is removed would be missing in the program, and in the CL file that it is compared with."""
+    with pytest.raises(trunnion.InputError) as caught:
+        trunnion.post(part(tmp_path, statement), machine=machine)
+    (problem,) = caught.value.problems
+    assert problem.cure.startswith(f"write {' and '.join(meant)}")
+    (remark,) = trunnion.read_cl(part(tmp_path, statement)).remarks
+    assert remark.cure == problem.cure
+
+
+def test_no_cure_of_a_statement_removes_it() -> None:
+    for text in catalogue("en", "cl")["CL210"].values():
+        assert "remove" not in text["cure"]
+        assert "leave" not in text["cure"]
+    for code in ("CTL450", "CTL455"):
+        assert all("out" not in text["cure"].split() for text in catalogue("en", "controls")[code].values())
 
 
 def test_a_line_of_numbers_alone_is_refused(tmp_path: Path) -> None:

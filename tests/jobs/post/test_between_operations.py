@@ -8,45 +8,11 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from tests.support.two_operations import PATHS
 from trunnion.options.words import PROOF_SETTINGS
 from trunnion.verification import Check
 
 MACHINES = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt", "linuxcnc_5axis")
-
-_OPERATION = """TOOL PATH/{name},TOOL,D{tool}
-TLDATA/MILL,1{tool}.0000,0.0000,75.0000,0.0000,0.0000
-MSYS/0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0,0.0
-INTOL/0.01
-OUTTOL/0.01
-LOAD/TOOL,{tool},ADJUST,{tool}
-SPINDL/RPM,3000,CLW
-COOLNT/ON
-RAPID
-GOTO/{x},0.0,30.0,{axis}
-FEDRAT/MMPM,500.0
-GOTO/{x},0.0,-1.0,{axis}
-GOTO/{end},0.0,-1.0,{last}
-RAPID
-GOTO/{end},0.0,30.0,{last}
-END-OF-PATH
-"""
-
-_UP, _TILTED, _MORE = "0.0,0.0,1.0", "0.0,0.5,0.8660254", "0.0,0.5150381,0.8571673"
-
-
-def _operation(name: str, x: float, axis: str = _UP, last: str = "", tool: int = 1) -> str:
-    return _OPERATION.format(name=name, x=x, end=x + 10.0, axis=axis, last=last or axis, tool=tool)
-
-
-#: Two operations with one tool: at the tool along Z, in one plane, under TCP from one tilt to another and back, and in
-#: planes that are tilted otherwise.
-PATHS = {
-    "three": _operation("FIRST", 0.0) + _operation("SECOND", 40.0),
-    "tilted": _operation("FIRST", 0.0, _TILTED) + _operation("SECOND", 40.0, _TILTED),
-    "tcp": _operation("FIRST", 0.0, _TILTED, _MORE) + _operation("SECOND", 40.0, _MORE, _TILTED),
-    "turned": _operation("FIRST", 0.0, _UP) + _operation("SECOND", 40.0, _TILTED),
-    "tools": _operation("FIRST", 0.0, _TILTED) + _operation("SECOND", 40.0, _TILTED, tool=2),
-}
 
 #: What leads home along the spindle, and what turns the rotary axes, in the words of each machine.
 _HOME = re.compile(r"SUPA G0 Z=|G53 G0 Z|L Z\+560 R0 FMAX M91|M242$")
@@ -243,12 +209,6 @@ def test_a_way_below_the_points_of_other_operations_names_no_setting(programs: _
     assert "repeat" not in told["home"].summary + told["order"].summary
 
 
-#: An operation between whose holes the tool axis changes, so that the table or the head turns within it.
-_HOLES = _OPERATION.format(name="HOLES", x=0.0, end=10.0, axis=_UP, last=_UP, tool=1).removesuffix("END-OF-PATH\n") + (
-    "GOTO/0.0,0.0,50.0\nCYCLE/DRILL,RAPTO,3.0,FEDTO,-5.0,MMPM,100.0\nGOTO/0.0,0.0,0.0\nGOTO/10.0,20.0,0.0\n"
-    f"GOTO/10.0,40.0,0.0,{_TILTED}\nGOTO/30.0,40.0,0.0,{_TILTED}\nCYCLE/OFF\nEND-OF-PATH\n"
-)
-PATHS["holes"] = _HOLES
 _WITHOUT_TCP = (("tcp", "off"), ("zero", "0,0,-100"), ("tool_length", "50"))
 _BEHIND_TURNS = [
     *((base, ()) for base in MACHINES),

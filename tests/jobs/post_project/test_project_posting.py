@@ -311,7 +311,7 @@ def test_what_a_project_states_is_not_said_beside_it(options: list[str], words: 
 # What is judged after the posts
 
 
-def test_a_simulation_runs_through_all_set_ups_and_refuses(tmp_path: Path) -> None:
+def test_a_simulation_runs_through_all_set_ups_and_refuses(tmp_path: Path, capsys: Capture) -> None:
     cl = TWO.replace("GOTO/0.0,0.0,50.0", "GOTO/0.0,0.0,-5.0")  # at rapid into the stock
     path = project(tmp_path, 'checks = { simulate = "refuse" }\n' + SETUPS, bottom=cl)
     (first, *_, nothing) = problems(path, trunnion.RefusedError)
@@ -326,6 +326,8 @@ def test_a_simulation_runs_through_all_set_ups_and_refuses(tmp_path: Path) -> No
     assert not found.simulation.passed
     assert {"the simulation finds" in each.what for each in found.problems} == {True}
     assert list(texts(tmp_path)) == ["bottom.mpf", "top.mpf"]
+    main(["post", str(path)])
+    assert capsys.readouterr().err.splitlines()[-1] == f"simulation: {found.simulation.told}"
     # The same project, simulated as it lies there.
     alone = trunnion.simulate(path)
     assert [each.removed for each in alone.setups] == [each.removed for each in found.simulation.setups]

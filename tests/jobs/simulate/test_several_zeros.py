@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import trunnion
+from tests.support.recordings import recorded
+from tests.support.verifying import check
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.stated_setup import ZeroLike
 from trunnion.jobs.simulate.result import SimulationResult
@@ -13,6 +15,7 @@ from trunnion.jobs.twin.serving import twin_program
 from trunnion.jobs.view.viewing import prepare_view
 from trunnion.machines import load_machine
 from trunnion.readers import reader_of
+from trunnion.verification.results import Check
 
 #: A machine of each family of controls.
 MACHINES = ("yl569", "dmu65", "hs664rt", "matsuura_mx330", "haas_umc750", "xyzac_trt")
@@ -188,3 +191,19 @@ def test_each_tool_stands_with_its_own_length(tmp_path: Path) -> None:
     assert {run.tools[k] for k in run.tool[slots]} == {"1", "2"}
     seen = twin.at(0.5 * (twin.timed.begins + twin.timed.ends)[slots], np.full(len(slots), -1))
     assert np.allclose(seen.tip[:, 2], -2.0, atol=1e-3)
+
+
+@pytest.mark.parametrize("with_lines", [True, False])
+def test_a_recording_is_compared_at_both_places(with_lines: bool, tmp_path: Path) -> None:
+    program = posted("yl569", tmp_path, shifted=False)
+    twin = twin_program(program, machine="yl569", zero=zeros("yl569"), tool_length=110.0)
+    recording = recorded(twin.timed, np.arange(0.0, twin.timed.duration, 0.05), with_lines=with_lines)
+
+    def judged(zero: ZeroLike) -> Check:
+        found = trunnion.verify(program, machine="yl569", zero=zero, tool_length=110.0, recorded=recording)
+        return check(found, "recorded")
+
+    assert judged(zeros("yl569")).passed
+    at_one_place = judged(dict.fromkeys(zeros("yl569"), FIRST))
+    assert not at_one_place.passed
+    assert "(X+31.0000, Y+7.0000" in str(at_one_place)

@@ -16,6 +16,7 @@ from trunnion.options.groups import (
     OTHER_MACHINE,
     OUTPUT,
     POSTING,
+    RADIUS_REGISTER,
     READING,
     READING_AS_SETTINGS,
     REPORT,
@@ -148,6 +149,9 @@ _PLACE: Final = job(
     ),
     ZERO.but(help="the present workpiece zero on the machine, mm, to compare with"),
     TOOL_LENGTH,
+    RADIUS_REGISTER.but(
+        help="what radius compensation of NC programs works with: a difference, or the radius of the tool"
+    ),
     SETTINGS.but(help="for CL files, as post has it; may be repeated"),
     READING_AS_SETTINGS,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),

@@ -16,13 +16,15 @@ from trunnion.machines import Axis, Machine
 from trunnion.machines.loading import machine_library
 from trunnion.messages import Wording, phrase
 
-#: Keys of axes that no two machines of a type share for certain, and what they are.
+#: Keys of what no two machines of a type share for certain, and what it is.
 _MEASURED: Final = {
     "point_mm": "the lines about which axes turn", "limits_mm": "travel", "limits_deg": "travel",
     "endless": "which axes turn endlessly", "output": "how a program writes their angles",
     "positive": "which way axes go",
     "home_mm": "home", "home_deg": "home", "rapid_mm_min": "rapid traverse", "rapid_deg_min": "rapid traverse",
     "acceleration_mm_s2": "acceleration", "acceleration_deg_s2": "acceleration",
+    "gauge_point_mm": "gauge point", "max_rpm": "highest spindle speed", "zero_mm": "workpiece zero",
+    "shape": "bodies of the simulation",
 }  # fmt: skip
 
 
@@ -41,7 +43,7 @@ def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
         return tuple(_left_open(machine))
     assumed = _marked(own, ASSUMED, "Assumed by the shipped definition")
     # What is still to be done comes last, where it is seen.
-    return (*assumed, *_inherited(own), *_left_open(machine), *_marked(own, MARKS, "Still to enter"))
+    return (*assumed, *_inherited(machine), *_left_open(machine), *_marked(own, MARKS, "Still to enter"))
 
 
 def assumed_places(machine: Machine, table: Table | None) -> Wording | None:
@@ -66,30 +68,13 @@ def _marked(table: Table, mark: re.Pattern[str], what: str) -> Iterator[str]:
         yield f"{what}: {', '.join(found[file])}."
 
 
-def _inherited(table: Table) -> Iterator[str]:
-    """Measured things that another machine's definition says, told for a definition of one's own only."""
-    library = str(machine_library())
-    if table.location("name")[0].startswith(library):
-        return
+def _inherited(machine: Machine) -> Iterator[str]:
+    """Measured things that another machine's definition says."""
     found: dict[str, dict[str, list[str]]] = {}
-    for axis in table.tables("axis"):
-        for key, what in _MEASURED.items():
-            file, _ = axis.location(key)
-            if key in axis and file.startswith(library):
-                found.setdefault(Path(file).name, {}).setdefault(what, []).append(axis.text("name"))
-    spindle, zero = table.table("spindle"), table.table("workpiece")
-    singles = (
-        (spindle, "gauge_point_mm", "gauge point"), (spindle, "max_rpm", "highest spindle speed"),
-        (zero, "zero_mm", "workpiece zero"),
-    )  # fmt: skip
-    for part, key, what in singles:
-        file, _ = part.location(key)
-        if key in part and file.startswith(library):
-            found.setdefault(Path(file).name, {})[what] = []
-    for body in table.tables("body"):
-        file, _ = body.location("name")
-        if file.startswith(library):
-            found.setdefault(Path(file).name, {})["bodies of the simulation"] = []
+    for value in machine.inherited:
+        axes = found.setdefault(Path(value.file).name, {}).setdefault(_MEASURED[value.key], [])
+        if value.table == "axis":
+            axes.append(value.of)
     for name, things in found.items():
         told = [f"{what} ({', '.join(dict.fromkeys(axes))})" if axes else what for what, axes in things.items()]
         yield f"From {name}, which is another machine until you have compared it with yours: {', '.join(told)}."

@@ -37,11 +37,6 @@ _MOST_LISTED: Final = 100
 #: Statements of texts, which templates may print in another way.
 _TEXT_STATEMENTS: Final = ("PPRINT", "DISPLY", "INSERT")
 
-_CURE: Final = (
-    "remove it, or write under [control.statements] of the machine's definition what becomes of it: a line of the"
-    ' program, or "" for nothing; or under [cl.words] which known statement it is'
-)
-
 
 @lru_cache(maxsize=8)
 def check_statements(machine: Machine) -> None:
@@ -87,7 +82,7 @@ def replace_unknown_statements(
     entries.sort(key=lambda entry: -len(entry[1]))  # the one that says most comes first
     words = frozenset(name.removeprefix(EVENT_PLACE) for name in templates if name.startswith(EVENT_PLACE))
     found = [(toolpath, _replaced(toolpath, entries, words)) for toolpath in toolpaths]
-    problems = [problem for _, new in found for problem in unknown_statement_errors(new, _CURE)]
+    problems = [problem for _, new in found for problem in unknown_statement_errors(new)]
     if len(problems) > _MOST_LISTED:
         more = Problem(
             problems[0].file, 0, Wording("CL180", "more_unknown_statements", count=len(problems) - _MOST_LISTED)

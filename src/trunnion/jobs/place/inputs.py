@@ -104,7 +104,7 @@ def read_input(
         raise no_cl_files()
     if programs:
         known = known_tools(stated["tools"], stated["tool_libraries"], stated["unit"], ())
-        holds = register_value(None, settings, machine)
+        holds = register_value(stated["radius_register"], settings, machine)
         runs, problems = list[Run](), list[Problem]()
         for program in programs:
             run, notices = driven_by_tools(_run_of(program, machine, subprograms), known, holds)

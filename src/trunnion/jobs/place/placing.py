@@ -72,6 +72,8 @@ def place(
     tool_length
         Of the tool, gauge point to tip, mm, or ``{"1": 110.0, "2": 85.0}`` of each tool; by default that of the
         definition, or of each tool its own where the CL files state all of them, or 0.
+    radius_register
+        As for ``verify``, of NC programs: the tool's centre goes beside the path under radius compensation.
     settings, units, dialect, strict
         Of CL files, as ``trunnion.post`` takes them.
     subprograms

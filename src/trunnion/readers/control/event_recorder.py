@@ -42,6 +42,8 @@ class EventRecorder:
         self._modes_said: dict[str, str] = {}
         #: The row from which on the program has said a mode.
         self.said_from: dict[str, int] = {}
+        #: The row from which on it relies on one that counts only for some blocks, such as those of cycles.
+        self.relied_from: dict[str, int] = {}
         self._told_words: set[str] = set()
         self._told_waits: set[tuple[int, int]] = set()
         self.tools: dict[str, int] = {"": 0}

@@ -34,7 +34,7 @@ from trunnion.model.toolpath import Arcs, Kind
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
 from trunnion.readers.control.event_recorder import EventRecorder, Note
-from trunnion.readers.control.start_modes import assumed_modes
+from trunnion.readers.control.start_modes import Relied, assumed_modes
 from trunnion.readers.scan.buffers import MAX_BLOCKS, BlockWords, RowColumns, ScanRecords, ScanSettings
 from trunnion.readers.scan.rows import execute_blocks
 
@@ -346,8 +346,13 @@ class RowRecorder(EventRecorder):
             compensation_planes=np.array(self._compensation_planes).reshape(-1, 3),
             planes=np.array(self._planes).reshape(-1, 3, 4),
             mode_words=tuple(self.mode_words),
-            assumed_modes=assumed_modes(self.machine, self.start_modes, self.said_from, c.kind[:n], c.programmed[:n]),
+            assumed_modes=assumed_modes(self.machine, self.start_modes, self._relied()),
         )
+
+    def _relied(self) -> Relied:
+        n, c = self.columns.n, self.columns
+        in_machine = self.modal.machine_frame.part(0, n)
+        return Relied(self.said_from, self.relied_from, c.kind[:n], c.programmed[:n], in_machine)
 
     def _normal_columns(self) -> SurfaceNormals:
         if not self._normals:

@@ -6,11 +6,12 @@ Out:    the words that a program relies on although neither it nor the definitio
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Codes
+from trunnion.arrays import Codes, Flags
 from trunnion.definitions import Table
 from trunnion.machines import Machine
 from trunnion.messages import Wording
@@ -21,10 +22,16 @@ from trunnion.readers.program.settings import reading_of
 #: The mode that any word of a motion says: on these controls it ends a cycle as G80 does.
 MOTION: Final = "motion"
 
+#: Where cycles end, and how centres of arcs count: those count for a cycle, and for an arc.
+END_OF_CYCLES: Final = "end of cycles"
+CENTRES: Final = "centres"
+
 _KEY: Final = "start_modes"
-_POSITIONS: Final = (
-    ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.FIRST | ProgrammedWord.SECOND
-)
+_SLIDES: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
+_POSITIONS: Final = _SLIDES | ProgrammedWord.FIRST | ProgrammedWord.SECOND
+
+#: Modes that count for positions of the workpiece, not for those of the machine.
+_OF_WORKPIECE: Final = frozenset({"length", "tilted plane", "TCP"})
 
 
 def check_start_modes(table: Table, modes: Mapping[str, str]) -> None:
@@ -35,22 +42,44 @@ def check_start_modes(table: Table, modes: Mapping[str, str]) -> None:
             table.add_problem(_KEY, Wording("DEF330", "no_start_mode", name=word, known=known))
 
 
-def assumed_modes(
-    machine: Machine, modes: Mapping[str, str], said_from: Mapping[str, int], kind: Codes, programmed: Codes
-) -> tuple[str, ...]:
-    """Return the words of modes that hold at the first motion, and that nobody has stated.
+@dataclass(frozen=True, slots=True, eq=False)
+class Relied:
+    """From which rows on a program relies on modes, and says them.
 
-    modes      the word with which the control starts, by mode
-    said_from  the row from which on the program has said a mode
-    kind       of all rows
-    programmed the words of all rows
+    said_from     the row from which on it has said a mode
+    relied_from   the same where it relies on one that counts only for some blocks; others count from the first motion
+    kind          of all rows
+    programmed    the words of all rows
+    in_machine    rows that go to positions of the machine
+    """
+
+    said_from: Mapping[str, int]
+    relied_from: Mapping[str, int]
+    kind: Codes
+    programmed: Codes
+    in_machine: Flags
+
+    def first_row(self, mode: str) -> int:
+        """Return the first row that relies on a mode; the number of rows if none does."""
+        if mode in (END_OF_CYCLES, CENTRES):
+            return self.relied_from.get(mode, len(self.kind))
+        rows = (self.programmed & int(_POSITIONS)) != 0
+        if mode == "feed":
+            rows = self.kind != Kind.RAPID
+        elif mode in _OF_WORKPIECE:
+            rows = ((self.programmed & int(_SLIDES)) != 0) & ~self.in_machine
+        return next(iter(np.flatnonzero(rows)[:1].tolist()), len(self.kind))
+
+    def is_unsaid(self, mode: str) -> bool:
+        """Whether the program relies on a mode before it says it."""
+        first = self.first_row(mode)
+        return first < len(self.kind) and self.said_from.get(mode, len(self.kind)) > first
+
+
+def assumed_modes(machine: Machine, modes: Mapping[str, str], relied: Relied) -> tuple[str, ...]:
+    """Return the words of modes that a program relies on, and that nobody has stated.
+
+    modes  the word with which the control starts, by mode
     """
     stated = reading_of(machine).texts(_KEY, ())
-    moves = np.flatnonzero((programmed & int(_POSITIONS)) != 0)[:1]
-    cuts = np.flatnonzero(kind != Kind.RAPID)[:1]
-    first = {mode: cuts if mode == "feed" else moves for mode in modes}
-    return tuple(
-        word
-        for mode, word in modes.items()
-        if word not in stated and len(first[mode]) and said_from.get(mode, len(kind)) > first[mode][0]
-    )
+    return tuple(word for mode, word in modes.items() if word not in stated and relied.is_unsaid(mode))

@@ -15,7 +15,7 @@ from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import ScannedRows
-from trunnion.readers.control.start_modes import MOTION
+from trunnion.readers.control.start_modes import CENTRES, MOTION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
@@ -229,6 +229,8 @@ class Rs274Interpreter(Interpreter[A]):
         circle_words: dict[str, float] = {}
         if control.motion > LINEAR:
             circle_words = {letter: value for letter in "IJKR" if (value := block.take(letter)) is not None}
+            if "R" not in circle_words:
+                control.relied_from.setdefault(CENTRES, control.row)
         control.move(axes, None, circle=control.circle(circle_words, turns), feed_written=self._check_feed(block))
 
     def _check_feed(self, block: Block) -> bool:

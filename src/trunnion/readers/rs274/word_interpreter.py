@@ -9,7 +9,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.control.start_modes import MOTION
+from trunnion.readers.control.start_modes import END_OF_CYCLES, MOTION
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.word_values import fault_of_value
@@ -46,7 +46,7 @@ class WordInterpreter(Rs274Interpreter[A]):
             act: getattr(self, f"_{act}") for act in self.table.acts
         }
         # Whether cycles end at the height where the first one began; words of cycles that hold until they end.
-        self._to_initial = True
+        self._to_initial, self._end_is_said = True, False
         self._modal_words: dict[str, float] = {}
 
     # Blocks
@@ -271,7 +271,14 @@ class WordInterpreter(Rs274Interpreter[A]):
         self.control.set_tcp(word.sets)
 
     def _end_of_cycles(self, word: Word, block: Block) -> None:
-        self._to_initial = word.sets
+        self._to_initial, self._end_is_said = word.sets, True
+
+    def _rely_on_end_of_cycles(self) -> None:
+        """Note that a cycle ends as it was said, or as the control starts: it counts from the first cycle on."""
+        if self._end_is_said:
+            self.control.say_mode(END_OF_CYCLES)
+        else:
+            self.control.relied_from.setdefault(END_OF_CYCLES, self.control.row)
 
     def _iso(self, word: Word, block: Block) -> None:
         self._common_m_code(word.code)

@@ -1,12 +1,13 @@
 """Blocks that the operator may skip (``/``), and the OPSKIP of the CL file in which they stand.
 
 In:     the run, of which every such block is an event, and the CL file.
-Out:    the blocks without which the program would do something else than the CL file says; and the levels of block skip
-        that each OPSKIP has in the program.
+Out:    the blocks without which the program would do something else than the CL file says; the levels of block skip
+        that each OPSKIP has in the program; and those of which no block may be skipped.
 """
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from trunnion.messages import Wording
 from trunnion.model.run import RunEvent
@@ -40,6 +41,21 @@ def stretch_levels(context: ComparedContext) -> tuple[frozenset[int], ...]:
             for k in stretches:
                 levels[k].add(level)
     return tuple(map(frozenset, levels))
+
+
+def lost_skips(context: ComparedContext, levels: Sequence[frozenset[int]]) -> dict[int, Place]:
+    """Return the OPSKIP of which no block may be skipped, by their numbers: where the first of its blocks should be.
+
+    levels  those that each has in the program
+    """
+    lost = {}
+    for section, stretches in zip(context.expected.sections, _numbered(context), strict=True):
+        for number, stretch in stretches:
+            if not levels[number]:
+                row = min(section.first + stretch.begin, section.end - 1)
+                place = context.place_of_missing(row, Wording("stops", "skip_lost"))
+                lost[number] = replace(place, cl_file=section.file, cl_line=stretch.first_line)
+    return lost
 
 
 def _skipped_blocks(context: ComparedContext) -> Iterator[tuple[RunEvent, list[int]]]:

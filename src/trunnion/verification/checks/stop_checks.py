@@ -17,6 +17,7 @@ from trunnion.verification.checks.restated_modes import RestatedModes
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.checks.skip_faults import skip_faults
 from trunnion.verification.context import ComparedContext, check_from_places
+from trunnion.verification.expected.skipped import skipped_stretches
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
 from trunnion.wording import format_duration
@@ -73,7 +74,8 @@ def check_stops(context: ComparedContext) -> Check:
             asked_for = {stop.place for stop in _asked_for(context.run, found[pair], expected[pair])}
             own += [stop for stop in found[pair] if stop.place not in asked_for]
     count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _KINDS}
-    asked = tuple(Wording("stops", kind, count=count[kind]) for kind in _KINDS if count[kind])
+    count["opskip"] = sum(len(list(skipped_stretches(each.operation))) for each in context.expected.sections)
+    asked = tuple(Wording("stops", kind, count=number) for kind, number in count.items() if number)
     good = Wording("stops", "stops", stops=asked) if asked else Wording("stops", "none_asked")
     if parts := tuple(_own_stops(context.run, own)):
         good = Wording("stops", "with_own", asked=good, own=parts)

@@ -141,6 +141,7 @@ class CycleInterpreter(OffsetInterpreter):
     def _hole(self) -> cycles.Hole:
         control, given = self.control, self._modal_words
         assert self._initial is not None
+        self._rely_on_end_of_cycles()
         initial = self._initial / control.length_unit
         retract, bottom = given["R"], given["Z"]
         if not control.absolute:

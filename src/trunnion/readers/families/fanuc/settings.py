@@ -8,7 +8,7 @@ from typing import Final
 from trunnion.compensation.styles import TYPE_A, UNKNOWN_STYLE
 from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.readers.control.start_modes import MOTION, check_start_modes
+from trunnion.readers.control.start_modes import END_OF_CYCLES, MOTION, check_start_modes
 from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
@@ -24,7 +24,10 @@ ANGLES: Final = tuple("ABC")
 KEPT_BY: Final = "parameter 3402"
 
 #: How the reader takes the control to start.
-START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", MOTION: "G80"}
+START_MODES: Final = {
+    "distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", MOTION: "G80", "length": "G49",
+    "tilted plane": "G69", END_OF_CYCLES: "G98",
+}  # fmt: skip
 
 #: P of G54.1 on a control with all of them.
 HIGHEST_EXTENDED: Final = 300

@@ -52,7 +52,7 @@ def settings_of(machine: Machine) -> Settings:
 
 
 #: How the reader takes the control to start; it has one feed mode.
-_START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40"}
+_START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "tilted plane": "G69"}
 
 
 class FidiaControl(Rs274Control):

@@ -16,7 +16,7 @@ from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
-from trunnion.readers.control.start_modes import check_start_modes
+from trunnion.readers.control.start_modes import CENTRES, END_OF_CYCLES, check_start_modes
 from trunnion.readers.families.linuxcnc.words import is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
@@ -39,7 +39,10 @@ _SAME_LENGTH: Final = 1e-6
 _STILL: Final = 1e-9
 
 #: How the reader takes the control to start.
-_START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94"}
+_START_MODES: Final = {
+    "distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", "length": "G49", CENTRES: "G91.1",
+    END_OF_CYCLES: "G99",
+}  # fmt: skip
 
 #: Parameters that keep their values from one program to the next.
 _PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")

@@ -102,6 +102,7 @@ class CycleInterpreter(OffsetInterpreter):
         if self._initial is None:
             self._initial = height * unit
         initial = self._initial / unit
+        self._rely_on_end_of_cycles()
         retract, bottom = words["R"], words["Z"]
         if not control.absolute:
             retract += initial

@@ -16,7 +16,9 @@ WITH_LENGTH: Final = "with_length"
 WITHOUT_LENGTH: Final = "without_length"
 
 #: How the reader takes the control to start.
-START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", "units": "G71"}
+START_MODES: Final = {
+    "distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", "units": "G71", "TCP": "TRAFOOF",
+}  # fmt: skip
 
 #: R parameters, variables of the control (GUD) and system variables, in capitals, with their index.
 _VARIABLE: Final = re.compile(r"R(?:0|[1-9][0-9]{0,4})|\$?[A-Z_][A-Z0-9_]+(?:\[[0-9]{1,5}(?:,[0-9]{1,5})*\])?")
