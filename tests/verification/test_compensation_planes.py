@@ -55,7 +55,7 @@ def test_a_plane_along_the_tool_is_refused(machine: str, post: Post) -> None:
     code, said, program = post(machine, "LEFT", "mode=tcp")
     assert code != 0
     assert "wall.cls:12: error: CUTCOM in XYPLAN with TCP" in said
-    assert ("mode=tilted" in said) is (machine != "xyzac_trt")  # LinuxCNC has no tilted planes
+    assert ("mode=OPERATION:tilted" in said) is (machine != "xyzac_trt")  # LinuxCNC has no tilted planes
     assert not program.exists()
 
 
@@ -70,7 +70,7 @@ def test_klartext_offsets_by_delta_values_under_m128(
     code, said, _ = post("dmu65", "LEFT", "mode=tcp")
     assert code != 0
     assert "wall.cls:12: error: CUTCOM with TCP" in said
-    assert "mode=tilted" in said
+    assert "mode=OPERATION:tilted" in said
     code, _, program = post("dmu65", "OFF", "mode=tcp")
     assert code == 0
     text = program.read_text(encoding="utf-8")

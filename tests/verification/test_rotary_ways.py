@@ -12,7 +12,7 @@ FLANGE = GOLDEN / "fanuc" / "flange.cls"
 
 #: Programs, words of them, and what takes their place: the poses in the cuts stay.
 ANOTHER_WAY = [
-    (BLADE, "mikron_600u", "17 M126\n18 L B-59.1862 C-168.9663", "18 L B-59.1862 C+191.0337"),
+    (BLADE, "mikron_600u", "18 M126\n19 L B-59.1862 C-168.9663", "19 L B-59.1862 C+191.0337"),
     (BLADE, "yl569", "G0 B59.18624 C11.03375", "G0 B419.18624 C11.03375"),
     (FLANGE, "matsuura_mx330", "N300 G0 A-60.", "N300 G0 A60."),
     (FLANGE, "matsuura_mx330", "N300 G0 A-60.", "N300 G0 A300."),

@@ -1,5 +1,7 @@
 """Rows of a run as the columns of an operation: positions, feeds and arcs."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
@@ -8,6 +10,16 @@ from trunnion.messages import Wording
 from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Arcs, Kind, Moves
+
+#: Pieces are of one circle if centre, radius and slope differ by less, mm; and the same points, mm.
+_SAME_CIRCLE = 1e-4
+_SAME_POINT = 1e-9
+
+#: Nearer to a full turn than this, radians, only ends that are the same point tell that it is one.
+_NEARLY_WHOLE = 1e-3
+
+#: G93.
+_INVERSE_TIME = 93
 
 #: Positions are rounded to this many decimals: the rest is rounding error of binary fractions.
 _DECIMALS = 9
@@ -30,6 +42,52 @@ def build_arcs(run: Run, rows: Ints) -> Arcs:
         run.arcs.normal[index] + 0.0,
         np.round(run.arcs.radius[index], _DECIMALS),
         run.arcs.full_turns[index],
+    )
+
+
+def without_pieces_of_arcs(run: Run, rows: Ints, divided: Iterable[int]) -> Ints:
+    """Return the ``rows`` (n,) of a stretch without those behind which the next one goes on along the same circle.
+
+    divided  rows before which something happens
+    """
+    kept, barred = np.ones(len(rows), np.bool_), {*divided, *(comment.before_row for comment in run.comments)}
+    are_arcs = run.kind[rows] == Kind.ARC
+    pairs = np.flatnonzero(are_arcs[:-1] & are_arcs[1:] & (np.diff(rows) == 1))
+    start, gone = 0, 0.0  # the row before the arc, and how far round it has gone
+    for k in pairs.tolist():
+        row, following = int(rows[k]), int(rows[k + 1])
+        if k == 0 or kept[k - 1]:
+            start, gone = row - 1, 0.0
+        gone += _sweep(run, row)
+        if following in barred or not _goes_on(run, row):
+            continue
+        whole = gone + _sweep(run, following)
+        way = run.tip[following] - run.tip[max(start, 0)]
+        normal = run.arcs.normal[int(np.searchsorted(run.arcs.row, row))]
+        closes = float(np.abs(way - (way @ normal) * normal).max()) < _SAME_POINT
+        is_whole = closes and abs(whole - 2.0 * np.pi) < _NEARLY_WHOLE
+        kept[k] = not (is_whole or whole < 2.0 * np.pi - _NEARLY_WHOLE)
+    return rows[kept]
+
+
+def _goes_on(run: Run, row: int) -> bool:
+    """Whether the arc of a row and that of the next one are pieces of one circle or helix, at one feed."""
+    arcs = run.arcs
+    here, there = (int(np.searchsorted(arcs.row, each)) for each in (row, row + 1))
+    normal, between = arcs.normal[here], arcs.centre[there] - arcs.centre[here]
+    slopes = [float((run.tip[k] - run.tip[k - 1]) @ normal) / _sweep(run, k) for k in (row, row + 1)]
+    same_state = (
+        run.feed[row] == run.feed[row + 1]
+        and run.feed_mode[row] == run.feed_mode[row + 1] != _INVERSE_TIME
+        and bool((run.axis[row] == run.axis[row + 1]).all())
+        and not (arcs.full_turns[here] or arcs.full_turns[there])
+    )
+    return (
+        same_state
+        and float(np.abs(between - (between @ normal) * normal).max()) < _SAME_CIRCLE
+        and float(np.abs(normal - arcs.normal[there]).max()) < _SAME_CIRCLE
+        and abs(float(arcs.radius[here] - arcs.radius[there])) < _SAME_CIRCLE
+        and abs(slopes[0] - slopes[1]) < _SAME_CIRCLE
     )
 
 
@@ -65,12 +123,17 @@ def _path_lengths(run: Run, rows: Ints) -> Floats:
 
 def _arc_length(run: Run, row: int) -> float:
     """Length of the arc or helix of a row, mm."""
+    index = int(np.searchsorted(run.arcs.row, row))
+    rise = float((run.tip[row] - run.tip[row - 1]) @ run.arcs.normal[index])
+    return float(np.hypot(_sweep(run, row) * run.arcs.radius[index], rise))
+
+
+def _sweep(run: Run, row: int) -> float:
+    """How far round the arc of a row goes, radians."""
     arcs = run.arcs
     index = int(np.searchsorted(arcs.row, row))
     normal = arcs.normal[index]
     start, end = run.tip[row - 1] - arcs.centre[index], run.tip[row] - arcs.centre[index]
-    rise = float((end - start) @ normal)
     start, end = start - (start @ normal) * normal, end - (end @ normal) * normal
     angle = float(np.arctan2(np.cross(start, end) @ normal, start @ end)) % (2 * np.pi)
-    sweep = (angle if angle > 1e-9 else 2 * np.pi) + 2 * np.pi * float(arcs.full_turns[index])
-    return float(np.hypot(sweep * arcs.radius[index], rise))
+    return (angle if angle > 1e-9 else 2 * np.pi) + 2 * np.pi * float(arcs.full_turns[index])

@@ -16,14 +16,14 @@ from trunnion.controls.definition import Control
 from trunnion.conversion.event_builder import EventBuilder
 from trunnion.conversion.headers import HeaderReader
 from trunnion.conversion.known_positions import known_positions
-from trunnion.conversion.moves import build_arcs, build_moves
+from trunnion.conversion.moves import build_arcs, build_moves, without_pieces_of_arcs
 from trunnion.conversion.phases import PhaseComments
 from trunnion.conversion.program_events import ProgramEvent, collect_events
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection, assign_events, divide_sections, split_program
 from trunnion.conversion.settings import parse_number, settings_from_headers
 from trunnion.conversion.spindle_holes import read_spindle_holes
-from trunnion.conversion.unsaid import warn_of_missing_words, warn_of_skipped_words
+from trunnion.conversion.unsaid import warn_of_missing_words, warn_of_other_meanings, warn_of_skipped_words
 from trunnion.conversion.unsupported import (
     Warnings,
     refuse_unsimulated_motions,
@@ -69,11 +69,17 @@ def convert(run: Run, control: Control, target: Control | None = None) -> Conver
     target   the control that the settings are for; None: the same
     """
     default = control.settings.get("rapid_feed", "")
-    conversion = _ToolpathBuilder(restore_rapids(run, parse_number(default)), control, target or control).build()
+    conversion = _ToolpathBuilder(_with_rapids(run, parse_number(default)), control, target or control).build()
     rapid_feed = conversion.settings.get("rapid_feed", default)
     if rapid_feed == default:
         return conversion
-    return _ToolpathBuilder(restore_rapids(run, parse_number(rapid_feed)), control, target or control).build()
+    return _ToolpathBuilder(_with_rapids(run, parse_number(rapid_feed)), control, target or control).build()
+
+
+def _with_rapids(run: Run, feed: float | None) -> Run:
+    """Return a run, in each of its meanings, with lines at the feed of rapids as rapids."""
+    skipped = tuple(replace(each, run=restore_rapids(each.run, feed)) for each in run.skipped)
+    return replace(restore_rapids(run, feed), skipped=skipped)
 
 
 class _ToolpathBuilder:
@@ -148,6 +154,7 @@ class _ToolpathBuilder:
         off_blocks = {(event.line, event.file) for event in events if event.value == "off"}
         holes = read_spindle_holes(run, without_turns_in_place(run, section.rows, off_blocks), events, self._warn)
         rows, events = holes.rows, holes.without_own_events(events, self._rigid_tap)
+        rows = without_pieces_of_arcs(run, rows, [event.row for event in events])
         section.stretches = [rows]
         found = holes.with_cycles(builder.build(events, rows, section.line))
         phase = phases.column(events, run, rows, self._headers.template_lines, self._warn)
@@ -188,6 +195,7 @@ class _ToolpathBuilder:
             self._warn.refuse(self._headers.forced_line, Wording("CNV178", "program_says_must"))
         refuse_unsimulated_motions(run, self._warn)
         warn_of_missing_words(run, rows, self._warn)
+        warn_of_other_meanings(run, self._warn)
         warn_of_skipped_words(run, rows, self._texts[0], self._headers.template_lines, self._warn)
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)

@@ -20,12 +20,15 @@ from trunnion.model.toolpath import Kind
 #: Events that the head of an operation says again, whether they may be skipped or not.
 _OF_HEADS = frozenset({"spindle", "speed", "offset"})
 
+#: Tips, mm, and tool axes within this are the same.
+_SAME = 1e-6
+
 #: Words that call a tool length before the first motion.
 _LENGTH = re.compile(r"(?<![A-Z])[HD]\d")
 
 
 def warn_of_missing_words(run: Run, operations: Sequence[Ints], warn: Warnings) -> None:
-    """Warn of the first cut with the spindle at rest, and of the first without a tool.
+    """Warn of the first cut with the spindle at rest, of the first without a tool, and of a program without an end.
 
     operations   the rows (n,) of each operation
     """
@@ -38,6 +41,8 @@ def warn_of_missing_words(run: Run, operations: Sequence[Ints], warn: Warnings) 
     kinds = {event.kind for event in run.events}
     if kinds & {"speed", "spindle"}:
         _warn_at_first(run, cuts[run.spindle[cuts] == 0], "cuts_without_spindle", warn)
+    if "end" not in kinds:
+        warn(int(run.line[-1]), Wording("CNV154", "no_end"), int(run.file[-1]))
     if kinds & {"tool", "tool_change"}:
         empty = np.array([not name.strip("0") for name in run.tools])
         _warn_at_first(run, cuts[empty[run.tool[cuts]]], "cuts_without_tool", warn)
@@ -73,6 +78,32 @@ def warn_of_skipped_words(
         for variant, is_lost in found.items():
             if is_lost:
                 warn(first, Wording("CNV153", variant))
+
+
+def warn_of_other_meanings(run: Run, warn: Warnings) -> None:
+    """Warn of blocks that do something else while blocks before them are skipped: a toolpath states positions in full.
+
+    Programs with jumps or subprograms are refused anyway.
+    """
+    if len(run.files) > 1 or bool((np.diff(run.line) < 0).any()):
+        return
+    for skipped in run.skipped:
+        other = skipped.run
+        signs = (event for event in run.events if event.kind == "block_skip" and event.value in skipped.levels)
+        gone = np.unique([event.line for event in signs])
+        rows = np.flatnonzero(~np.isin(run.line, gone))
+        if len(rows) != len(other) or (run.line[rows] != other.line).any():
+            continue  # a cycle that is skipped takes others with it: its blocks are reported by themselves
+        at_part = ~run.machine_frame[rows]
+        differs = np.zeros(len(rows), np.bool_)
+        for column in ("tip", "axis"):
+            here, there = getattr(run, column)[rows], getattr(other, column)
+            differs |= at_part & (np.abs(here - there).max(axis=1) > _SAME)
+        differs |= (run.kind[rows] != other.kind) | ((run.kind[rows] != Kind.RAPID) & (run.feed[rows] != other.feed))
+        for row in np.flatnonzero(differs)[:1].tolist():
+            first = int(gone[gone < other.line[row]].max(initial=0))
+            warn(int(other.line[row]), Wording("CNV155", "means_something_else", skipped=first))
+            return
 
 
 def _stretches(text: ProgramText) -> Iterator[tuple[int, int]]:

@@ -87,11 +87,14 @@ def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warn
     operations   the rows (n,) of each operation, and its moves
     """
     machine = run.machine
+    endless = np.array([machine.axes[column].endless for column in machine.rotary])
     displays_turn = np.array([np.isfinite(machine.axes[column].display_low) for column in machine.rotary])
     for rows, moves in operations:
         expected = choose_poses(machine, moves, keep_slide_limits=machine.workpiece_zero is not None).rotary
         difference = run.joints[rows][:, list(machine.rotary)] - expected
         difference = np.where(displays_turn, (difference + 180.0) % 360.0 - 180.0, difference)
+        # Whole turns by which all of an operation is further or back change nothing within it.
+        difference -= np.where(endless, 360.0 * np.round(difference[:1] / 360.0), 0.0)
         differing, columns = np.nonzero(np.abs(difference) > _SAME_ANGLE)
         if len(differing):
             name = machine.axes[machine.rotary[int(columns[0])]].name

@@ -181,6 +181,13 @@ def test_each_tool_stands_with_its_own_length(tmp_path: Path) -> None:
     lengths = {"1": 110.0, "2": 85.0}
     run = trunnion.verify(program, machine="matsuura_mx330", zero=FIRST, tool_length=lengths).run
     assert [run.length_of(name) for name in ("1", "2")] == [110.0, 85.0]
+    tools = ["1=flat:10,length=60", "2=flat:10,length=60"]
+    for given, told in ((lengths, []), ({"1": 110.0}, [("tool 2",)])):
+        found = trunnion.simulate(
+            program, machine="matsuura_mx330", stock=STOCK, tools=tools, cell=2.0, zero=FIRST, tool_length=given
+        )
+        missing = [each.wording for each in found.remarks if each.wording.variant == "length_of_some_tools"]
+        assert [each.parameter("names") for each in missing] == told
     view = prepare_view(program, machine="matsuura_mx330", zero=FIRST, tool_length=lengths)
     assert {each["name"]: each["length"] for each in view.scene["tools"] if each["name"]} == lengths
     column = run.machine.column("Z")

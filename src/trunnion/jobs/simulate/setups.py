@@ -15,7 +15,7 @@ import numpy as np
 from trunnion import readers
 from trunnion.cl.read import ClReading
 from trunnion.compensation.stretches import RegisterValue
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem, warning
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
 from trunnion.jobs.inputs.control_settings import rapid_feed_of, register_value_of
@@ -32,6 +32,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.model.unknown_setups import tools_without_length
 from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.offset_places import cuts_at_unknown_places
@@ -69,6 +70,7 @@ def prepare_setup(
     frame = _frame_of_stock(runs, given, machine)
     remarks += cuts_at_unknown_places(frame, runs)
     runs = frame.runs(runs)
+    remarks += _lengths_missing(runs)
     remarks += _cuts_from_unknown_places(runs)
     for program in programs:
         if not isinstance(program, Run):
@@ -155,6 +157,13 @@ def _without_motion(runs: Sequence[Run]) -> list[Problem]:
     return [
         Problem(run.files[0], 0, Wording("SIM148", "nothing_moves"), severity=severity) for run in runs if not len(run)
     ]
+
+
+def _lengths_missing(runs: Sequence[Run]) -> Iterator[Problem]:
+    """Yield a warning of each program that works with a tool without a length, and with others that have one."""
+    for run in runs:
+        if names := tools_without_length(run):
+            yield warning(run.files[0], 0, Wording("SIM310", "length_of_some_tools", names=names))
 
 
 def _cuts_from_unknown_places(runs: Sequence[Run]) -> Iterator[Problem]:

@@ -112,14 +112,14 @@ def _slanted_rapids(context: ComparedContext, before: _Drilled | None, now: _Dri
     if _has_pair_between(context.matching, before.match.end, now.match.first):
         return
     rows = np.arange(before.match.end, now.match.first + 1)
-    if not len(rows):
-        return
+    if not len(rows) or context.run.state.machine_frame.at(rows).any():
+        return  # from home the tool comes down as to a first hole
     positions = context.run.positions(np.append(before.match.end - 1, rows))
     steps, axis = np.diff(positions.tip, axis=0), now.hole.axis
     rise = steps @ axis
     aside = np.linalg.norm(steps - rise[:, None] * axis, axis=1)
     still = np.abs(np.diff(positions.axis, axis=0)).max(axis=1) <= _SAME_AXIS
-    slanted = still & (rise < -_SLANT) & (aside > _SLANT) & ~context.run.state.machine_frame.at(rows)
+    slanted = still & (rise < -_SLANT) & (aside > _SLANT)
     for k in np.flatnonzero(slanted)[:1].tolist():
         side, down = float(aside[k]), -float(rise[k])
         yield HoleFault(int(rows[k]), side, Wording("holes", "slanted", aside=side, down=down))
