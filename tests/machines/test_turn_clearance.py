@@ -53,7 +53,7 @@ def test_it_is_never_more_than_what_many_samples_find(name: str) -> None:
         before = slide_positions(machine, tip[None], rotary[:1])[0]
         after = before.copy()
         after[list(machine.rotary)] = rotary[1]
-        share = np.linspace(0.0, 1.0, 2001)[:, None]
+        share = np.linspace(0.0, 1.0, 501)[:, None]
         tips, axes = forward(machine, before + share * (after - before))
         points = (tips[:, None] + np.linspace(0.0, 900.0, 301)[None, :, None] * axes[:, None]).reshape(-1, 3)
         sampled = float(part.distance(points).min())

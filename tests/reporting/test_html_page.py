@@ -14,7 +14,7 @@ from tests.support.page_columns import decode_column
 from tests.support.reports import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
 from trunnion.messages import foreign
 from trunnion.model.columns import StepColumn
-from trunnion.reporting.html_text import capitalised, format_number
+from trunnion.reporting.html_text import capitalised, format_number, prose, table
 from trunnion.reporting.write import write_report
 from trunnion.verification.results import Check, Verification
 from trunnion.wording import format_duration
@@ -221,3 +221,14 @@ def test_times_and_numbers_read_well() -> None:
     said = {0.00123456: "0.001235", 12345.6: "12346", -0.5: "−0.5", 3e-9: "3e−09", 0.0: "0", 5000.0: "5000"}
     assert {value: format_number(value) for value in said} == said
     assert [format_number(None), format_number(float("nan")), format_number(float("-inf"))] == ["", "", "−∞"]
+
+
+def test_no_minus_is_parted_from_its_number_and_names_stay_whole() -> None:
+    assert prose("goes to X-41.5, Y -0.25 in part-2.mpf") == (
+        'goes to <span class="nb">X-41.5</span>, Y <span class="nb">-0.25</span> in part-2.mpf'
+    )
+
+
+def test_each_cell_says_its_column_for_pages_too_narrow_for_columns() -> None:
+    text = table(("Check", "#Worst", "-"), ["<tr><th scope=row>tip</th><td class=n>3</td><td></td></tr>"], "tight")
+    assert '<th data-of="Check" scope=row>tip</th><td data-of="Worst" class=n>3</td><td data-of="">' in text

@@ -1,6 +1,7 @@
 """Pictures of pages, compared with those of the docs.
 
-``TRUNNION_NEW_PICTURES=1 pytest tests/builder tests/viewer`` writes them anew.
+``TRUNNION_NEW_PICTURES=1 pytest tests/builder tests/viewer`` writes them anew,
+``tests.support.paper_pictures`` those of papers.
 """
 
 import base64

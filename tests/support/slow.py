@@ -55,6 +55,10 @@ SLOW = (
     "verification/test_declared_deviations.py", "verification/test_declared_deviations_random.py",
     "verification/test_events.py", "verification/test_matching.py", "verification/test_mutations.py",
     "twin/test_security.py", "twin/test_served.py",
+    "cli/test_startup.py", "conversion/test_states.py", "jobs/capability/test_fitting.py",
+    "jobs/capability/test_reaching.py", "jobs/post/test_between_operations.py",
+    "jobs/simulate/test_simulated_bodies.py", "jobs/simulate/test_turned_simulation.py", "jobs/test_public_api.py",
+    "output/test_approach_of_heads.py", "placing/test_collisions.py", "readers/test_second_programs.py",
     "verification/test_turns.py", "viewer/test_bricks.py", "viewer/test_browser.py", "viewer/test_live.py",
     "viewer/test_stock.py", "viewer/test_tools.py",
 )  # fmt: skip

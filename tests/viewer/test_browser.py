@@ -144,13 +144,13 @@ def test_controls_keep_their_own_keys(view: Page) -> None:
 
 def test_colours_are_told(view: Page) -> None:
     view.locator("#colour").select_option("kind")
-    assert view.locator("#legend .entry").all_inner_texts() == ["Rapid", "line", "circle"]
+    assert view.locator("#legend .entry").all_inner_texts() == ["Rapid", "line", "circle", "Block"]
     view.locator("#colour").select_option("phase")
     assert "cut" in view.locator("#legend .entry").all_inner_texts()
     view.locator("#colour").select_option("feed")
-    *_, fastest, rapid = view.locator("#legend .entry").all_inner_texts()
-    grey = view.locator("#legend .entry").last.evaluate("it => getComputedStyle(it).borderLeftColor")
-    assert (fastest.split()[-1], rapid, grey) == ("mm/min", "Rapid", "rgb(150, 160, 170)")  # none of the scale
+    *_, fastest, rapid, block = view.locator("#legend .entry").all_inner_texts()
+    grey = view.locator("#legend .entry").nth(-2).evaluate("it => getComputedStyle(it).borderLeftColor")
+    assert (fastest.split()[-1], rapid, block, grey) == ("mm/min", "Rapid", "Block", "rgb(150, 160, 170)")
     view.locator("#colour").select_option("kind")
 
 
@@ -165,7 +165,7 @@ def test_the_page_says_its_language(wanted: str, language: str, tmp_path: Path, 
 def test_the_curves_show_and_set_the_cursor(view: Page) -> None:
     box = view.locator("#curves").bounding_box()
     assert box is not None
-    view.mouse.click(box["x"] + 64 + (box["width"] - 74) / 2, box["y"] + 40)
+    view.mouse.click(box["x"] + 76 + (box["width"] - 86) / 2, box["y"] + 40)
     assert view.evaluate("page.time / page.program.end") == pytest.approx(0.5, abs=0.01)
     assert float(view.locator("#scrub").input_value()) == pytest.approx(0.5, abs=0.01)
 

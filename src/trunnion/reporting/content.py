@@ -30,7 +30,7 @@ from trunnion.reporting.set_up_values import OffsetZero, ToolLength, lengths_of,
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
-from trunnion.results import Figure, OptionalText
+from trunnion.results import NOT_DATA, Figure, OptionalText
 from trunnion.verification import Standing, Verdict
 from trunnion.verification.results import Check, Place, Verification, durations, moving_seconds
 
@@ -42,8 +42,8 @@ _UNITS: Final = {False: "mm", True: "inch"}
 class ReportContent:
     """Everything in a report except its plots.
 
-    ``untimed`` counts motions whose time is not known; ``units`` are those that the program counts in, which the report
-    does not: its lengths are mm.
+    ``rapids`` counts rapid motions, ``untimed`` motions whose time is not known; ``units`` are those that the program
+    counts in, which the report does not: its lengths are mm.
     """
 
     SCHEMA: ClassVar[int] = 2
@@ -60,6 +60,7 @@ class ReportContent:
     cutting_seconds: Annotated[float, Figure(within="time")] = 0.0
     rapid_seconds: Annotated[float, Figure(within="time")] = 0.0
     waiting_seconds: Annotated[float, Figure(within="time")] = 0.0
+    rapids: Annotated[int, NOT_DATA] = 0
     untimed: Annotated[int, Figure("motions_without_time", within="time")] = 0
     tools: tuple[ToolUsage, ...] = ()
     operations: tuple[OperationUsage, ...] = ()
@@ -113,6 +114,7 @@ def collect_content(
         cutting_seconds=math.fsum(moving[cutting]),
         rapid_seconds=math.fsum(moving[~cutting]),
         waiting_seconds=math.fsum(seconds - moving),
+        rapids=int(np.count_nonzero(~cutting)),
         untimed=int(np.count_nonzero(~known)),
         tools=tuple(tool_usages(run, seconds, moving, cutting)),
         operations=tuple(operation_usage(run, each, seconds, moving, cutting) for each in verification.operations),

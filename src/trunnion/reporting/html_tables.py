@@ -5,6 +5,7 @@ Out:    HTML, with all text from outside escaped.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 from trunnion.reporting.content import ReportContent
@@ -17,6 +18,8 @@ from trunnion.reporting.html_text import (
     format_number,
     format_range,
     note_lines,
+    prose,
+    table,
     verdict_banner,
     with_unit,
 )
@@ -25,6 +28,7 @@ from trunnion.reporting.set_up_values import lengths_text, zeros_text
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification import Verdict, stand_lines
+from trunnion.verification.context import MAX_PLACES as KEPT_PLACES
 from trunnion.verification.results import Check, Place, State
 from trunnion.wording import counted, format_duration
 
@@ -44,7 +48,7 @@ _AXIS_HEADINGS = ("Axis", "#From", "at", "#To", "at", "#Limits", "#Margin")
 def page_body(content: ReportContent) -> str:
     """Return the page from its body tag up to the plots."""
     tables = (_operation_table(content), _tool_table(content), _decisions(content), _extents(content), _used(content))
-    simulated = "" if content.simulation is None else simulation_section(content.simulation)
+    simulated = "" if content.simulation is None else simulation_section(replace(content.simulation, remarks=()))
     parts = (
         _title(content),
         _checks(content.checks),
@@ -67,10 +71,10 @@ def _title(content: ReportContent) -> str:
         ("Control", content.control),
         ("Workpiece zero, mm", zeros_text(content.zeros) if content.zeros else ""),
         ("Tool length, mm", lengths_text(content.lengths)),
-        ("Motions", f"{content.motions:,}".replace(",", "\u202f")),
-        ("Time", format_duration(content.seconds)),
-        ("in cuts", format_duration(content.cutting_seconds)),
-        ("in rapids", format_duration(content.rapid_seconds)),
+        ("Motions", f"{content.motions:,}".replace(",", "\u202f") if content.motions else ""),
+        ("Time", format_duration(content.seconds) if content.motions else ""),
+        ("in cuts", format_duration(content.cutting_seconds) if content.motions else ""),
+        ("in rapids", _rapid_time(content.rapid_seconds, content.rapids)),
         ("waiting", format_duration(content.waiting_seconds) if content.waiting_seconds > 0.0 else ""),
         ("Made", content.made),
         ("Lengths", _units_text(content.units)),
@@ -90,6 +94,11 @@ def _title(content: ReportContent) -> str:
 """
 
 
+def _rapid_time(seconds: float, rapids: int) -> str:
+    """Return the time in rapids; they take none where nobody states how fast they are, which is not known."""
+    return "not known" if rapids and not seconds else format_duration(seconds) if rapids else ""
+
+
 def _checks(checks: Sequence[Check]) -> str:
     if not checks:
         return ""
@@ -97,29 +106,29 @@ def _checks(checks: Sequence[Check]) -> str:
         f'<tr class="{_STATES[check.state][0]}">'
         f"<td>{_result(check)}</td><th scope=row>{capitalised(check.title)}</th>"
         f"<td class=n>{with_unit(check.worst, check.unit)}</td><td class=n>{with_unit(check.limit, check.unit)}</td>"
-        f"<td>{escape(check.told)}</td></tr>"
+        f"<td>{prose(check.told)}</td></tr>"
         for check in checks
     ]
     return _section(
         "Checks",
-        _table(("Result", "Check", "#Worst", "#Limit", "Summary"), rows, "tight") + note_lines(stand_lines(checks)),
+        table(("Result", "Check", "#Worst", "#Limit", "Summary"), rows, "tight") + note_lines(stand_lines(checks)),
     )
 
 
 def _remarks(remarks: Sequence[RemarkGroup]) -> str:
     """Return the warnings, each thing once."""
     rows = [
-        f"<tr><td>{remark.severity}</td><td>{escape(remark.text)}{_cure(remark.cure)}</td>"
+        f"<tr><td>{remark.severity}</td><td>{prose(remark.text)}{_cure(remark.cure)}</td>"
         f"<td><bdi>{escape(remark.file)}</bdi>{f':{remark.line}' if remark.line else ''}</td>"
         f"<td>{escape(remark.code)}</td><td class=n>{remark.count}</td></tr>"
         for remark in remarks
     ]
     headings = ("", "What", "First at", "Code", "#Times")
-    return _section("Warnings", _table(tuple(head or "-" for head in headings), rows, "tight")) if rows else ""
+    return _section("Warnings", table(tuple(head or "-" for head in headings), rows, "tight")) if rows else ""
 
 
 def _cure(text: str) -> str:
-    return f"<br><small>{escape(text)}</small>" if text else ""
+    return f"<br><small>{prose(text)}</small>" if text else ""
 
 
 def _result(check: Check) -> str:
@@ -134,20 +143,20 @@ def _worst_places(checks: Sequence[Check]) -> str:
 
 def _check_places(check: Check) -> str:
     rows = [
-        f"<tr><td class=n>{format_number(place.value)}</td>"
-        f"<td class=n>{_number(place.number)}</td><td class=n>{_nc_line(place)}</td>"
+        f"<tr><td class=n>{_number(place.number)}</td><td class=n>{_nc_line(place)}</td>"
         f"<td class=n>{_cl_line(place)}</td>"
-        f"<td>{escape(place.told)}</td>"
+        f"<td>{prose(place.told)}</td>"
         f"<td class=go>{_plot_button(place)}</td></tr>"
         for place in check.places[:MAX_PLACES]
     ]
     more = len(check.places) - MAX_PLACES
-    note = f'<p class="note">and {more} more, in the JSON report</p>' if more > 0 else ""
-    headings = ("#Value", "#Block", "#NC line", "#CL line", "What", "-")
+    note = "Only the worst are listed." if len(check.places) >= KEPT_PLACES else ""
+    if more > 0:
+        note = f"and {more} more, in the JSON report"
+    note = note and f'<p class="note">{note}</p>'
+    headings = ("#Block", "#NC line", "#CL line", "What", "-")
     state = _STATES[check.state][0]
-    return (
-        f'<h3 class="{state}">{_result(check)} {capitalised(check.title)}</h3>{_table(headings, rows, "tight")}{note}'
-    )
+    return f'<h3 class="{state}">{_result(check)} {capitalised(check.title)}</h3>{table(headings, rows, "tight")}{note}'
 
 
 def _plot_button(place: Place) -> str:
@@ -174,7 +183,7 @@ def _cl_line(place: Place) -> str:
 def _tool_table(content: ReportContent) -> str:
     rows = [_tool(tool) for tool in content.tools]
     headings = ("Tool", "#Motions", "#Time", "#in cuts", "#in rapids", "#S rev/min", "#F mm/min", "#From")
-    return _section("Tools and times", _table(headings, rows)) if rows else ""
+    return _section("Tools and times", table(headings, rows)) if rows else ""
 
 
 def _tool(tool: ToolUsage) -> str:
@@ -191,7 +200,7 @@ def _tool(tool: ToolUsage) -> str:
 def _operation_table(content: ReportContent) -> str:
     rows = [_operation(operation) for operation in content.operations]
     headings = ("Operation", "Tool", "#Motions", "#Time", "#in cuts", "#in rapids", "#From")
-    return _section("Operations and times", _table(headings, rows)) if rows else ""
+    return _section("Operations and times", table(headings, rows)) if rows else ""
 
 
 def _operation(operation: OperationUsage) -> str:
@@ -210,18 +219,20 @@ def _decisions(content: ReportContent) -> str:
     rows = [
         f"<tr><td><bdi>{escape(decision.operation)}</bdi></td>"
         f'<td class=n title="{escape(decision.file)}">{decision.line or ""}</td>'
-        f"<td>{escape(decision.topic)}</td><td>{escape(decision.text)}</td></tr>"
+        f"<td>{escape(decision.topic)}</td><td>{prose(decision.text)}</td></tr>"
         for decision in content.decisions
     ]
     headings = ("Operation", "#CL line", "About", "Decision and why")
-    return _section("Decisions", _table(headings, rows, "tight")) if rows else ""
+    return _section("Decisions", table(headings, rows, "tight")) if rows else ""
 
 
 def _extents(content: ReportContent) -> str:
+    if not content.motions:
+        return ""
     axes = [_axis(axis) for axis in content.axes]
     tips = [_tip(extent) for extent in content.tip]
     tip_heads = ("Tip, mm", "#From", "at", "#To", "at", "#In cuts from", "#to")
-    return _section("Extents", f'<div class="pair">{_table(_AXIS_HEADINGS, axes)}{_table(tip_heads, tips)}</div>')
+    return _section("Extents", f'<div class="pair">{table(_AXIS_HEADINGS, axes)}{table(tip_heads, tips)}</div>')
 
 
 def _used(content: ReportContent) -> str:
@@ -229,7 +240,7 @@ def _used(content: ReportContent) -> str:
     if content.recorded is None or not content.recorded.extents:
         return ""
     rows = [_axis(axis) for axis in content.recorded.extents]
-    return _section(f"Extents in {escape(content.recorded.file)}", _table(_AXIS_HEADINGS, rows))
+    return _section(f"Extents in {escape(content.recorded.file)}", table(_AXIS_HEADINGS, rows))
 
 
 def _axis(axis: AxisExtent) -> str:
@@ -265,17 +276,6 @@ def _extremes(extremes: Extremes | None) -> str:
 
 def _section(title: str, body: str) -> str:
     return f"<section>\n<h2>{title}</h2>\n{body}\n</section>\n"
-
-
-def _table(headings: Sequence[str], rows: Sequence[str], kind: str = "") -> str:
-    """Return a table. A heading with ``#`` is that of a column of numbers, ``-`` is an empty one."""
-    cells = "".join(
-        f"<th scope=col class=n>{head[1:]}</th>" if head[0] == "#" else f"<th scope=col>{head.strip('-')}</th>"
-        for head in headings
-    )
-    body = "\n".join(rows)
-    head = f"<thead><tr>{cells}</tr></thead>"
-    return f'<div class="wide {kind}"><table>\n{head}\n<tbody>\n{body}\n</tbody></table></div>\n'
 
 
 def _block(block: BlockReference) -> str:

@@ -4,10 +4,15 @@ import base64
 import hashlib
 import html
 import math
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from trunnion.verification import Verdict
+
+#: A negative number with the letter before it, and where a cell of a row begins.
+_NEGATIVE: Final = re.compile(r"(?<![\w-])[A-Za-z]{0,2}-\d[\d.]*")
+_CELL: Final = re.compile(r"<t[dh]\b")
 
 #: The class of a banner of each verdict, and its sign.
 _BANNERS: Final = {
@@ -21,6 +26,33 @@ _BANNERS: Final = {
 def escape(value: object) -> str:
     """Return text escaped for HTML and for attributes in double quotes."""
     return html.escape(str(value), quote=True)
+
+
+def prose(text: object) -> str:
+    """Return a sentence escaped, with no break between a minus and its number: ``X-41.5`` never reads as positive."""
+    return _NEGATIVE.sub(r'<span class="nb">\g<0></span>', escape(text))
+
+
+def table(headings: Sequence[str], rows: Iterable[str], kind: str = "") -> str:
+    """Return a table that may be wider than the page.
+
+    headings  one with ``#`` is that of a column of numbers, ``-`` an empty one
+    rows      HTML
+    kind      its class; each cell of a ``tight`` one has the heading of its column, for pages too narrow for columns
+    """
+    names = [head.lstrip("#").strip("-") for head in headings]
+    cells = "".join(
+        f"<th scope=col class=n>{name}</th>" if head[:1] == "#" else f"<th scope=col>{name}</th>"
+        for head, name in zip(headings, names, strict=True)
+    )
+    body = "\n".join(_labelled(row, names) if kind == "tight" else row for row in rows)
+    head = f"<thead><tr>{cells}</tr></thead>"
+    return f'<div class="wide {kind}"><table>\n{head}\n<tbody>\n{body}\n</tbody></table></div>\n'
+
+
+def _labelled(row: str, names: Sequence[str]) -> str:
+    of_cells = iter(names)
+    return _CELL.sub(lambda cell: f'{cell[0]} data-of="{next(of_cells, "")}"', row)
 
 
 def page_head(title: str, style: str, policy: str) -> str:
@@ -43,12 +75,12 @@ def verdict_banner(verdict: Verdict, said: str) -> str:
     state, mark = _BANNERS[verdict]
     return f"""<div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span>\
 <div><strong>{verdict.word}</strong>
-<span>{escape(said)}</span></div></div>"""
+<span>{prose(said)}</span></div></div>"""
 
 
 def note_lines(lines: Iterable[str]) -> str:
     """Return lines as notes."""
-    return "".join(f'<p class="note">{escape(line)}</p>\n' for line in lines)
+    return "".join(f'<p class="note">{prose(line)}</p>\n' for line in lines)
 
 
 def format_number(value: float | None) -> str:
@@ -62,7 +94,7 @@ def format_number(value: float | None) -> str:
     if math.isinf(value):
         return "∞" if value > 0 else "−∞"
     size = abs(value)
-    if size == 0.0 or 1e-5 <= size < 1e9:
+    if size == 0.0 or 1e-7 <= size < 1e9:
         decimals = max(0, 3 - math.floor(math.log10(size))) if size else 0
         digits = f"{value:.{decimals}f}"
         digits = digits.rstrip("0").rstrip(".") if "." in digits else digits

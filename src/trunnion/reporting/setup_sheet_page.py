@@ -17,6 +17,7 @@ from trunnion.reporting.html_text import (
     format_number,
     format_range,
     note_lines,
+    prose,
     source_hash,
 )
 from trunnion.reporting.set_up_values import lengths_text, zeros_text
@@ -105,8 +106,8 @@ def _picture(sheet: SetupSheet) -> str:
 
 def _tools(sheet: SetupSheet) -> str:
     rows = [_tool(tool) for tool in sheet.tools]
-    heads = ("Call", "Tool", "#Ø mm", "#Corner R", "#Length", "#Sticks out", "#In spindle", "Holder", "Operations",
-             "#In cuts", "Measured length")  # fmt: skip
+    heads = ("Call", "Tool", "#Ø mm", "#Corner R mm", "#Length mm", "#Sticks out mm", "#In spindle mm", "Holder",
+             "Operations", "#In cuts", "Measured length")  # fmt: skip
     return _section("Tools", _table(heads, rows))
 
 
@@ -201,7 +202,7 @@ def _to_check(sheet: SetupSheet) -> str:
 def _checks(checks: Sequence[Check]) -> str:
     rows = [
         f'<tr class="{"bad" if check.state is State.FAIL else ""}"><td>{_MARKS[check.state]}</td>'
-        f"<td>{capitalised(check.title)}</td><td>{escape(check.told)}</td></tr>"
+        f"<td>{capitalised(check.title)}</td><td>{prose(check.told)}</td></tr>"
         for check in checks
     ]
     return _section("What was proven", _table(("", "Check", "Result"), rows) + note_lines(stand_lines(checks)), "small")
@@ -226,7 +227,7 @@ def _signatures(sheet: SetupSheet) -> str:
 
 
 def _list(texts: Iterable[str], kind: str = "") -> str:
-    return f'<ul class="{kind}">' + "".join(f"<li>{escape(text)}</li>\n" for text in texts) + "</ul>\n"
+    return f'<ul class="{kind}">' + "".join(f"<li>{prose(text)}</li>\n" for text in texts) + "</ul>\n"
 
 
 def _section(title: str, body: str, kind: str = "") -> str:

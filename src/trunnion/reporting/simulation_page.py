@@ -10,7 +10,17 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
-from trunnion.reporting.html_text import capitalised, escape, format_number, page_head, source_hash, verdict_banner
+from trunnion.reporting.html_text import (
+    capitalised,
+    escape,
+    format_fixed,
+    format_number,
+    page_head,
+    prose,
+    source_hash,
+    table,
+    verdict_banner,
+)
 from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
 from trunnion.reporting.text import clean
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
@@ -49,11 +59,11 @@ def simulation_section(content: SimulationContent) -> str:
     """Return what a simulation found, in tables and pictures."""
     near = _findings(content.near, "#Apart mm") if content.near else ""
     parts = (
-        ("Simulation: findings", _findings(content.findings, "#Deep mm") + _unfound(content)),
+        ("Simulation: findings", _findings(content.findings, "#Depth mm") + _unfound(content)),
         ("Near misses", near),
         ("Finished stock", "".join(map(_state, content.states))),
         ("Material removed", _operations(content.operations)),
-        ("What the simulation took for granted", "".join(f"<p>{escape(each)}</p>" for each in content.remarks)),
+        ("What the simulation took for granted", "".join(f"<p>{prose(each)}</p>" for each in content.remarks)),
     )
     return "".join(f"<section>\n<h2>{title}</h2>\n{body}\n</section>\n" for title, body in parts if body)
 
@@ -81,7 +91,7 @@ def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:
     rows = [_finding(each) for each in found[:_MOST]]
     more = len(found) - _MOST
     note = f'<p class="note">and {more} more, in the data</p>' if more > 0 else ""
-    return _table((size, "What", "Between", "Program", "CL file", "#After", "#Place mm"), rows) + note
+    return table((size, "What", "Between", "Program", "CL file", "#After", "#Place mm"), rows) + note
 
 
 def _finding(each: SimulationFinding | NearMiss) -> str:
@@ -118,7 +128,7 @@ def _operations(operations: Sequence[SimulatedOperation]) -> str:
         for each in operations
     ]
     heads = ("From", "Tool", "#Removed mm³", "#Of the part mm³", "#Time", "#mm³/min", "#In air mm", "#Findings")
-    return _table(heads, rows) if rows else ""
+    return table(heads, rows) if rows else ""
 
 
 def _rate(each: SimulatedOperation) -> str:
@@ -157,20 +167,8 @@ def _histogram(bins: Sequence[DeviationBin]) -> str:
         bar = f'<rect width="{long:.1f}" height="{height}" fill="{colour}"/>' if long else ""
         picture = f'<svg width="{width}" height="{height}" aria-hidden="true">{bar}</svg>'
         rows.append(
-            f"<tr><td class=n>{format_number(each.low)} … {format_number(each.high)}</td>"
+            f"<tr><td class=n>{format_fixed(each.low)} … {format_fixed(each.high)}</td>"
             f"<td class=n>{each.area:.1f}</td><td class=n>{100.0 * each.area / max(total, 1e-12):.2f}</td>"
             f"<td>{'as the design wants it' if within else picture}</td></tr>"
         )
-    return "<h3>Deviation from the part</h3>\n" + _table(("#From mm to mm", "#Surface mm²", "#%", "-"), rows, "tight")
-
-
-def _table(headings: Sequence[str], rows: Sequence[str], kind: str = "") -> str:
-    """Return a table; a heading with ``#`` is that of a column of numbers, ``-`` an empty one."""
-    cells = "".join(
-        f"<th scope=col class=n>{head[1:]}</th>" if head[0] == "#" else f"<th scope=col>{head.strip('-')}</th>"
-        for head in headings
-    )
-    body = "\n".join(rows)
-    return (
-        f'<div class="wide {kind}"><table>\n<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>\n'
-    )
+    return "<h3>Deviation from the part</h3>\n" + table(("#From mm to mm", "#Surface mm²", "#%", "-"), rows, "tight")

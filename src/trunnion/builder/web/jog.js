@@ -66,7 +66,8 @@ export class Jog {
       delete box.dataset.held;
       moveTo(value);
     });
-    row.append(name, range, box);
+    const unit = Object.assign(document.createElement("span"), { className: "unit", textContent: axis.rotary ? "°" : "mm" });
+    row.append(name, range, box, unit);
     return row;
   }
 
@@ -85,6 +86,6 @@ export class Jog {
     });
     const { tip, axis } = this.stage.tool();
     const of = (/** @type {number[]} */ v, /** @type {number} */ digits) => v.map((x) => x.toFixed(digits)).join("  ");
-    this.pose.textContent = [`${say("tip")} ${of(tip, 3)}   ${say("toolAxis")} ${of(axis, 6)}`, zero ? "" : say("zero"), this.remark].filter(Boolean).join("\n");
+    this.pose.textContent = [`${say("tip")} ${of(tip, 3)} mm   ${say("toolAxis")} ${of(axis, 6)}`, zero ? "" : say("zero"), this.remark].filter(Boolean).join("\n");
   }
 }

@@ -57,7 +57,7 @@ function pressed(page, event) {
     " ": () => page.play(), ArrowRight: () => page.goToRow(page.row + 1), ArrowLeft: () => page.goToRow(page.row - 1),
     Home: () => page.goToRow(0), End: () => page.goToRow(page.program.rows - 1),
     "+": () => page.changeSpeed(0.05), "-": () => page.changeSpeed(-0.05),
-    n: () => page.jump(page.scene.findings.map((each) => each.row), 1), N: () => page.jump(page.scene.findings.map((each) => each.row), -1),
+    n: () => page.jumpToFinding(1), N: () => page.jumpToFinding(-1),
     t: () => page.jump(rows("tool"), 1), T: () => page.jump(rows("tool"), -1),
     o: () => page.jump(page.scene.operations.map((one) => one.first), 1), O: () => page.jump(page.scene.operations.map((one) => one.first), -1),
     r: () => page.jump(rows("rewind"), 1), R: () => page.jump(rows("rewind"), -1),

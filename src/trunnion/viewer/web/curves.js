@@ -1,6 +1,11 @@
 // Curves over time: for each pixel across, the least and the greatest value that it stands for.
 
-const LEFT = 64, RIGHT = 10, GAP = 6;
+import { clock } from "./elements.js";
+
+const LEFT = 76, RIGHT = 10, GAP = 4, FOOT = 16;
+
+/** About how many pixels lie between two ticks of the time. */
+const TICKS = 110;
 
 /** Colours of the second curve of a strip and of those after it; readable on light and on dark. */
 const MORE = ["#b06a00", "#7d55c7", "#0f8a6d", "#c2417a"];
@@ -104,7 +109,7 @@ export class Curves {
     pen.scale(ratio, ratio);
     const style = getComputedStyle(this.canvas);
     const across = Math.max(Math.floor(width - LEFT - RIGHT), 1);
-    const tall = (height - GAP) / this.strips.length - GAP;
+    const tall = (height - GAP - FOOT) / this.strips.length - GAP;
     pen.font = "11px system-ui, sans-serif";
     this.strips.forEach((strip, k) => {
       const top = GAP + k * (tall + GAP);
@@ -137,17 +142,38 @@ export class Curves {
       pen.textAlign = "right";
       pen.fillText(`${strip.name} ${strip.unit}`, LEFT - 6, top + tall / 2 + (drawn.length > 1 ? -2 : 4));
       pen.fillStyle = style.getPropertyValue("--soft");
-      if (tall > (drawn.length > 1 ? 58 : 34)) {
-        pen.fillText(most.toPrecision(5), LEFT - 6, top + 10);
-        pen.fillText(least.toPrecision(5), LEFT - 6, top + tall - 2);
-      }
+      // Beside the strip where it is tall enough, else within it: it never goes without its scale.
+      const beside = tall > (drawn.length > 1 ? 58 : 30);
+      if (!beside) pen.textAlign = "left";
+      pen.fillText(rounded(most), beside ? LEFT - 6 : LEFT + 3, top + 10);
+      if (beside || tall > 22) pen.fillText(rounded(least), beside ? LEFT - 6 : LEFT + 3, top + tall - 2);
+      else { pen.textAlign = "right"; pen.fillText(rounded(least), LEFT + across - 3, top + tall - 2); }
     });
+    this.#ticks(pen, across, height - 4);
     pen.fillStyle = style.getPropertyValue("--bad");
     for (const time of this.marks) {
       if (time < this.range[0] || time > this.range[1]) continue;
       pen.fillRect(LEFT + ((time - this.range[0]) / (this.range[1] - this.range[0])) * across - 1, 0, 3, GAP);
     }
     this.#placePointer();
+  }
+
+  /**
+   * What time it is below the strips.
+   * @param {CanvasRenderingContext2D} pen
+   * @param {number} across
+   * @param {number} base of the text
+   */
+  #ticks(pen, across, base) {
+    const [from, to] = this.range, about = ((to - from) * TICKS) / across;
+    const power = 10 ** Math.floor(Math.log10(about));
+    const step = [1, 2, 5, 10].map((each) => each * power).find((each) => each >= about) ?? about;
+    pen.textAlign = "center";
+    for (let time = Math.ceil(from / step) * step; time <= to; time += step) {
+      const x = LEFT + ((time - from) / (to - from)) * across;
+      pen.fillRect(x, base - 12, 1, 3);
+      pen.fillText(step < 0.1 ? `${time.toPrecision(6)} s` : clock(time + 1e-9), Math.min(x, LEFT + across - 16), base);
+    }
   }
 
   /** Move the line at the cursor: an element of its own, so that nothing is drawn anew. */
@@ -168,6 +194,9 @@ export class Curves {
     return `${rows.join("\n")}\n`;
   }
 }
+
+/** @param {number} value */
+const rounded = (value) => String(Number(value.toPrecision(5))).replace("-", "−");
 
 /**
  * @param {Strip} strip

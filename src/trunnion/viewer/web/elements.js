@@ -13,6 +13,15 @@ export function escaped(text) {
   return box.innerHTML;
 }
 
+/**
+ * A text in which no minus is parted from its number: ``X-41.5`` at the end of a line would read as positive.
+ * @param {string} text
+ */
+export function prose(text) {
+  const parts = text.split(/((?<![\w-])[A-Za-z]{0,2}-\d[\d.]*)/);
+  return parts.map((part, k) => (k % 2 ? Object.assign(document.createElement("span"), { className: "nb", textContent: part }) : part));
+}
+
 /** @param {number} seconds */
 export function clock(seconds) {
   const whole = Math.floor(seconds);

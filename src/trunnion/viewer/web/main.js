@@ -54,7 +54,11 @@ async function openStock(stock) {
 function openTwin(scene, columns, program) {
   if (!scene.against) return null;
   document.body.classList.add("twin");
-  for (const id of ["space-b", "listing-b"]) element(id).hidden = false;
+  const second = `${scene.against.title} (${scene.against.machine.name})`;
+  const first = scene.title.split(" | ")[0].replace(/ \([^()]*\)$/, "");
+  element("caption").textContent = `${first} (${scene.machine.name})`;
+  element("caption-b").textContent = second;
+  for (const id of ["space-b", "listing-b", "caption", "caption-b"]) element(id).hidden = false;
   return new Twin(element("space-b"), element("listing-b"), scene, columns, program, readTextOnce);
 }
 
@@ -83,6 +87,8 @@ async function start() {
   element("remarks").textContent = remarksOf(scene).join(" ");
   element("status").textContent = "";
   if (scene.live) followMachine(page, element("live-place"));
+  window.addEventListener("beforeprint", () => { element("paper").src = space.picture(); });
+  element("title").title = scene.title;
   Object.assign(window, { page });
   document.documentElement.dataset.ready = "true";
 }

@@ -2,7 +2,7 @@
 
 import { listen } from "./controls.js";
 import { Curves } from "./curves.js";
-import { clock, element, escaped, save } from "./elements.js";
+import { clock, element, escaped, prose, save } from "./elements.js";
 import { PathColours } from "./path_colours.js";
 import { ProgramText } from "./program_text.js";
 import { Places } from "./stock.js";
@@ -102,7 +102,13 @@ export class Page {
    * @param {import("./data.js").Mark} finding
    */
   async goToFinding(finding) {
+    const { program } = this, { place } = finding;
     this.goToRow(finding.row);
+    // A motion may be long: what was found stands where it is, and not at its end.
+    if (place) {
+      const time = program.timeNear(finding.row, place);
+      this.#show(time, finding.row, program.valuesIn(finding.row, time));
+    }
     if (finding.line > 0) await this.text.showPlace(finding.file, finding.line);
   }
 
@@ -116,12 +122,12 @@ export class Page {
     const shown = program.machine.axes.map((one, k) => {
       const value = one.displayLow === null ? values[k] : ((((values[k] - one.displayLow) % 360) + 360) % 360) + one.displayLow;
       const out = one.placed && ((one.low !== null && values[k] < one.low - 1e-6) || (one.high !== null && values[k] > one.high + 1e-6));
-      return `<dt>${escaped(one.name)}</dt><dd class="${out ? "out" : ""}">${value.toFixed(4)}</dd>`;
+      return `<dt>${escaped(one.name)}</dt><dd class="${out ? "out" : ""}">${value.toFixed(4)} ${one.rotary ? "°" : "mm"}</dd>`;
     });
     const three = (/** @type {ArrayLike<number>} */ v, /** @type {number} */ digits) => Array.from(v, (part) => part.toFixed(digits)).join("  ");
     const tool = this.scene.tools[program.rows ? program.tool[row] : 0]?.name ?? "";
     const rows = [
-      [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows && program.feed[row] >= 0 ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
+      [say("tip"), `${three(tip, 4)} mm`], [say("toolAxis"), three(axis, 5)], ["F", program.rows && program.feed[row] >= 0 ? `${program.feed[row].toFixed(0)} mm/min` : ""], [say("tool"), tool],
       [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
     ];
     element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");
@@ -135,18 +141,18 @@ export class Page {
     element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
     for (const check of this.scene.checks.filter((one) => one.state !== "ok")) {
       const line = document.createElement("li");
-      line.textContent = `${check.key}: ${check.state}: ${check.summary}`;
+      line.append(...prose(`${check.key}: ${check.state}: ${check.summary}`));
       (check.state === "FAIL" ? list : element("unchecked")).append(line);
     }
     for (const text of this.scene.stands) {
       const line = document.createElement("li");
-      line.textContent = text;
+      line.append(...prose(text));
       element("unchecked").append(line);
     }
     this.scene.findings.forEach((each) => {
       const line = document.createElement("li"), button = document.createElement("button");
       button.type = "button";
-      button.textContent = `${say("line")} ${each.line}: ${each.text}`;
+      button.append(...prose(`${say("line")} ${each.line}: ${each.text}`));
       button.addEventListener("click", () => this.goToFinding(each));
       line.append(button);
       list.append(line);
@@ -157,11 +163,23 @@ export class Page {
    * Go to the next or the previous of some rows.
    * @param {number[]} rows
    * @param {number} step 1 or -1
+   * @returns {number | undefined} the row
    */
   jump(rows, step) {
     const sorted = [...new Set(rows)].sort((a, b) => a - b);
     const found = step > 0 ? sorted.find((row) => row > this.row) : sorted.reverse().find((row) => row < this.row);
     if (found !== undefined) this.goToRow(found);
+    return found;
+  }
+
+  /**
+   * Go to the next or the previous finding.
+   * @param {number} step 1 or -1
+   */
+  jumpToFinding(step) {
+    const { findings } = this.scene, row = this.jump(findings.map((each) => each.row), step);
+    const found = findings.find((each) => each.row === row);
+    if (found) this.goToFinding(found);
   }
 
   play() {
@@ -227,7 +245,10 @@ export class Page {
    * @param {string} from
    * @param {boolean} near
    */
-  look(from, near = false) { for (const space of this.spaces) space.look(from, near); }
+  look(from, near = false) {
+    element("view").value = from;
+    for (const space of this.spaces) space.look(from, near);
+  }
 
   /** @param {any} frame */
   setFrame(frame) { for (const space of this.spaces) space.setFrame(frame); }

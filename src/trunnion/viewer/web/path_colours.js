@@ -12,6 +12,8 @@ const PALETTE = [[31, 119, 180], [255, 127, 14], [44, 160, 44], [214, 39, 40], [
 const PHASES = ["rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse"];
 /** Colours that the legend tells at most. */
 const MOST_ENTRIES = 8;
+/** That of the current block, as ``space.js`` draws it. */
+const CURRENT = [255, 45, 160];
 const FINDING = [220, 30, 40], QUIET = [150, 160, 170];
 
 /** @param {number} share from 0 to 1 */
@@ -78,12 +80,14 @@ export class PathColours {
    * @param {(string | number[])[][]} entries name and colour
    */
   #legend(entries) {
-    element("legend").replaceChildren(...entries.slice(0, MOST_ENTRIES).map(([name, colour]) => {
+    const shown = (/** @type {(string | number[])[]} */ [name, colour]) => {
       const entry = Object.assign(document.createElement("span"), { className: "entry", textContent: String(name) });
       entry.style.borderColor = `rgb(${/** @type {number[]} */ (colour).join()})`;
       return entry;
-    }));
+    };
+    element("legend").replaceChildren(...entries.slice(0, MOST_ENTRIES).map(shown));
     if (entries.length > MOST_ENTRIES) element("legend").append("…");
+    element("legend").append(shown([say("block"), CURRENT]));
   }
 
   /** The scale of deviations stands where something is coloured by them. */

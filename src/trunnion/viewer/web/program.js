@@ -4,6 +4,9 @@ import { toolAt, unwrapped } from "./kinematics.js";
 
 const COUNT = 1e-5;
 
+/** Places of a piece that are compared with one that is wanted. */
+const STEPS = 64;
+
 export class Program {
   /**
    * @param {import("./data.js").SceneData} scene
@@ -86,6 +89,34 @@ export class Program {
    */
   timeOf(row) {
     return this.pieces ? this.time[Math.max(this.last[Math.min(Math.max(row, 0), this.rows - 1)], -1) + 1] : 0;
+  }
+
+  /**
+   * Axis values at a time within a row: pieces of other rows take the same time where theirs is none.
+   * @param {number} row
+   * @param {number} time
+   */
+  valuesIn(row, time) { return this.rowAt(time) === row ? this.valuesAt(time) : this.valuesAfter(row); }
+
+  /**
+   * When the tip is nearest to a place within a row.
+   * @param {number} row
+   * @param {number[]} place mm, in the workpiece frame
+   */
+  timeNear(row, place) {
+    const last = this.last[row], values = new Float64Array(5), p = new Float64Array(3);
+    let best = this.timeOf(row), least = Infinity;
+    const first = row > 0 ? this.last[row - 1] + 1 : 0;
+    for (let piece = Math.max(first, 0); piece <= last; piece++) {
+      for (let k = 0; k <= STEPS; k++) {
+        const share = k / STEPS;
+        for (let axis = 0; axis < 5; axis++) values[axis] = this.axes[axis][piece] + share * (this.axes[axis][piece + 1] - this.axes[axis][piece]);
+        toolAt(this.machine, values, this.lengthAt(row), p);
+        const away = Math.hypot(p[0] - place[0], p[1] - place[1], p[2] - place[2]);
+        if (away < least) { least = away; best = this.time[piece] + share * (this.time[piece + 1] - this.time[piece]); }
+      }
+    }
+    return best;
   }
 
   /**
