@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from trunnion import verify
 from trunnion.cli import main
 
@@ -208,3 +209,30 @@ def test_a_tool_change_that_lost_the_retract_of_the_others_is_found(posted: Post
     passed, text = home([*lines[:cut], *lost, *lines[change:]])
     assert not passed
     assert "changes the tool without the retract" in text
+
+
+def test_where_rotary_axes_were_positioned_is_named_only_if_no_point_behind_it_is_right(tmp_path: Path) -> None:
+    cl, program = tmp_path / "p.cls", tmp_path / "p.nc"
+    cl.write_text(
+        "TOOL PATH/ONE,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\n"
+        "RAPID\nGOTO/10,0,30,0,0,1\nFEDRAT/MMPM,500\nGOTO/10,0,5\nGOTO/10,20,5\nGOTO/30,20,5\nRAPID\nGOTO/30,20,30\n"
+        "END-OF-PATH\n",
+        encoding="utf-8",
+    )
+    for machine, turned in (("matsuura_mx330", "A0. C0.:A0. C5."), ("yl569", "C0 B0:C5 B0")):
+        text = trunnion.post(cl, machine=machine).text
+        right, wrong = turned.split(":")
+        at = next(k for k, line in enumerate(text.splitlines()) if " Y20" in line)
+        lines = text.splitlines()
+        lines[at] = lines[at].replace("Y20", "Y21")
+        program.write_text("\n".join([*lines, ""]), encoding="utf-8")
+        tip = next(each for each in trunnion.verify(program, machine=machine, cl=cl).checks if each.key == "tip")
+        assert not tip.passed
+        assert not any("were positioned" in place.text for place in tip.places)
+        assert tip.places[0].nc_line == at + 1
+        if right not in text:
+            continue
+        begin = text.rindex(right, 0, text.index("Y20"))
+        program.write_text(text[:begin] + wrong + text[begin + len(right) :], encoding="utf-8")
+        tip = next(each for each in trunnion.verify(program, machine=machine, cl=cl).checks if each.key == "tip")
+        assert any("were positioned" in place.text for place in tip.places)

@@ -186,7 +186,7 @@ class ComparedContext(Context):
 
     def rotary_positioning_place(self, row: int) -> Place | None:
         """Return the block before a row that positioned the rotary axes for it; None if that is the row itself or a
-        match.
+        match, or if points between them are right: ``row`` is the first that is not.
         """
         run, first = self.run, max(row - _POSITIONING_WINDOW, 0)
         bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
@@ -196,6 +196,9 @@ class ComparedContext(Context):
         by = first + int(written[-1])
         if by == row or by in self.matching.nc:
             return None
+        before = self.matching.nc.count_before(row)
+        if before and self.matching.nc[before - 1] > by:
+            return None  # the points from there to the row are right, and so are the rotary axes
         return self.place(by, 0.0, Wording("all", "positioned_for", block=self.block_name(row)))
 
 
