@@ -11,12 +11,18 @@ MOVES = "G0 X0. Y0. Z50.\nG1 Z5. F100.\nX10.\nG0 Z50."
 FANUC = f"%\nO0001\nG21{{said}}\nT1 M6\nG54 S500 M3\nG43 H1\n{MOVES}\nG49\nM5\nM30\n%\n"
 OTHERS = f"{{said}}\nT1 M6\nG54 S500 M3\n{MOVES}\nM5\nM30\n"
 
+KLARTEXT = (
+    "BEGIN PGM P MM\n{said}\nTOOL CALL 1 Z S500\nCYCL DEF 247 DATUM SETTING ~\nQ339=1\nM3\nL X+0 Y+0 Z+50 R0 FMAX\n"
+    "L Z+5 F100\nL X+10\nL Z+50 FMAX\nM5\nM30\nEND PGM P MM\n"
+)
+
 #: Machines, their programs, and what is assumed of one that says nothing.
 PROGRAMS = [
     ("matsuura_mx330", FANUC, ("G90", "G17", "G40", "G94", "G69")),
     ("haas_umc750", FANUC, ("G90", "G17", "G40", "G94")),
     ("xyzac_trt", FANUC.replace("%\nO0001\n", "").replace("%\n", ""), ("G90", "G17", "G40", "G94")),
     ("hs664rt", OTHERS, ("G90", "G17", "G40", "G69")),
+    ("dmu65", KLARTEXT, ("PLANE RESET", "M129")),
     ("yl569", OTHERS, ("G90", "G17", "G40", "G94", "G71", "TRAFOOF")),
 ]
 
@@ -33,6 +39,10 @@ def test_what_no_program_says_before_it_moves_is_assumed(
     machine: str, text: str, words: tuple[str, ...], tmp_path: Path
 ) -> None:
     assert assumed(machine, text.format(said=""), tmp_path) == words
+    if machine == "dmu65":
+        assert assumed(machine, text.format(said="PLANE RESET STAY"), tmp_path) == ("M129",)
+        assert assumed(machine, text.format(said="PLANE RESET STAY\nM129"), tmp_path) == ()
+        return
     said = " " + " ".join(words)
     assert assumed(machine, text.format(said=said), tmp_path) == ()
     assert assumed(machine, text.format(said=said.replace(" G17", "")), tmp_path) == ("G17",)

@@ -18,6 +18,7 @@ from trunnion.readers.control.virtual_control import Circle
 from trunnion.readers.families.heidenhain.leads import LeadControl
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.scan_kernel import letter_table
+from trunnion.readers.families.heidenhain.settings import START_MODES
 
 
 class HeidenhainControl(LeadControl):
@@ -31,6 +32,7 @@ class HeidenhainControl(LeadControl):
 
     compensation_style = CIRCLES
     compensation_off = "R0"
+    start_modes = START_MODES
     doubtful_modes = frozenset({"M89", "M116", "M118", "M120", "feed"})
     reset_by = "whether the end of a program cancels it depends on the software of the control"
 
