@@ -220,7 +220,7 @@ def test_where_rotary_axes_were_positioned_is_named_only_if_no_point_behind_it_i
         encoding="utf-8",
     )
     for machine, turned in (("matsuura_mx330", "A0. C0.:A0. C5."), ("yl569", "C0 B0:C5 B0")):
-        text = trunnion.post(cl, machine=machine).text
+        text = trunnion.post(cl, machine=machine).text or ""
         right, wrong = turned.split(":")
         at = next(k for k, line in enumerate(text.splitlines()) if " Y20" in line)
         lines = text.splitlines()
