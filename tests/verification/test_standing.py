@@ -230,3 +230,25 @@ def test_what_nobody_measured_is_asked_once_for_all_checks(monkeypatch: pytest.M
     found = trunnion.verify(YL569 / "2_hub_rough.expected.mpf", machine="yl569", cl=HUB)
     assert sum(bool(check.stands_on) for check in found.checks) > 1
     assert len(asked) == 1
+
+
+def test_a_program_that_moves_nothing_is_not_passed(tmp_path: Path) -> None:
+    for machine, text in (("matsuura_mx330", "%\nO0001\nM30\n%\n"), ("yl569", "M30\n"), ("xyzac_trt", "M2\n")):
+        program = tmp_path / "p.nc"
+        program.write_text(text, encoding="utf-8")
+        standing = trunnion.verify(program, machine=machine).standing
+        assert standing.told.startswith("Nothing checked: there is no motion; ")
+
+
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "yl569", "dmu65", "hs664rt", "xyzac_trt"])
+def test_what_is_compared_with_no_point_is_not_checked(machine: str, tmp_path: Path) -> None:
+    """A program that moves nothing has nothing at the points of the CL file."""
+    program, cl = tmp_path / "p.nc", tmp_path / "p.cls"
+    cl.write_text(f"{CL_HEAD}RAPID\nGOTO/0,0,50\nFEDRAT/MMPM,500\nGOTO/10,0,5\n{CL_FOOT}", encoding="utf-8")
+    empty = "0 BEGIN PGM P MM\n1 END PGM P MM\n" if machine == "dmu65" else "M30\n"
+    program.write_text(empty, encoding="utf-8")
+    found = {check.key: check for check in trunnion.verify(program, machine=machine, cl=cl).checks}
+    assert not found["order"].passed
+    for key in ("kind", "feed", "spindle", "tool", "coolant", "stops"):
+        assert found[key].state == "not checked"
+        assert found[key].told.startswith("no block goes to any CL point")

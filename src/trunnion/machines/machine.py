@@ -246,8 +246,8 @@ class Machine:
         )
         gauge = MarkedValue("spindle gauge_point_mm", "", 0, "not stated", "spindle")
         marked = (*self.unmeasured, *self.assumed)
-        names = {value.name for value in marked}
-        others = (value for value in self.inherited if value.name not in names)
+        told = {value.name for value in marked} | {f"{value.of} shape" for value in marked if value.table == "body"}
+        others = (value for value in self.inherited if value.name not in told)
         return (*marked, *others, *homes, *(() if self.spindle_point_is_stated else (gauge,)))
 
     @property

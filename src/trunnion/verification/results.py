@@ -238,6 +238,7 @@ class Verification:
             not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
             turns_before_offset=str(turns_before_offset(self.run) or ""),
+            moves=len(self.run) > 0,
         )
 
     def __repr__(self) -> str:

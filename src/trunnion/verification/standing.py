@@ -7,9 +7,10 @@ Out:    ``Standing``, as data and in words.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Annotated
 
 from trunnion.messages import LIBRARY, Wording, Words, phrase
-from trunnion.results import Figure
+from trunnion.results import NOT_DATA, Figure
 
 
 class Verdict(StrEnum):
@@ -38,6 +39,7 @@ class Standing:
     not_measured  values that answers of checks stand on although nobody has measured them
     assumed       modes that the control is taken to start with: neither the program nor the definition states them
     turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force
+    moves         whether there is a motion: without one nothing of a path was checked
     """
 
     passed: bool
@@ -48,6 +50,7 @@ class Standing:
     not_measured: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
     turns_before_offset: str = ""
+    moves: Annotated[bool, NOT_DATA] = True
 
     @property
     @Figure(after="passed")
@@ -60,7 +63,7 @@ class Standing:
         """``PASSED`` only where every check was made, and wholly."""
         if not self.passed:
             return Verdict.FAILED
-        if not self.checks:
+        if not (self.checks and self.moves):
             return Verdict.NOTHING
         return Verdict.IN_PART if self.not_checked else Verdict.PASSED
 
@@ -70,6 +73,8 @@ class Standing:
             yield phrase("standing_failed", failed=self.failed, count=self.checks)
         elif not self.passed:
             yield phrase("standing_forced", ok=self.ok, count=self.checks)
+        elif not self.moves:
+            yield phrase("standing_no_motion")
         elif self.checks:
             yield phrase("standing_passed", ok=self.ok, count=self.checks)
         if self.not_checked:

@@ -401,3 +401,23 @@ def test_files_that_cannot_be_written_are_reported_where_the_project_names_them(
     assert f"{path}:3: error: output: {tmp_path / 'top.cls'} would be written over" in said
     twice = [line for name in "ab" for line in ("[[setup]]", f'name = "{name}"', 'output = "one.mpf"')]
     assert f"{path}:8: error: setup[1].output: {tmp_path / 'one.mpf'} would be written twice" in found(*twice)
+
+
+CONTOUR = (
+    "TOOL PATH/ONE,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\n"
+    "RAPID\nGOTO/0,0,30,0,0,1\nRAPID\nGOTO/0,0,-2\nCUTCOM/LEFT\nFEDRAT/MMPM,500\nGOTO/0,20,-2\nGOTO/30,20,-2\n"
+    "CUTCOM/OFF\nGOTO/40,20,-2\nRAPID\nGOTO/40,20,30\nEND-OF-PATH\n"
+)
+
+
+def test_what_the_registers_hold_is_the_same_for_posts_and_simulation_of_a_project(tmp_path: Path) -> None:
+    text = PROJECT + 'stock = "box:60,40,10,-10,-10,-10"\nchecks = { simulate = "warn" }\n'
+    stated = text.replace('title = "TOP"', 'radius_register = "difference"')
+    for own, settings in ((text, None), (stated, None), (text, {"radius_register": "difference"})):
+        path = project(tmp_path, own, top=CONTOUR)
+        found = trunnion.post_project(path, settings=settings)
+        assert found.simulation is not None
+        unstated = own is text and settings is None
+        assert bool(found.simulation.cuts_not_checked) == unstated
+    path = project(tmp_path, stated, top=CONTOUR)
+    assert not trunnion.simulate(path).cuts_not_checked

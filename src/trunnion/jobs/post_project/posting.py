@@ -5,16 +5,17 @@ Out:    its programs, what the checks of the project found, and an error where o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, RefusedError, Severity, warning
 from trunnion.files import OutputGroup, check_outputs, output_group, resolve_output
 from trunnion.jobs.inputs.arguments import check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post_project.checks import SetupFindings, check_project
@@ -123,6 +124,7 @@ def post_into(
 
 def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, observer: Observer) -> ProjectPosting:
     """Return what is posted, once it is known that nothing is written over that must stay."""
+    project = _simulated_as_posted(project, options.settings)
     posting = ProjectPosting(group, project, options, observer, project_inputs(project))
     with reported_at_outputs(project.setups):
         check_outputs([*(each.output for each in project.setups), *posting.papers], posting.inputs)
@@ -130,6 +132,15 @@ def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, obs
             check_replaced(project)
     observer.problems(_running_hooks(project))
     return posting
+
+
+def _simulated_as_posted(project: Project, settings: Settings) -> Project:
+    """Return the project with what the registers of the radius hold, as it is given for its posts."""
+    holds = as_texts(settings).get(RADIUS_REGISTER_SETTING)
+    if holds is None:
+        return project
+    setups = [replace(each, radius_register=holds) for each in project.simulation.setups]
+    return replace(project, simulation=replace(project.simulation, setups=setups))
 
 
 def _running_hooks(project: Project) -> list[Problem]:

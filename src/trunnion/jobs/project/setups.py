@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.definitions import Table
 from trunnion.errors import InputError
 from trunnion.jobs.inputs.reading import as_machine
@@ -148,6 +149,7 @@ class SetupReader:
                 _posted(stated, name, output, released, papers), files=_places_of_files(table, output, papers)
             )
         values = {each.name: stated.values[each.name] for each in OF_SETUP}
+        values["radius_register"] = values["radius_register"] or stated.settings.get(RADIUS_REGISTER_SETTING)
         return ReadSetup(SetupInput(programs, name=name, pose=pose, places=stated.places, **values), posted)
 
     def _existing_programs(self, table: Table, stated: StatedSetup) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.rewind_retracts import RewindRetract, find_rewind_retracts
+from trunnion.verification.matching.unstated_axes import unstated_axes
 from trunnion.verification.results import Check, Place
 
 _KINDS = {Kind.RAPID: "at_rapid", Kind.LINEAR: "on_line", Kind.ARC: "on_circle"}
@@ -52,6 +53,9 @@ def check_order(context: ComparedContext) -> Check:
     ]
     places += [context.place(row, 0.0, told) for row, told in zip(extra[:MAX_PLACES], posted, strict=True)]
     left_out = list(cuts_left_out(context, set(extra)))
+    left_out += [
+        context.place(row, 0.0, Wording("order", "not_stated", axes=axes)) for row, axes in unstated_axes(run, matching)
+    ]
     places += left_out[:MAX_PLACES]
     if not places:
         return _in_order(context, retracts, still)

@@ -148,9 +148,22 @@ CHECKS: Final = (
 )  # fmt: skip
 
 
+#: Checks of what a program has at the points of the CL files.
+_AT_POINTS: Final = frozenset({"kind", "feed", "spindle", "tool", "coolant", "compensation", "stops"})
+
+
+def _at_no_point(check: Check) -> Check:
+    """Return a check of a program that goes to no point of its CL files: it has nothing to compare there."""
+    if check.key not in _AT_POINTS or not check.passed:
+        return check
+    return Check(check.key, True, None, missing=(phrase("no_point_reached"),))
+
+
 def all_checks(seen: Measured) -> tuple[Check, ...]:
     """Every check; those that need more than is known are not checked."""
     run = seen.context.run
     unmeasured = unmeasured_values(run.machine, tuple(ValueKind), joint_samples(run))
     checks = tuple(check for entry in CHECKS for check in entry.checks(seen, unmeasured))
+    if isinstance(seen, Compared) and len(seen.context.expected) and not len(seen.context.matching.cl):
+        checks = tuple(map(_at_no_point, checks))
     return tuple(with_coverage(seen.context, checks)) if isinstance(seen, Compared) else checks
