@@ -119,10 +119,25 @@ def test_keys_step_through_the_program(view: Page) -> None:
     for key, row in (("ArrowRight", 21), ("ArrowRight", 22), ("ArrowLeft", 21), ("Home", 0), ("ArrowLeft", 0)):
         view.keyboard.press(key)
         assert view.evaluate("page.row") == row
+    for key, look in (("2", "top"), ("4", "right"), ("1", "iso")):
+        view.keyboard.press(key)
+        assert view.locator("#view").input_value() == look
     view.keyboard.press("?")
     assert view.locator("#keys").is_visible()
     view.keyboard.press("Escape")
     assert not view.locator("#keys").is_visible()
+
+
+def test_values_have_units_and_a_place_within_a_motion_its_time(view: Page) -> None:
+    texts = view.locator("#values dd").all_inner_texts()
+    assert [text.split()[-1] for text in texts[:6]] == ["°", "°", "mm", "mm", "mm", "mm"]
+    off = view.evaluate(
+        """() => { const { program, space } = page, row = 60, piece = program.last[row];
+        const time = (program.time[piece] + program.time[piece + 1]) / 2;
+        const { tip } = space.toolOf(program.valuesAt(time), row);
+        return Math.abs(program.timeNear(row, tip) - time) / (program.time[piece + 1] - program.time[piece]); }"""
+    )
+    assert off < 0.02
 
 
 def test_controls_keep_their_own_keys(view: Page) -> None:
@@ -395,6 +410,8 @@ def test_two_machines_go_along_one_tool_path(tmp_path: Path, browser: Browser) -
         assert page.evaluate("page.row === page.twin.ones[40] && page.twin.row === page.twin.twos[40]")
         page.wait_for_function("() => !page.space.isMoving && !page.twin.space.isMoving")
         check_picture(browser, page.screenshot(), "viewer-against.png")
+        captions = [page.locator(f"#{name}").inner_text() for name in ("caption", "caption-b")]
+        assert captions == ["3_blade_finish.mpf (Yalong YL569)", "3_blade_finish.mpf (Generic C-A fork head)"]
         assert errors == []
 
 

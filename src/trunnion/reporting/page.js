@@ -260,7 +260,7 @@ for (const own of ["", "recorded-"]) (() => {
   }
 
   function legend(spec, box) {
-    box.append(element("h3", "", spec.lines.length > 1 ? spec.title : `${spec.title} (${spec.unit})`));
+    box.append(element("h3", "", `${spec.title} (${spec.unit})`));
     return spec.lines.map((line, k) => {
       const row = element("p", `line-${k + 1}`);
       const output = element("output");

@@ -121,7 +121,7 @@ def _tool(tool: SheetTool) -> str:
     )
     numbers = ", ".join(map(str, tool.operations))
     return (
-        f"<tr><th scope=row><bdi>{call}</bdi></th><td><bdi>{escape(tool.name)}</bdi>{kind}</td>{cells}"
+        f"<tr><th scope=row><bdi>{call}</bdi></th><td><bdi>{_name(tool.name)}</bdi>{kind}</td>{cells}"
         f"<td><bdi>{escape(tool.holder)}</bdi></td><td>{numbers}</td>"
         f"<td class=n>{format_duration(tool.seconds)}</td><td></td></tr>"
     )
@@ -150,12 +150,17 @@ def _operation(each: SheetOperation, names: Sequence[str]) -> str:
     feeds += [f"{format_range(each.cuts.feed_per_rev)} mm/rev"] if each.cuts.feed_per_rev else []
     sense = "" if each.cuts.sense in ("", "clockwise") else f"<br><small>{escape(each.cuts.sense)}</small>"
     return (
-        f"<tr><td>{each.number}</td><th scope=row><bdi>{escape(each.name)}</bdi><br><small>{facts}</small></th>"
+        f"<tr><td>{each.number}</td><th scope=row><bdi>{_name(each.name)}</bdi><br><small>{facts}</small></th>"
         f"<td><bdi>{escape(each.tool)}</bdi></td><td class=n>{_block(each.cuts.start)}</td>"
         f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{format_duration(each.cutting_seconds)}</td>"
         f"<td class=cuts>{'<br>'.join(box)}</td><td class=n>{'<br>'.join(feeds)}</td>"
         f"<td class=n>{format_range(each.cuts.rpm)}{sense}</td><td>{escape(each.cuts.coolant)}</td></tr>"
     )
+
+
+def _name(text: str) -> str:
+    """Return a name that breaks behind its underscores, where it must."""
+    return escape(text).replace("_", "_<wbr>")
 
 
 def _degrees(turn: Range, stands: Sequence[float]) -> str:

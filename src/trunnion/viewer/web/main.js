@@ -55,7 +55,9 @@ function openTwin(scene, columns, program) {
   if (!scene.against) return null;
   document.body.classList.add("twin");
   const second = `${scene.against.title} (${scene.against.machine.name})`;
-  const first = scene.title.split(" | ")[0].replace(/ \([^()]*\)$/, "");
+  // The title has both, each with the key of its machine: names may hold anything, so lengths part them.
+  const rest = ` (${scene.machine.key}) | ${scene.against.title} (${scene.against.machine.key})`;
+  const first = scene.title.slice(0, scene.title.length - rest.length);
   element("caption").textContent = `${first} (${scene.machine.name})`;
   element("caption-b").textContent = second;
   for (const id of ["space-b", "listing-b", "caption", "caption-b"]) element(id).hidden = false;
