@@ -52,7 +52,7 @@ def stated(tree: ast.Module, shared: dict[str, int]) -> Iterator[str]:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in places:
             key = node.args[places[node.func.id]]
             found = key.value if isinstance(key, ast.Constant) else constants.get(ast.unparse(key))
-            assert isinstance(found, str) or ast.unparse(key) in ("key", "self.key"), ast.unparse(node)
+            assert isinstance(found, str) or ast.unparse(key) in ("key", "self.key", "check.key"), ast.unparse(node)
             if isinstance(found, str):
                 yield found
 
