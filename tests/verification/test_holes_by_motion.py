@@ -7,6 +7,7 @@ import pytest
 
 import trunnion
 from tests.support.recall_proof.parts import cl_text
+from tests.support.two_operations import PATHS
 
 
 @pytest.fixture(scope="module")
@@ -50,3 +51,10 @@ def test_holes_without_cycles_pass_on_every_control(machine: str, tmp_path: Path
         cl = tmp_path / f"{part}.cls"
         cl.write_text(cl_text(part), encoding="utf-8")
         trunnion.post(cl, machine=machine, settings={"cycles": "off"})
+
+
+@pytest.mark.parametrize("machine", ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "linuxcnc_5axis"])
+def test_from_a_retract_the_tool_goes_straight_to_a_hole_in_another_plane(machine: str, tmp_path: Path) -> None:
+    source = tmp_path / "holes.cls"
+    source.write_text(PATHS["holes"], encoding="utf-8")
+    assert trunnion.post(source, machine=machine, settings={"mode": "tcp"}).passed

@@ -4,6 +4,7 @@ In:     a run.
 Out:    rows, increasing, or flags of consecutive rows.
 """
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -80,7 +81,7 @@ def tool_axis_exit_rows(run: Run) -> Ints:
 
 
 def comes_from_home(run: Run, row: int) -> bool:
-    """Whether a row begins at a machine position, so that nothing says how high above the part.
+    """Whether a row begins at a machine position or behind a retract, so that nothing says how high above the part.
 
     Rotary axes may turn in between.
     """
@@ -89,7 +90,10 @@ def comes_from_home(run: Run, row: int) -> bool:
         before >= 0 and not run.state.machine_frame[before] and bool(_turns_only(run.programmed[before : before + 1]))
     ):
         before -= 1
-    return before < 0 or bool(run.state.machine_frame[before])
+    if before < 0 or run.state.machine_frame[before]:
+        return True
+    first, end = (bisect_right(run.events, each, key=lambda event: event.before_row) for each in (before, row))
+    return any(run.events[k].kind == "retract" for k in range(first, end))
 
 
 def approach_rows(run: Run) -> Ints:
