@@ -47,6 +47,7 @@ _NO_CONTENT: Final = {
     "files",
     "workpiece_zero",
     "tool_length",
+    "inherited",
     "zeros",
     "tool_lengths",
     "length_sources",
