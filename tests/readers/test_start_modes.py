@@ -20,8 +20,8 @@ KLARTEXT = (
 PROGRAMS = [
     ("matsuura_mx330", FANUC, ("G90", "G17", "G40", "G94", "G69")),
     ("haas_umc750", FANUC, ("G90", "G17", "G40", "G94")),
-    ("xyzac_trt", FANUC.replace("%\nO0001\n", "").replace("%\n", ""), ("G90", "G17", "G40", "G94")),
-    ("hs664rt", OTHERS, ("G90", "G17", "G40", "G69")),
+    ("xyzac_trt", FANUC.replace("%\nO0001\n", "").replace("%\n", ""), ("G90", "G17", "G40", "G94", "M429")),
+    ("hs664rt", OTHERS, ("G90", "G17", "G40", "G69", "G197")),
     ("dmu65", KLARTEXT, ("PLANE RESET", "M129")),
     ("yl569", OTHERS, ("G90", "G17", "G40", "G94", "G71", "TRAFOOF")),
 ]
@@ -67,7 +67,7 @@ CYCLE = "G0 X0. Y0. Z50.\n{}G81 X10. Y0. Z-5. R3. F100.\nX20. Y0.\nG80\nG0 Z50."
     [("matsuura_mx330", FANUC, "G98"), ("haas_umc750", FANUC, "G98"), ("xyzac_trt", PROGRAMS[2][1], "G99")],
 )
 def test_a_cycle_relies_on_where_it_ends(machine: str, text: str, word: str, tmp_path: Path) -> None:
-    text = text.format(said=" G90 G17 G40 G94 G69 G80" if "xyz" not in machine else " G90 G17 G40 G94 G80")
+    text = text.format(said=" G90 G17 G40 G94 G69 G80" if "xyz" not in machine else " G90 G17 G40 G94 G80 M429")
     drilled = text.replace(MOVES, CYCLE)
     assert assumed(machine, drilled.format(""), tmp_path) == (word,)
     for said in ("G98 ", "G99 ", "G99\n", "G98\n"):
@@ -84,7 +84,7 @@ def test_a_cycle_relies_on_where_it_ends(machine: str, text: str, word: str, tmp
 @pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "xyzac_trt"])
 def test_a_move_at_the_part_relies_on_the_length_being_off(machine: str, tmp_path: Path) -> None:
     text = (FANUC if "xyz" not in machine else PROGRAMS[2][1]).replace("G43 H1\n", "")
-    said = " G90 G17 G40 G94 G80" + ("" if "xyz" in machine else " G69")
+    said = " G90 G17 G40 G94 G80" + (" M429" if "xyz" in machine else " G69")
     assert assumed(machine, text.format(said=said), tmp_path) == ("G49",)
     assert assumed(machine, text.format(said=said + "\nG49"), tmp_path) == ()
     home = text.format(said=said).replace("T1 M6", "G53 G0 Z0.\nT1 M6").replace("G54 S500", "G49 G54 S500")
@@ -101,11 +101,53 @@ def test_a_rotation_that_was_left_on_is_assumed_off(tmp_path: Path) -> None:
 
 
 def test_centres_of_arcs_rely_on_how_they_count_on_a_linuxcnc(tmp_path: Path) -> None:
-    text = PROGRAMS[2][1].format(said=" G90 G17 G40 G94 G80")
+    text = PROGRAMS[2][1].format(said=" G90 G17 G40 G94 G80 M429")
     arc = text.replace("X10.\n", "G2 X10. Y0. I5. J0.\n")
     assert assumed("xyzac_trt", arc, tmp_path) == ("G91.1",)
     assert assumed("xyzac_trt", arc.replace("I5. J0.", "R5."), tmp_path) == ()
     assert assumed("xyzac_trt", arc.replace("T1", "G91.1 T1"), tmp_path) == ()
+
+
+LINUXCNC = PROGRAMS[2][1].replace("T1 M6", "{before}T1 M6")
+SAID = " G90 G17 G40 G94 G80 G49"
+
+
+@pytest.mark.parametrize("machine", ["linuxcnc_5axis", "xyzac_trt"])
+def test_all_positions_of_a_linuxcnc_rely_on_its_kinematics(machine: str, tmp_path: Path) -> None:
+    assert assumed(machine, LINUXCNC.format(said=SAID, before=""), tmp_path) == ("M429",)
+    assert assumed(machine, LINUXCNC.format(said=SAID, before="M429\n"), tmp_path) == ()
+    home = LINUXCNC.format(said=SAID, before="G53 G0 Z0.\nM429\n")
+    assert assumed(machine, home, tmp_path) == ("M429",), "under TCP G53 goes to positions of the tip"
+
+
+def test_a_linuxcnc_without_tcp_has_no_kinematics_to_switch(tmp_path: Path) -> None:
+    machine = tmp_path / "plain.toml"
+    machine.write_text('extends = "xyzac_trt"\n[control]\ntcp = false\n', encoding="utf-8")
+    assert assumed(str(machine), LINUXCNC.format(said=SAID, before=""), tmp_path) == ()
+
+
+def test_rotary_axes_of_a_fidia_rely_on_tcp_being_off(tmp_path: Path) -> None:
+    turns = OTHERS.format(said="G90 G17 G40 G69{}").replace("T1 M6", "G1 A0. C0. F500\n{}T1 M6")
+    assert assumed("hs664rt", turns.format("", "G197\n"), tmp_path) == ("G197",)
+    assert assumed("hs664rt", turns.format(" G197", ""), tmp_path) == ()
+    machine = tmp_path / "head.toml"
+    other = '[control.settings]\ntcp_on = "G96"\ntcp_off = "G97"\n'
+    machine.write_text(f'extends = "hs664rt"\n{other}', encoding="utf-8")
+    assert assumed(str(machine), turns.format("", ""), tmp_path) == ("G97",)
+
+
+@pytest.mark.parametrize(
+    ("axis", "words"), [("B10. C20.", ("ORIAXES", "ORIWKS")), ("A3=0.1 B3=0. C3=1.", ("ORIVECT", "ORIWKS"))]
+)
+def test_tcp_of_a_sinumerik_relies_on_how_the_tool_axis_turns(
+    axis: str, words: tuple[str, ...], tmp_path: Path
+) -> None:
+    text = OTHERS.format(said="G90 G17 G40 G94 G71").replace("M3\n", f"M3\nTRAORI\n{{}}G0 X0. Y0. Z60. {axis}\n", 1)
+    assert assumed("yl569", text.format(""), tmp_path) == words
+    for said in ("ORIAXES ORIWKS", "ORIVECT ORIMKS"):
+        assert assumed("yl569", text.format(f"{said}\n"), tmp_path) == ()
+    assert assumed("yl569", text.format(f"{words[0]}\n"), tmp_path) == ("ORIWKS",)
+    assert assumed("yl569", text.replace(f" {axis}", "").format(""), tmp_path) == (), "the tool axis stays"
 
 
 def test_what_only_a_skipped_block_says_is_assumed(tmp_path: Path) -> None:

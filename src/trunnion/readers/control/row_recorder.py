@@ -352,7 +352,8 @@ class RowRecorder(EventRecorder):
     def _relied(self) -> Relied:
         n, c = self.columns.n, self.columns
         in_machine = self.modal.machine_frame.part(0, n)
-        return Relied(self.said_from, self.relied_from, c.kind[:n], c.programmed[:n], in_machine)
+        tcp = self.modal.tcp.part(0, n)
+        return Relied(self.said_from, self.relied_from, c.kind[:n], c.programmed[:n], in_machine, tcp)
 
     def _normal_columns(self) -> SurfaceNormals:
         if not self._normals:

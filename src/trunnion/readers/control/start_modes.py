@@ -17,7 +17,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
-from trunnion.readers.program.settings import reading_of
+from trunnion.readers.program.settings import control_of, reading_of
 
 #: The mode that any word of a motion says: on these controls it ends a cycle as G80 does.
 MOTION: Final = "motion"
@@ -26,12 +26,36 @@ MOTION: Final = "motion"
 END_OF_CYCLES: Final = "end of cycles"
 CENTRES: Final = "centres"
 
+#: What TCP is to a control whose positions of the machine depend on it too.
+KINEMATICS: Final = "kinematics"
+
+#: How the tool axis turns under TCP, by angles and by vectors, and of which frame a vector is.
+ANGLES: Final = "orientation by angles"
+VECTORS: Final = "orientation by vectors"
+VECTOR_FRAME: Final = "frame of vectors"
+
+_KEY_OF_TCP_OFF: Final = "tcp_off"
+
 _KEY: Final = "start_modes"
 _SLIDES: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
-_POSITIONS: Final = _SLIDES | ProgrammedWord.FIRST | ProgrammedWord.SECOND
+_ANGLES: Final = ProgrammedWord.FIRST | ProgrammedWord.SECOND
+_POSITIONS: Final = _SLIDES | _ANGLES
 
-#: Modes that count for positions of the workpiece, not for those of the machine.
-_OF_WORKPIECE: Final = frozenset({"length", "tilted plane", "TCP"})
+#: Modes that count for positions of the workpiece, not for those of the machine, and the words that they count for.
+_OF_WORKPIECE: Final = {"length": _SLIDES, "tilted plane": _SLIDES, "TCP": _POSITIONS}
+
+#: Modes that count under TCP, likewise.
+_OF_TCP: Final = {
+    ANGLES: _ANGLES, VECTORS: ProgrammedWord.VECTOR, VECTOR_FRAME: _ANGLES | ProgrammedWord.VECTOR,
+}  # fmt: skip
+
+
+def with_tcp_off(machine: Machine, mode: str, modes: Mapping[str, str]) -> Mapping[str, str]:
+    """Return start modes, and TCP off under a name, by the word that a control with TCP has for it."""
+    control = control_of(machine)
+    if not control.flag("tcp", True):
+        return modes
+    return {**modes, mode: control.table("settings").text(_KEY_OF_TCP_OFF)}
 
 
 def check_start_modes(table: Table, modes: Mapping[str, str]) -> None:
@@ -51,6 +75,7 @@ class Relied:
     kind          of all rows
     programmed    the words of all rows
     in_machine    rows that go to positions of the machine
+    tcp           rows under TCP
     """
 
     said_from: Mapping[str, int]
@@ -58,17 +83,23 @@ class Relied:
     kind: Codes
     programmed: Codes
     in_machine: Flags
+    tcp: Flags
 
     def first_row(self, mode: str) -> int:
         """Return the first row that relies on a mode; the number of rows if none does."""
         if mode in (END_OF_CYCLES, CENTRES):
             return self.relied_from.get(mode, len(self.kind))
-        rows = (self.programmed & int(_POSITIONS)) != 0
+        rows = self._rows_with(_POSITIONS)
         if mode == "feed":
             rows = self.kind != Kind.RAPID
         elif mode in _OF_WORKPIECE:
-            rows = ((self.programmed & int(_SLIDES)) != 0) & ~self.in_machine
+            rows = self._rows_with(_OF_WORKPIECE[mode]) & ~self.in_machine
+        elif mode in _OF_TCP:
+            rows = self._rows_with(_OF_TCP[mode]) & self.tcp
         return next(iter(np.flatnonzero(rows)[:1].tolist()), len(self.kind))
+
+    def _rows_with(self, words: ProgrammedWord) -> Flags:
+        return np.asarray((self.programmed & int(words)) != 0)
 
     def is_unsaid(self, mode: str) -> bool:
         """Whether the program relies on a mode before it says it."""

@@ -170,6 +170,17 @@ def test_circles_that_are_none_are_named(block: str, run: Runner) -> None:
     assert len(found.errors) == 1
 
 
+def test_a_block_without_l_takes_one_axis(run: Runner) -> None:
+    found = run("L X+5 Y+0 Z+5 R0 F500\nX+46 R0 FMAX\nIY+2\nM3")
+    assert found.diagnostics == ()
+    np.testing.assert_allclose(found.xyz[-1], (46.0, 2.0, 5.0))
+    for block, names in [("X+22 Y+16 Z+5", "X, Y, Z"), ("A+1 IC+2 FMAX", "A, C"), ("TX+0 TY+0 TZ+1", "TX, TY, TZ")]:
+        found = run(f"L X+5 Y+0 Z+5 R0 F500\n{block}")
+        (error,) = found.errors
+        assert (error.code, len(found.kind)) == ("NC210", 1)
+        assert f"write L before {names}: a block without L takes one axis" in str(error)
+
+
 def test_machine_positions(run: Runner) -> None:
     found = run("CYCL DEF 7.0\nCYCL DEF 7.1 X+10\nL X+1 Y+2 Z+3 F100\nL Z+0 R0 FMAX M91\nL X+1\nL Z-5 FMAX M92")
     assert [(f.line, f.severity) for f in found.diagnostics] == [(6, Severity.WARNING)]

@@ -1,6 +1,7 @@
 """The virtual control of a Fidia: planes of the present rotary position, and absolute centres of circles."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -16,7 +17,7 @@ from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
-from trunnion.readers.control.start_modes import check_start_modes
+from trunnion.readers.control.start_modes import check_start_modes, with_tcp_off
 from trunnion.readers.families.fidia.words import TABLE
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
@@ -45,7 +46,7 @@ def settings_of(machine: Machine) -> Settings:
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     unit = unit_of(table)
     words = read_word_meanings(table, TABLE.is_own)
-    check_start_modes(table, _START_MODES)
+    check_start_modes(table, _start_modes_of(machine))
     table.report_unread_keys()
     table.raise_problems()
     return Settings(FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit, words)
@@ -55,17 +56,21 @@ def settings_of(machine: Machine) -> Settings:
 _START_MODES: Final = {"distances": "G90", "plane": "G17", "compensation": "G40", "tilted plane": "G69"}
 
 
+def _start_modes_of(machine: Machine) -> Mapping[str, str]:
+    return with_tcp_off(machine, "TCP", _START_MODES)
+
+
 class FidiaControl(Rs274Control):
     """A Fidia on a machine. Work offsets are the machine's workpiece zero."""
 
     relative_centres = False
-    start_modes = _START_MODES
 
     doubtful_modes = frozenset({"units", "distances", "plane", "compensation"})
     reset_by = "no source says what the end of a program sets back"
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
+        self.start_modes = _start_modes_of(machine)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
         self.settings = settings_of(machine)
         self.own_words = self.settings.words

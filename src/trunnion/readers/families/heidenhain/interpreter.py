@@ -200,8 +200,7 @@ class HeidenhainInterpreter(PathInterpreter):
                 Severity.ERROR,
             )
         else:
-            # A block of M words, or of a single axis, needs no path function.
-            self._path_block(active, "L", statement)
+            self._paraxial_block(active, statement)
 
     def _block_form(self, active: ActiveProgram, rest: str) -> None:
         """BLK FORM 0.1 and 0.2: opposite corners of the stock. Other forms of stock are not read."""

@@ -47,9 +47,18 @@ class PathInterpreter(FlowInterpreter):
 
     # Motion
 
+    def _paraxial_block(self, active: ActiveProgram, statement: str) -> None:
+        """Execute a block of M words, or of a single axis: it needs no path function."""
+        block = read_block(words(statement), active.parameters)
+        if len(block.axes) > 1 or block.vectors:
+            raise KlartextError(Wording("NC210", "words_without_l", names=tuple(block.axes | block.vectors)))
+        self._path_words(active, "L", block)
+
     def _path_block(self, active: ActiveProgram, function: str, rest: str) -> None:
+        self._path_words(active, function, read_block(words(rest), active.parameters))
+
+    def _path_words(self, active: ActiveProgram, function: str, block: Block) -> None:
         control = self.control
-        block = read_block(words(rest), active.parameters)
         self._remove_missing_axes(block)
         axes = block.axes
         if function in ("LP", "CP", "CTP"):

@@ -1,6 +1,7 @@
 """The virtual control of LinuxCNC: its offsets, and machine positions under TCP."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -16,7 +17,7 @@ from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
-from trunnion.readers.control.start_modes import CENTRES, END_OF_CYCLES, check_start_modes
+from trunnion.readers.control.start_modes import CENTRES, END_OF_CYCLES, KINEMATICS, check_start_modes, with_tcp_off
 from trunnion.readers.families.linuxcnc.words import is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
@@ -48,12 +49,16 @@ _START_MODES: Final = {
 _PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
 
 
+def _start_modes_of(machine: Machine) -> Mapping[str, str]:
+    return with_tcp_off(machine, KINEMATICS, _START_MODES)
+
+
 def settings_of(machine: Machine) -> tuple[str, WordMeanings, dict[str, float]]:
     """Read the unit, own words and declared parameters of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
     unit, words = unit_of(table), read_word_meanings(table, is_own_word)
     variables = read_variables(table, _PARAMETER, "#100")
-    check_start_modes(table, _START_MODES)
+    check_start_modes(table, _start_modes_of(machine))
     table.report_unread_keys()
     table.raise_problems()
     return unit, words, variables
@@ -86,10 +91,10 @@ class LinuxcncControl(Rs274Control):
     compensation_style = OWN_ENTRY
     kept_modes = frozenset({"units", "centres", "length"})
     reset_by = "M2 and M30 do not end it"
-    start_modes = _START_MODES
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
+        self.start_modes = _start_modes_of(machine)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", gaps=True)
         self.system = 1
         self._offset_values: dict[int, Offset] = {}
@@ -99,6 +104,11 @@ class LinuxcncControl(Rs274Control):
         self._replaced = ""
         unit, self.own_words, self.declared = settings_of(machine)
         self.count_in(unit)
+
+    def set_tcp(self, on: bool) -> None:
+        """M428 and M429, which switch the kinematics, and so the positions of the machine as well."""
+        self.said_from.setdefault(KINEMATICS, self.row)
+        super().set_tcp(on)
 
     def left_on(self) -> Wording | None:
         """Return an offset or a rotation without use that the end of the program leaves on; None if nothing."""

@@ -16,7 +16,7 @@ from trunnion.compensation.styles import CIRCLES, MEETINGS, UNKNOWN_STYLE
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.messages import Wording
-from trunnion.model.run import NO_OFFSET
+from trunnion.model.run import NO_OFFSET, Orientation
 from trunnion.model.spindle_work import SpindleWork
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import arcs, tool_orientation
@@ -25,6 +25,7 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION
+from trunnion.readers.control.start_modes import ANGLES, VECTOR_FRAME, VECTORS
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 from trunnion.readers.families.sinumerik.settings import START_MODES, WITH_LENGTH, Settings, settings_of
 from trunnion.readers.families.sinumerik.words import WITHIN_COMPENSATION
@@ -147,9 +148,16 @@ class SinumerikControl(VirtualControl):
                 self.plane_axis = plane
         self.record_length()
 
+    def set_orientation(self, orientation: Orientation) -> None:
+        """Set how the tool axis moves within blocks (ORIAXES, ORIVECT), whether angles or vectors program it."""
+        for mode in (ANGLES, VECTORS):
+            self.said_from.setdefault(mode, self.row)
+        super().set_orientation(orientation)
+
     def set_machine_vectors(self, on: bool) -> None:
         """Select whether vectors are in the machine frame (ORIMKS) or the workpiece frame (ORIWKS)."""
         self.resolve_rows()
+        self.said_from.setdefault(VECTOR_FRAME, self.row)
         self._machine_vectors = on
         self._update_maps()
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from trunnion.machines import Machine
 from trunnion.readers.control.contour_control import FEED_BEFORE, FEED_BEHIND
-from trunnion.readers.control.start_modes import check_start_modes
+from trunnion.readers.control.start_modes import ANGLES, VECTOR_FRAME, VECTORS, check_start_modes
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of
 
@@ -18,6 +18,7 @@ WITHOUT_LENGTH: Final = "without_length"
 #: How the reader takes the control to start.
 START_MODES: Final = {
     "distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", "units": "G71", "TCP": "TRAFOOF",
+    ANGLES: "ORIAXES", VECTORS: "ORIVECT", VECTOR_FRAME: "ORIWKS",
 }  # fmt: skip
 
 #: R parameters, variables of the control (GUD) and system variables, in capitals, with their index.
