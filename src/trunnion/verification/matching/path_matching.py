@@ -41,6 +41,9 @@ _WINDOWS = (8, 48, 384)
 #: How far ahead the end of an arc is searched.
 _ARC_WINDOWS = (64, 1024, 16384)
 
+#: Legs of an approach to a hole, and pieces of them, at most.
+_MOST_LEGS = 8
+
 #: Circles that make up one of the CL file, at most.
 _MAX_PIECES = 1000
 
@@ -95,7 +98,7 @@ class _PathMatcher:
         self._rows = rows_to_match(run, expected)
         self._geometry = RotaryGeometry.of(run.machine)
         holes = match_holes(run, expected)
-        before_holes = [hole.first - k for hole in holes for k in (1, 2, 3)]
+        before_holes = [hole.first - k for hole in holes for k in range(1, _MOST_LEGS + 1)]
         self._approaches = hole_approach_rows(run, before_holes, holes, expected.max_tip_tolerance)
         all_found = len(holes) == len(expected.holes)
         self._hole_rows = np.array([hole.first for hole in holes] if all_found else [], np.int64)
