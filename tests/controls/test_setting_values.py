@@ -133,6 +133,7 @@ def test_a_switch_of_a_setting_without_one_is_told_with_its_words() -> None:
     assert "write same_tool=home or same_tool=retract" in found.value.problems[0].cure
 
 
+@pytest.mark.nightly
 def test_what_a_definition_sets_can_be_left_out_again(tmp_path: Path) -> None:
     cl = tmp_path / "part.cls"
     cl.write_text(HEAD + "RAPID\nGOTO/0,0,50\nFEDRAT/MMPM,200\nGOTO/0,0,5\n" + FOOT, encoding="utf-8")

@@ -327,6 +327,7 @@ def write_interrupted(line: int, folder: Path) -> bool:
     return interrupting.came
 
 
+@pytest.mark.nightly  # test_stopped_jobs stops a job at any operation in each run
 def test_ctrl_c_at_any_line_leaves_everything_old_or_everything_new(tmp_path: Path) -> None:
     handler, threads = signal.getsignal(signal.SIGINT), threading.active_count()
     old, new = dict.fromkeys(NAMES[1:], b"old"), dict.fromkeys(NAMES, b"new")

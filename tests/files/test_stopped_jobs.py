@@ -101,6 +101,7 @@ def test_a_job_killed_at_any_operation_is_finished_or_rolled_back_by_the_next(af
     assert len(outcomes) > 40
 
 
+@pytest.mark.nightly
 @needs_fork
 def test_a_command_that_rolls_back_may_be_killed_as_well(tmp_path: Path) -> None:
     outcomes = set()

@@ -67,6 +67,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[TimedRun, 
     return found
 
 
+@pytest.mark.nightly
 @needs_simulator
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_takes_as_long_as_on_linuxcnc(runs: dict[str, tuple[TimedRun, Floats]], name: str) -> None:

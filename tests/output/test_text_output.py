@@ -279,10 +279,10 @@ def test_operations_are_listed_with_times_extents_feeds_and_speeds(machine: str,
     plain = re.sub(r"(?m)^(?:N?\d+ )?(?:; ?|\( ?)?(.*?)(?: ?\))?$", r"\1", head).upper()
     listed = plain[plain.index("OPERATION LIST") :].split("\n")
     assert listed[1] == "1 OP1 T1"
-    assert re.fullmatch(r"[\d.]+ S, S4000, F500", listed[2]), listed
+    assert re.fullmatch(r"[\d.]+ S(?: \+ RAPIDS)?, S4000, F500", listed[2]), listed
     assert listed[3] == "X0 TO 10, Y0, Z5 TO 50"
     assert listed[4] == "2 OP2 T1"
-    assert re.fullmatch(r"[\d.]+ S, S1500, F125.5 TO 500", listed[5]), listed
+    assert re.fullmatch(r"[\d.]+ S(?: \+ RAPIDS)?, S1500, F125.5 TO 500", listed[5]), listed
     assert listed[6] == "X0 TO 10, Y-7.25 TO 0, Z5 TO 50"
     times = [float(listed[k].split(" ")[0]) for k in (2, 5)]
     assert times == pytest.approx([float(f"{each:.1f}") for each in _seconds(result)])

@@ -42,3 +42,20 @@ HOLES = OPERATION.format(name="HOLES", x=0.0, end=10.0, axis=UP, last=UP, tool=1
     f"GOTO/10.0,40.0,0.0,{TILTED}\nGOTO/30.0,40.0,0.0,{TILTED}\nCYCLE/OFF\nEND-OF-PATH\n"
 )
 PATHS["holes"] = HOLES
+
+#: Two holes behind one point, and from the last of them another.
+PATHS["two_holes"] = """TOOL PATH/HOLES,TOOL,D5
+TLDATA/DRILL,5,0,80,118,60
+MSYS/0,0,0,1,0,0,0,1,0
+LOAD/TOOL,5,ADJUST,5
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/0,0,50,0,0,1
+CYCLE/DRILL,RAPTO,3,FEDTO,-8,RTRCTO,10,MMPM,200
+GOTO/15,10,0
+GOTO/-15,10,0
+CYCLE/OFF
+RAPID
+GOTO/-15,10,50
+END-OF-PATH
+"""

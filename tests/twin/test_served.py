@@ -141,6 +141,7 @@ NONSENSE = {
 }
 
 
+@pytest.mark.nightly
 def test_clients_who_mean_harm_do_none(tmp_path: Path) -> None:
     with served(BLADE_FINISH, "--speed", "50", "--hold", "--agent-port", "0", home=tmp_path) as twin:
         with urllib.request.urlopen(f"{twin.agent}/probe") as answer:

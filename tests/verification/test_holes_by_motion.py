@@ -58,3 +58,66 @@ def test_from_a_retract_the_tool_goes_straight_to_a_hole_in_another_plane(machin
     source = tmp_path / "holes.cls"
     source.write_text(PATHS["holes"], encoding="utf-8")
     assert trunnion.post(source, machine=machine, settings={"mode": "tcp"}).passed
+
+
+_MACHINES = ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt", "linuxcnc_5axis"]
+
+
+class _Holes:
+    """Two holes by motion, under TCP: the lines of the program, and what fails in others."""
+
+    def __init__(self, machine: str, path: str, folder: Path) -> None:
+        self._machine, self._source, self._program = machine, folder / "holes.cls", folder / "holes.nc"
+        self._source.write_text(path, encoding="utf-8")
+        posted = trunnion.post(self._source, machine=machine, settings={"mode": "tcp", "cycles": "off"})
+        self.lines = (posted.text or "").splitlines()
+
+    def line(self, word: str) -> int:
+        """The first line with a word, as each machine writes it."""
+        letter, number = word[0], word[1:].lstrip("+")
+        pattern = rf"{letter}\+?{re.escape(number)}(\.0*)?( |$)"
+        return next(k for k, line in enumerate(self.lines) if re.search(pattern, line))
+
+    def failing_with(self, k: int, old: str, new: str) -> set[str]:
+        """The checks that fail where line ``k`` has one more before it: the same, but with another word."""
+        more = re.sub(rf"{old[0]}\+?{re.escape(old[1:])}(\.0*)?( |$)", f"{new} ", self.lines[k], count=1).rstrip()
+        rest = re.sub(r" F[\d.]+$", "", self.lines[k])
+        text = "\n".join([*self.lines[:k], more, rest, *self.lines[k + 1 :], ""])
+        self._program.write_text(text, encoding="utf-8")
+        found = trunnion.verify(self._program, machine=self._machine, cl=self._source)
+        return {check.key for check in found.checks if check.state == "FAIL"}
+
+
+@pytest.mark.parametrize("retract", ["RTRCTO,10,", ""])
+@pytest.mark.parametrize("machine", _MACHINES)
+def test_a_rapid_between_holes_may_be_made_in_pieces(machine: str, retract: str, tmp_path: Path) -> None:
+    holes = _Holes(machine, PATHS["two_holes"].replace("RTRCTO,10,", retract), tmp_path)
+    across = holes.line("X-15")
+    point = "" if machine == "dmu65" else "."
+    assert holes.failing_with(across, "X-15", f"X-1{point}") == set()
+    assert "order" in holes.failing_with(across, "X-15", f"X-20{point}")
+    assert "order" in holes.failing_with(across, "X-15", f"X20{point}".replace("X20", "X+20"))
+    assert "order" in holes.failing_with(across, "X-15", f"X-1{point} Y+11{point}")
+    assert holes.failing_with(across, "X-15", f"X-1{point} Z+1{point}")
+
+
+@pytest.mark.parametrize("machine", _MACHINES)
+def test_a_line_into_a_hole_may_be_made_in_pieces(machine: str, tmp_path: Path) -> None:
+    holes = _Holes(machine, PATHS["two_holes"], tmp_path)
+    point = "" if machine == "dmu65" else "."
+    plunge = holes.line("Z-8")
+    assert holes.failing_with(plunge, "Z-8", f"Z-4{point}") == set()
+    assert "holes" in holes.failing_with(plunge, "Z-8", f"Z-9{point}")
+
+
+@pytest.mark.parametrize("mode", ["DEEP", "BRKCHP"])
+def test_a_peck_may_be_made_in_pieces_but_no_two_pecks_be_joined(mode: str, tmp_path: Path) -> None:
+    path = PATHS["two_holes"].replace("DRILL,RAPTO,3,FEDTO,-8", f"DRILL,{mode},RAPTO,3,FEDTO,-8,STEP,4")
+    holes = _Holes("linuxcnc_5axis", path, tmp_path)
+    first, second = holes.line("Z-4"), holes.line("Z-8")
+    assert first < second
+    assert holes.failing_with(second, "Z-8", "Z-6.") == set()
+    retracts = slice(first + 1, second)
+    del holes.lines[retracts]
+    lost = first + 1
+    assert "holes" in holes.failing_with(lost, "Z-8", "Z-7.")

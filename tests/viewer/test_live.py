@@ -105,7 +105,10 @@ PAGES = {
 }
 
 
-@pytest.fixture(scope="module", params=PAGES)
+@pytest.fixture(
+    scope="module",
+    params=[name if name == "with its program" else pytest.param(name, marks=pytest.mark.nightly) for name in PAGES],
+)
 def serving(twin: str, request: pytest.FixtureRequest) -> Iterator[tuple[subprocess.Popen[str], str, float]]:
     arguments, length = PAGES[request.param]
     command = [sys.executable, "-m", "trunnion", "view", *arguments, "--live", twin, "--machine", "yl569"]

@@ -175,6 +175,36 @@ def test_the_first_approach_in_turn_is_proven(base: str, path: str, programs: _P
         assert programs.failing(together, base, path, _IN_TURN) == {"modal"}
 
 
+@pytest.mark.parametrize("base", MACHINES)
+def test_a_first_leg_before_several_holes_is_proven(base: str, programs: _Programs) -> None:
+    lines = programs.post(base, "two_holes", _IN_TURN, ("mode", "tcp"))
+    assert programs.failing(lines, base, "two_holes", _IN_TURN) == programs.failing(lines, base, "two_holes") == set()
+    leg = next(k for k, line in enumerate(lines) if re.search(r"Z\+?60", line))
+    point = next(k for k, line in enumerate(lines) if k > leg and re.search(r"Z\+?50", line))
+    lost = [line for k, line in enumerate(lines) if k != point]
+    low = [re.sub(r"(Z\+?)60", r"\g<1>20", line) if k == leg else line for k, line in enumerate(lines)]
+    assert programs.failing(lost, base, "two_holes", _IN_TURN) & {"order", "tip"}
+    assert "order" in programs.failing(low, base, "two_holes", _IN_TURN)
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_a_first_leg_behind_a_retract_without_a_position_states_its_height(known: bool, programs: _Programs) -> None:
+    lines = programs.post("hs664rt", "tcp", _IN_TURN)
+    machine = trunnion.load_machine("hs664rt")
+    if known:
+        machine = replace(machine, workpiece_zero=(0.0, 0.0, -100.0), tool_length=50.0)
+    tcp = [k for k, line in enumerate(lines) if _plain(line) == "G196"]
+    legs = [next(j for j in range(k, len(lines)) if re.search(r"X.* Y.* Z", lines[j])) for k in tcp]
+    assert len(legs) == 2
+    for leg in legs:
+        text = [re.sub(r" Z[-\d.]+", "", line) if k == leg else line for k, line in enumerate(lines)]
+        program = programs._folder / "leg.nc"
+        program.write_text("\n".join(text) + "\n", encoding="utf-8")
+        source, settings = programs._source("tcp"), dict([_IN_TURN])
+        found = trunnion.verify(program, machine=machine, cl=source, settings=settings)
+        assert "order" in {check.key for check in found.checks if check.state == "FAIL"}
+
+
 def test_operations_of_other_tools_and_tilts_go_home(programs: _Programs) -> None:
     assert programs.post("yl569", "tools", _CLEARANCE) == programs.post("yl569", "tools")
     assert programs.post("yl569", "turned", _CLEARANCE) == programs.post("yl569", "turned", _RETRACT)

@@ -33,7 +33,8 @@ def check_order(context: ComparedContext) -> Check:
     tolerance = expected.max_tip_tolerance
     retracts = find_rewind_retracts(run, matching.extra, tolerance)
     lawful = {row for retract in retracts for row in range(retract.first, retract.end)}
-    lawful |= passage_rows(context)
+    passages = passage_rows(context)
+    lawful |= passages
     lawful |= hole_approach_rows(run, matching.extra, match_holes(run, expected), tolerance)
     machine_positions = MachinePositions.of(run)
     measurable = [row for row in matching.extra if not machine_positions.crossed(np.array([row]))[0]]
@@ -54,7 +55,8 @@ def check_order(context: ComparedContext) -> Check:
     places += [context.place(row, 0.0, told) for row, told in zip(extra[:MAX_PLACES], posted, strict=True)]
     left_out = list(cuts_left_out(context, set(extra)))
     left_out += [
-        context.place(row, 0.0, Wording("order", "not_stated", axes=axes)) for row, axes in unstated_axes(run, matching)
+        context.place(row, 0.0, Wording("order", "not_stated" if row in matching.nc else "not_stated_above", axes=axes))
+        for row, axes in unstated_axes(run, matching, passages)
     ]
     places += left_out[:MAX_PLACES]
     if not places:

@@ -37,6 +37,12 @@ def peck_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
     pecks = list[float]()
     between = list[list[int]]()
     yield from _collect_pecks(hole, motions, pecks, between)
+    if motions.by_motion:
+        whole = [k for k, rows in enumerate(between) if rows or k + 1 == len(pecks)]
+        joined = [pecks[k] for k in whole]
+        # A line may be made in pieces: those of STEP are the pecks where they are right together.
+        if not hole.cycle.pecks or next(_programmed_pecks(hole, motions, joined), None) is None:
+            pecks, between = joined, [between[k] for k in whole]
     if not hole.cycle.pecks:
         if len(pecks) > 1:
             yield motions.fault(_FIRST_PECK, float(len(pecks)), Wording("holes", "pecks", count=len(pecks)))

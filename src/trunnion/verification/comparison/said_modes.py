@@ -20,6 +20,9 @@ from trunnion.verification.comparison.states import ComparedState
 #: Modes that count only where both programs say them: what calls for them shows in the path.
 _OF_BOTH: Final = frozenset({"swivel data"})
 
+#: Modes of cycles, with their words: they count where a cycle relies on one that its program does not say.
+_OF_CYCLES: Final = {"end of cycles": frozenset({"G98", "G99"})}
+
 
 def said_modes(one: Run, two: Run) -> Iterator[ComparedState]:
     """Yield the modes that two runs say otherwise, or elsewhere."""
@@ -28,6 +31,8 @@ def said_modes(one: Run, two: Run) -> Iterator[ComparedState]:
     said = [_by_mode(run) for run in (one, two)]
     for mode in sorted(said[0].keys() | said[1].keys()):
         found = [each.get(mode, []) for each in said]
+        if mode in _OF_CYCLES and _OF_CYCLES[mode].isdisjoint((*one.assumed_modes, *two.assumed_modes)):
+            continue
         if not (_from_the_start(one, found[0]) and _from_the_start(two, found[1]) and found[0][0][1] == found[1][0][1]):
             yield _state(mode, (one, two), (found[0], found[1]))
 

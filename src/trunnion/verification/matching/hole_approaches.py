@@ -24,6 +24,9 @@ _SAME_AXIS = 1e-6
 #: The direction between two rounded points is off by so many times the tolerance of a coordinate.
 _BOTH_ENDS = 2.0 * 3.0**0.5
 
+#: Legs that may be made in pieces, so many, each of whose ends is off the straight line by less than this, mm.
+_STRAIGHT_LEGS, _MOST_PIECES, _ON_THE_WAY = ("up", "down", "across"), 8, 2e-3
+
 #: Legs before which there may be another one.
 _LEGS_WITH_MORE = ("down", "across", "turned", "nowhere")
 
@@ -32,7 +35,8 @@ def hole_approach_rows(run: Run, extra: Sequence[int], holes: Sequence[MatchedHo
     """Which of the motions without a CL point only lead to a hole.
 
     They are rapids right before the motion to the hole: straight up along the tool axis from where the tool was, over
-    the hole at that height, and straight down; or, from home or while the tool turns, over the hole itself.
+    the hole at that height, and straight down; or, from home or while the tool turns, over the hole itself. A straight
+    leg may be made in pieces.
 
     extra          rows without a CL point
     tip_tolerance  how far each coordinate of motions that belong to no cycle may be off, mm
@@ -43,15 +47,58 @@ def hole_approach_rows(run: Run, extra: Sequence[int], holes: Sequence[MatchedHo
         if hole.shares_first_row:
             continue
         row = hole.first - 1
+        if hole.by_motion:  # which the last leg leads to, if it is not straight down
+            pieces = _pieces(run, hole.first, candidates, approaches)
+            found.update(pieces)
+            row -= len(pieces)
         rounding = _BOTH_ENDS * tip_tolerance if hole.by_motion else 0.0
         while row > 0 and row in candidates and run.kind[row] == Kind.RAPID:
             leg = _approach_leg(run, row, hole, approaches, rounding)
             if leg:
                 found.add(row)
+            pieces = _pieces(run, row, candidates, approaches) if leg in _STRAIGHT_LEGS else []
+            found.update(pieces)
             if leg not in _LEGS_WITH_MORE:
                 break
-            row -= 1
+            row -= len(pieces) + 1
     return found
+
+
+def _pieces(run: Run, row: int, candidates: set[int], approaches: set[int]) -> list[int]:
+    """Rows right before one that goes on straight from them."""
+    found = list[int]()
+    while row - len(found) - 1 in candidates and len(found) < _MOST_PIECES:
+        if not _is_on_the_way(run, row, len(found) + 1, approaches):
+            break
+        found.append(row - len(found) - 1)
+    return found
+
+
+def _is_on_the_way(run: Run, row: int, pieces: int, approaches: set[int]) -> bool:
+    """Whether a row and the ``pieces`` right before it are rapids along one straight line."""
+    first = row - pieces
+    rows = np.arange(first - 1, row + 1)
+    if first < 1 or (run.kind[rows[1:]] != Kind.RAPID).any() or _comes_from_home(run, first, approaches):
+        return False
+    if any(event.kind in ("retract", "tool_change") and first <= event.before_row <= row for event in run.events):
+        return False
+    positions = run.positions(rows)
+    way = positions.tip[-1] - positions.tip[0]
+    length = float(np.linalg.norm(way))
+    if length < _STRAIGHT or np.abs(positions.axis - positions.axis[0]).max() > _SAME_AXIS:
+        return False
+    along = (positions.tip - positions.tip[0]) @ way / length
+    aside = positions.tip - positions.tip[0] - along[:, None] * way / length
+    return bool((np.diff(along) > 0.0).all() and np.abs(aside).max() < _ON_THE_WAY)
+
+
+def _comes_from_home(run: Run, row: int, approaches: set[int]) -> bool:
+    """Whether nothing says where in the workpiece a row begins."""
+    return (
+        row - 1 in approaches
+        or bool(run.state.machine_frame[row - 1])
+        or (int(run.programmed[row - 1]) & int(POSITION_WORDS)) == 0
+    )
 
 
 def _approach_leg(run: Run, row: int, hole: MatchedHole, approaches: set[int], rounding: float) -> str:
@@ -63,11 +110,7 @@ def _approach_leg(run: Run, row: int, hole: MatchedHole, approaches: set[int], r
     near, level = max(near, rounding), max(_STRAIGHT, rounding)
     straight = float(np.linalg.norm(step - up * axis)) < near + share * (abs(up) + abs(left))
     over_hole = float(np.linalg.norm(rest - left * axis)) < near + share * abs(left) and left < near
-    from_home = (
-        row - 1 in approaches
-        or bool(run.state.machine_frame[row - 1])
-        or (int(run.programmed[row - 1]) & int(POSITION_WORDS)) == 0
-    )
+    from_home = _comes_from_home(run, row, approaches)
     turned = float(np.abs(positions.axis[0] - axis).max()) > _SAME_AXIS
     if float(np.abs(step).max()) < near and not turned:
         return "nowhere"  # a program that goes on in another file repeats the position of the tool

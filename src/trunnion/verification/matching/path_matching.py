@@ -41,6 +41,9 @@ _WINDOWS = (8, 48, 384)
 #: How far ahead the end of an arc is searched.
 _ARC_WINDOWS = (64, 1024, 16384)
 
+#: Legs of an approach to a hole, and pieces of them, at most.
+_MOST_LEGS = 8
+
 #: Circles that make up one of the CL file, at most.
 _MAX_PIECES = 1000
 
@@ -95,11 +98,12 @@ class _PathMatcher:
         self._rows = rows_to_match(run, expected)
         self._geometry = RotaryGeometry.of(run.machine)
         holes = match_holes(run, expected)
-        before_holes = [hole.first - k for hole in holes for k in (1, 2, 3)]
+        before_holes = [hole.first - k for hole in holes for k in range(1, _MOST_LEGS + 1)]
         self._approaches = hole_approach_rows(run, before_holes, holes, expected.max_tip_tolerance)
         all_found = len(holes) == len(expected.holes)
         self._hole_rows = np.array([hole.first for hole in holes] if all_found else [], np.int64)
         self._hole_cl_rows = np.array([hole.row for hole in expected.holes] if all_found else [], np.int64)
+        self._approach_rows = np.array(sorted(self._approaches), np.int64)
         limits = [section.tolerances for section in expected.sections]
         self._limits = np.array([(each.tip * 1.001 + 1e-9, np.radians(2.0 * each.angle) + 2e-7) for each in limits])
         self._n, self._m = len(self._rows), len(expected)
@@ -346,9 +350,11 @@ class _PathMatcher:
             for column in range(3):
                 fits &= np.abs(actual.tip[:, column, None] - cl_tip[:, column]) <= tip
                 fits &= np.abs(actual.axis[:, column, None] - cl_axis[:, column]) <= axis
-            found = find_resync(fits, (i + a == self._n, j + b == self._m))
+            # Rapids that only lead to a hole stand between motions to two CL points in a row.
+            kept = np.flatnonzero(fits.any(axis=1) | ~np.isin(self._rows.rows(i, i + a), self._approach_rows))
+            found = find_resync(fits[kept], (i + a == self._n, j + b == self._m))
             if found is not None:
-                return found
+                return int(np.append(kept, a)[found[0]]), found[1]
         return self._n - i, self._m - j
 
     def _pair_unequal(self, i: int, j: int, a: int, b: int) -> None:

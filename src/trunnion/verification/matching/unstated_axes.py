@@ -1,14 +1,15 @@
-"""Motions to CL points by words that leave out an axis whose place nobody knows.
+"""Motions to CL points, or above them, by words that leave out an axis whose place nobody knows.
 
-In:     a run that is matched with CL files, whose workpiece zero or tool length is not known.
+In:     a run that is matched with CL files.
 Out:    their rows, with the axes.
 
 Behind a way home an axis stands at a position of the machine, and behind a turn all of them stand elsewhere in the
 workpiece. That the numbers of such a place are those of a CL point is chance: until the program states the axis, no
-motion goes to a point.
+motion goes to a point, and none is above all of them. With workpiece zero and tool length a position of the machine is
+one of the workpiece too; how far a word retracts is not known even then, unless the run has a motion for it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Final
 
 import numpy as np
@@ -27,10 +28,11 @@ _ALL: Final = sum(_AXES.values())
 _STILL: Final = 1e-6
 
 
-def unstated_axes(run: Run, matching: Matching) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Yield the first motion to a CL point behind each way home that leaves out axes, and these."""
-    if MachinePositions.of(run).known:
-        return
+def unstated_axes(run: Run, matching: Matching, passages: Collection[int]) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Yield the first motion to a CL point behind each way home that leaves out axes, and these.
+
+    passages  rows that go to no CL point, and are lawful because of where they are
+    """
     missing = 0
     for first, end, left in _behind_ways_home(run):
         missing |= left
@@ -39,7 +41,7 @@ def unstated_axes(run: Run, matching: Matching) -> Iterator[tuple[int, tuple[str
             missing &= 0 if bool(names_no_axis(run.programmed[row : row + 1])[0]) else ~words
             if not missing:
                 break
-            if words & int(POSITION_WORDS) and row in matching.nc:
+            if words & int(POSITION_WORDS) and (row in matching.nc or row in passages):
                 yield row, tuple(name for name, bit in _AXES.items() if missing & bit)
                 missing = 0
                 break
@@ -51,9 +53,12 @@ def _behind_ways_home(run: Run) -> Iterator[tuple[int, int, int]]:
     """
     frame = run.state.machine_frame.rows_with(True)
     retracts = np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64)
+    known = MachinePositions.of(run).known
+    if known:
+        frame, retracts = frame[:0], retracts[~np.isin(retracts, frame)]
     ways: Ints = np.unique(np.concatenate((frame, retracts)))
     # A program that goes home before all else finds the axes where they were left.
-    left = _ALL if len(ways) and first_workpiece_position(run, 0, int(ways[0])) is None else 0
+    left = _ALL if len(ways) and not known and first_workpiece_position(run, 0, int(ways[0])) is None else 0
     begin: int | None = None
     for k, row in enumerate(ways.tolist()):
         begin = max(row - 1, 0) if begin is None else begin
@@ -64,5 +69,5 @@ def _behind_ways_home(run: Run) -> Iterator[tuple[int, int, int]]:
         if first is None:
             continue
         turned = bool((np.abs(run.rotary[first] - run.rotary[begin]) > _STILL).any())
-        yield first, following, _ALL if turned else left
+        yield first, following, _ALL if turned and not known else left
         left, begin = 0, None
