@@ -15,6 +15,7 @@ from trunnion.arrays import Codes, Flags
 from trunnion.definitions import Table
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.program.settings import control_of, reading_of
@@ -22,8 +23,7 @@ from trunnion.readers.program.settings import control_of, reading_of
 #: The mode that any word of a motion says: on these controls it ends a cycle as G80 does.
 MOTION: Final = "motion"
 
-#: Where cycles end, and how centres of arcs count: those count for a cycle, and for an arc.
-END_OF_CYCLES: Final = "end of cycles"
+#: How centres of arcs count: it counts for an arc alone.
 CENTRES: Final = "centres"
 
 #: What TCP is to a control whose positions of the machine depend on it too.

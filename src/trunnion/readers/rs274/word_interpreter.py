@@ -8,8 +8,9 @@ from typing import Final, TypeVar
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.control.start_modes import END_OF_CYCLES, MOTION
+from trunnion.readers.control.start_modes import MOTION
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.word_values import fault_of_value

@@ -13,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
+from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.states import ComparedState
@@ -21,7 +22,7 @@ from trunnion.verification.comparison.states import ComparedState
 _OF_BOTH: Final = frozenset({"swivel data"})
 
 #: Modes of cycles, with their words: they count where a cycle relies on one that its program does not say.
-_OF_CYCLES: Final = {"end of cycles": frozenset({"G98", "G99"})}
+_OF_CYCLES: Final = {END_OF_CYCLES: frozenset({"G98", "G99"})}
 
 
 def said_modes(one: Run, two: Run) -> Iterator[ComparedState]:

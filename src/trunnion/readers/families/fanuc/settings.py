@@ -8,7 +8,8 @@ from typing import Final
 from trunnion.compensation.styles import TYPE_A, UNKNOWN_STYLE
 from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.readers.control.start_modes import END_OF_CYCLES, MOTION, check_start_modes
+from trunnion.model.mode_words import END_OF_CYCLES
+from trunnion.readers.control.start_modes import MOTION, check_start_modes
 from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of

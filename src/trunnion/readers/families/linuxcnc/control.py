@@ -13,11 +13,12 @@ from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, forward
 from trunnion.messages import Wording, phrase
 from trunnion.model import axis_positions
+from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.readers.control import arcs
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
-from trunnion.readers.control.start_modes import CENTRES, END_OF_CYCLES, KINEMATICS, check_start_modes, with_tcp_off
+from trunnion.readers.control.start_modes import CENTRES, KINEMATICS, check_start_modes, with_tcp_off
 from trunnion.readers.families.linuxcnc.words import is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.settings import reading_of, unit_of
