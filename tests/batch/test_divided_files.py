@@ -187,7 +187,8 @@ def undivided(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     return found
 
 
-@pytest.mark.parametrize("tiles", [3, *(pytest.param(tiles, marks=pytest.mark.nightly) for tiles in (2, 7))])
+@pytest.mark.nightly
+@pytest.mark.parametrize("tiles", [2, 3, 7])
 def test_a_simulation_that_is_divided_gives_the_same_bytes(
     tmp_path: Path, undivided: dict[str, object], tiles: int
 ) -> None:

@@ -52,6 +52,7 @@ def cl_text() -> str:
 
 
 @needs_simulator
+@pytest.mark.nightly  # the controller moves in real time
 @pytest.mark.parametrize("name", ["xyzbc_trt"])
 def test_with_tcp_and_without_the_machine_comes_to_the_same_joints_at_every_block_end(
     name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]

@@ -52,6 +52,9 @@ def machine() -> Machine:
     return replace(found, axes=tuple(axes), tool_length=LENGTH)
 
 
+pytestmark = pytest.mark.nightly  # the controller moves in real time
+
+
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[TimedRun, Floats]]:
     """Each program in time, and the joints that LinuxCNC moves, one row a millisecond, in the machine's order."""
@@ -67,7 +70,6 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[TimedRun, 
     return found
 
 
-@pytest.mark.nightly
 @needs_simulator
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_takes_as_long_as_on_linuxcnc(runs: dict[str, tuple[TimedRun, Floats]], name: str) -> None:
