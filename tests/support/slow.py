@@ -22,7 +22,7 @@ SLOW = (
     "jobs/test_same_as_command.py",
     "hooks/test_hooks.py", "jobs/post/test_recipes.py", "jobs/post/test_shop_texts.py",
     "jobs/view/test_viewing_stock.py",
-    "cli/test_cases.py", "cli/test_frozen_results.py", "cli/test_watch.py",
+    "cli/test_cases.py", "cli/test_frozen_results.py", "cli/test_watch.py", "messages/test_cures.py",
     "builder/test_browser.py", "cl/test_scan.py", "cl/test_surface_normals.py", "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",
     "conversion/test_round_trip.py", "conversion/test_settings_by_operation.py", "examples", "fuzz",
