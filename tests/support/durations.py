@@ -6,7 +6,7 @@ gone. ``make.py quick`` chooses by it what it has time for.
 
 import sys
 import tomllib
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
@@ -34,7 +34,7 @@ def kept() -> dict[str, float]:
 
 def measured(reports: Iterable[Path]) -> dict[str, float]:
     """Files of tests in reports of pytest -> processor time, s."""
-    sums = Counter[str]()
+    sums = defaultdict[str, float](float)
     for report in reports:
         for case in ElementTree.parse(report).iter("testcase"):
             file = f"{case.get('classname', '').removeprefix('tests.').replace('.', '/')}.py"
