@@ -50,7 +50,9 @@ def diff(base: Base, program: Path) -> Told:
 
 
 def convert(base: Base, program: Path) -> Told:
-    """Whether a CL file of it is refused, comes with other warnings or settings, or is not what the sound one does."""
+    """Whether a CL file of it is refused, comes with other warnings or settings, or is not what the sound one does; or
+    whether what is posted from it is not what is posted from that of the sound one.
+    """
     sound = sound_file(base, program.parent)
     known = _converted(base, sound)
     if not isinstance(known, tuple):
@@ -65,7 +67,32 @@ def convert(base: Base, program: Path) -> Told:
     cl = program.with_suffix(".cls")
     cl.write_text(found[0], encoding="utf-8")
     against = Base(base.family, base.name, base.machine, cl, base.text, base.stated)
-    return proof(against, sound)
+    told = proof(against, sound)
+    if told.reported or found[0] == known[0]:
+        return told
+    return _posted_otherwise(base, known, found, program)
+
+
+def _posted_otherwise(
+    base: Base, known: tuple[str, list[str], dict[str, Any]], found: tuple[str, list[str], dict[str, Any]], program: Path
+) -> Told:
+    """Whether two CL files become different programs: the proof lets a program leave the part before it goes home."""
+    posted = [_posted(base, *each[::2], program.parent, name) for each, name in ((known, "known"), (found, "found"))]
+    if posted[0] is None or posted[1] is None:
+        return Told(posted[0] is not None, "post")
+    differs = not trunnion.diff(posted[0], posted[1], machine=base.machine).same
+    return Told(differs, "post" if differs else "")
+
+
+def _posted(base: Base, text: str, settings: dict[str, Any], folder: Path, name: str) -> Path | None:
+    """The program of a CL file; None: it is refused."""
+    cl, output = folder / f"{name}.cls", folder / f"posted_{name}.{_suffix(base)}"
+    cl.write_text(text, encoding="utf-8")
+    try:
+        trunnion.post(cl, machine=base.machine, output=output, settings=settings)
+    except trunnion.TrunnionError:
+        return None
+    return output
 
 
 def is_convertible(base: Base, folder: Path) -> bool:
