@@ -117,7 +117,9 @@ def _lines_in_two(blocks: list[Block], language: Language) -> Iterator[Edit]:
     for k, block in enumerate(blocks):
         letters = [word[1] for word in block.words]
         known = all(letter in block.before for letter in letters) and set(letters) <= set("XYZ")
-        if re.search(r"\b[IJK][-+]?[\d.]", block.code) or not (block.cuts and known) or block.cycle or re.search(language.arc, block.code) or block.arc_in_force:
+        if not (block.cuts and known) or block.cycle or re.search(language.arc, block.code) or block.arc_in_force:
+            continue
+        if re.search(r"\b[IJK][-+]?[\d.]", block.code):
             continue
         if re.search(r"\bR[LR0]\b|\bG4[012]\b", block.code) or block.compensated or " CC " in block.code:
             continue

@@ -2,8 +2,8 @@
 
 In:     a run; the other program is for the same machine.
 Out:    rows, and in words what holds there: a tool change with the spindle turning, both senses in one block, coolant
-        after a stop, a plane that is on, or a spindle that turns, while rotary axes are positioned, lengths in units that
-        the program does not state.
+        after a stop, a plane that is on while rotary axes turn, a spindle that turns while they are positioned, lengths
+        in units that the program does not state.
 """
 
 from collections.abc import Iterator
