@@ -80,7 +80,7 @@ def test_a_definition_that_states_it_is_named_too_and_strict_takes_it(tmp_path: 
     ("settings", "assume", "fault"),
     [
         ({"R5": 2}, None, "is not a setting that the proof needs"),
-        ({"#100": "two"}, None, "a variable holds one"),
+        ({"#100": "two"}, None, "which a variable holds"),
         (None, {"G65 P9810": "jumps"}, "has no effect 'jumps'"),
         (None, {"G81": "no effect"}, "a word of the control itself"),
         (None, {"G65": "no effect"}, "a word of the control itself"),

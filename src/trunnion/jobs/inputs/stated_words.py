@@ -54,7 +54,7 @@ def assumed_words(assume: object) -> dict[str, str]:
         return {}
     pairs = dict(assume) if isinstance(assume, Mapping | list) else None
     if pairs is None or not all(isinstance(text, str) for pair in pairs.items() for text in pair):
-        raise InputError(argument_problem("assume", Wording("ARG140", "no_words", value=repr(assume))))
+        raise InputError(argument_problem("assume", Wording("ARG140", "no_mapping", type=type(assume).__name__)))
     return pairs
 
 
@@ -65,7 +65,9 @@ def _number(name: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(setting_problem(name, Wording("ARG220", "no_number_of_variable", value=repr(text))))
+        raise InputError(
+            setting_problem(name, Wording("ARG220", "no_number_of_variable", value=repr(text), variable=name))
+        )
     return value
 
 
