@@ -395,3 +395,22 @@ def test_what_the_path_does_not_show_is_compared(
     capfd.readouterr()
     assert main(["diff", str(program), str(other), "--machine", "matsuura_mx330"]) == 1
     assert says in capfd.readouterr().out
+
+
+HELIX = "G0 X8 Y-7 Z0\nG1 Z-1 F200\n{}\nG1 X9\n"
+WHOLE = HELIX.format("G3 X8 Y-7 Z-3 I-6 J0")
+
+
+@pytest.mark.parametrize(("pieces", "same"), [
+    ("G3 X-4 Y-7 Z-2 I-6 J0\nX8 Y-7 Z-3 I6 J0", 0),
+    ("G3 X2 Y-1 Z-1.5 I-6 J0\nX-4 Y-7 Z-2 I0 J-6\nX8 Y-7 Z-3 I6 J0", 0),
+    ("G3 X-4 Y-7 Z-1.9 I-6 J0\nX8 Y-7 Z-3 I6 J0", 1),
+    ("G3 X-4 Y-7 Z-2 I-6 J0\nG2 X8 Y-7 Z-3 I6 J0", 1),
+])  # fmt: skip
+def test_a_helix_may_be_made_in_pieces(
+    pieces: str, same: int, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    head, end = "G71 G17 G90 G94 G40 G54\nT1\nM6\nS1000 M3\nG0 Z50 D1\n", "G0 Z50\nM30\n"
+    first = tmp_path / "first.mpf"
+    first.write_text(head + WHOLE + end, encoding="utf-8")
+    assert diff(capfd, tmp_path, head + HELIX.format(pieces) + end, first)[0] == same

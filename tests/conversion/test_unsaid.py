@@ -46,6 +46,7 @@ def test_a_sound_program_needs_nothing(tmp_path: Path, machine: str) -> None:
     ("yl569", "S1000 M3", "S1000", ("CNV154", 6, "cuts_without_spindle")),
     ("dmu65", "M3", "M8", ("CNV154", 6, "cuts_without_spindle")),
     ("matsuura_mx330", "T1 M6", "T1", ("CNV154", 7, "cuts_without_tool")),
+    ("matsuura_mx330", "T1 M6", "", ("CNV154", 7, "cuts_without_tool")),
     ("yl569", "M6", "", ("CNV154", 6, "cuts_without_tool")),
     ("matsuura_mx330", HEADS["matsuura_mx330"][2], "G21 G17 G90 G94 G40 G80", ("CNV144", 7, "selects_none")),
 ])  # fmt: skip

@@ -67,6 +67,7 @@ JOBS: dict[str, tuple[str, ...]] = {
     "convert": ("convert", HUB_MPF, "--machine", "yl569", "--to-machine", "mikron_600u", "--output", "c.h", *TO_JSON),
     "convert_to_cl": ("convert", HUB_MPF, "--machine", "yl569", "--to-cl", "--output", "c.cls", *TO_JSON),
     "manifest_check": ("verify", "listed.json", "--json", "{}"),
+    "survey": ("survey", "pile", "--machine", "yl569", "--workers", "1", "--json", "{}"),
     "machines": ("machines", "--json"),
     "controls": ("controls", "--json"),
     "control": ("controls", "sinumerik_840d", "--json"),
@@ -91,6 +92,11 @@ def lay_out(folder: Path) -> None:
         text[:first] + re.sub(r"(GOTO/[^,]+,[^,]+,[^,\n]+)[^\n]*", r"\1,0.0,0.7071068,-0.7071068", text[first:]),
         encoding="utf-8",
     )
+    (folder / "pile").mkdir()
+    for file in (HUB, HUB_MPF):
+        shutil.copy(folder / file, folder / "pile")
+    shutil.copy(ROOT / "tests/data/kinds/lathe.nc", folder / "pile")
+    (folder / "pile" / "calls.mpf").write_text("N1 G0 X1\nFOO(3)\nM30\n", encoding="utf-8")
     (folder / "unknown.cls").write_text(text.replace("RAPID\n", "RAPID\nUNHEARD/1\nDISPLAY/ON\n", 1), encoding="utf-8")
 
 

@@ -197,6 +197,23 @@ def test_programs_are_read_for_all_shipped_machines(tmp_path: Path, monkeypatch:
     assert [each.machine for each in found.files[0].tries] == ["mikron_600u"]  # which has a B, unlike dmu65
 
 
+def test_programs_find_the_subprograms_beside_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    call = KLARTEXT.replace(b"3 L Z+10 F100", b"3 CALL PGM tnc:\\\\parts\\\\plunge.h")
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "lost").mkdir()
+    for place in ("parts", "lost"):
+        (tmp_path / place / "main.h").write_bytes(call)
+    (tmp_path / "parts" / "PLUNGE.H").write_bytes(
+        b"0 BEGIN PGM PLUNGE MM\n1 L Z+10 F100\n2 L Z+2\n3 END PGM PLUNGE MM\n"
+    )
+    (tmp_path / "parts" / "notes.txt").write_text("no program calls this")
+    found = take_survey(tmp_path, machine=["dmu65"]).files
+    became = {each.file: (str(each.became), *each.tries[0].codes) for each in found if each.tries}
+    assert became["parts/main.h"] == ("read",)
+    assert became["lost/main.h"] == ("refused", "NC132")
+
+
 def test_what_only_follows_from_other_errors_blocks_nothing() -> None:
     problems = [Problem("a.cls", line, foreign("x", "y", code)) for line, code in ((3, "PLN120"), (4, "PLN160"))]
     outcome = Outcome(Status.FAILED, (*problems, Problem("a.cls", 0, foreign("z", "", "CTL940"))))

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from tests.support.locations import GOLDEN
 from tests.support.recall_proof.parts import cl_text
 from tests.support.two_operations import PATHS
 
@@ -43,6 +44,18 @@ def test_a_lost_rapid_of_holes_by_motion_is_a_fault(
     holes: tuple[Path, list[str]], pattern: str, said: str, tmp_path: Path
 ) -> None:
     assert said in _without(holes, pattern, tmp_path)
+
+
+def test_a_rapid_back_that_ends_too_early_is_a_fault(tmp_path: Path) -> None:
+    text = (GOLDEN / "linuxcnc" / "plate.expected.ngc").read_text(encoding="utf-8")
+    assert "N320 Z-11.5\n" in text
+    for height, passes in (("-9.5", True), ("-1.5", False)):
+        program = tmp_path / "other.ngc"
+        program.write_text(text.replace("N320 Z-11.5\n", f"N320 Z{height}\n"), encoding="utf-8")
+        found = trunnion.verify(program, machine="xyzac_trt", cl=GOLDEN / "linuxcnc" / "plate.cls")
+        holes = next(check for check in found.checks if check.key == "holes")
+        assert holes.passed is passes
+        assert passes or "10.5000 mm where nothing is left to drill: the rapid back is missing" in holes.summary
 
 
 @pytest.mark.parametrize("machine", ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt"])

@@ -94,3 +94,23 @@ def test_conditions_that_the_path_does_not_show_are_differences(
     assert found.first is not None
     assert what in found.first.text
     assert not found.same
+
+
+def test_a_spindle_that_turns_while_rotary_axes_are_positioned_is_a_difference(tmp_path: Path) -> None:
+    program = TESTS / "golden" / "hs664rt" / "radial_holes.expected.txt"
+    lines = program.read_text(encoding="utf-8").splitlines()
+    at = max(k for k, line in enumerate(lines) if line.endswith(" M5"))
+    for changed in ([*lines[:at], *lines[at + 1 :]], [*lines[:at], f"/{lines[at]}", *lines[at + 1 :]]):
+        found = trunnion.diff(program, another(tmp_path, changed), machine="hs664rt")
+        assert found.first is not None
+        assert "rotary axes are positioned while the spindle turns clockwise" in found.first.text
+
+
+def test_a_tool_that_is_put_away_at_the_end_is_compared(tmp_path: Path) -> None:
+    program = YL569 / "1_contour_rough.expected.mpf"
+    lines = program.read_text(encoding="utf-8").splitlines()
+    assert [line.split()[-1] for line in lines[-3:]] == ["T0", "M6", "M30"]
+    for last in ([lines[-1]], [lines[-3], f"/{lines[-2]}", lines[-1]]):
+        found = trunnion.diff(program, another(tmp_path, [*lines[:-3], *last]), machine="yl569")
+        assert found.first is not None
+        assert found.first.text.startswith("change to tool 0 behind the last motion against nothing")

@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from shutil import copyfile
 from tempfile import TemporaryDirectory
@@ -96,31 +97,11 @@ def _work_in(folder: Path, task: Task) -> Outcome:
     result.mkdir()
     collector = _Collector()
     figures: dict[str, Any] = {}
-    try:
-        arguments = _with_paths(task.arguments, folder)
-        status, own = _DOING[task.action](task, paths[task.file], arguments, result, figures, collector)
-    except (DamagedShareError, BrokenSealError) as error:
-        status, own = Status.HINDERED, [damaged(task.file, str(error))]
-    except RefusedError as error:
-        status, own = Status.FAILED, error.problems
-        if isinstance(error, ProofFailedError) and error.result.verification is not None:
-            _add_proof(figures, error.result.verification, error.result.toolpaths)
-    except TrunnionError as error:
-        status, own = Status.UNUSABLE, error.problems
-        if (why := hindrance(error)) is not None:
-            status, own = Status.HINDERED, [hindered(task.file, why)]
-    except Exception as error:
-        status, own = Status.BROKEN, (_broken(task.file, error),)
-        if (why := hindrance(error)) is not None:
-            status, own = Status.HINDERED, [hindered(task.file, why)]
-    files = {each.name: each.read_bytes() for each in sorted(result.iterdir()) if each.is_file()}
-    if status is not Status.PASSED:
-        files = {name: data for name, data in files.items() if name == task.report}
-    if task.report in files:
-        files[task.report] = _told(files[task.report].decode(), folder).encode()
-    programs = [data for name, data in files.items() if name != task.report]
-    if task.action in (Action.VERIFY, Action.SIMULATE):
-        programs = [task.files[task.file]]
+    doing = partial(_DOING[task.action], task, paths[task.file], _with_paths(task.arguments, folder), result)
+    status, own = _done(partial(doing, figures, collector), task.file, figures)
+    files = _files_to_keep(result, task, status, folder)
+    judged = task.action in (Action.VERIFY, Action.SIMULATE)
+    programs = [task.files[task.file]] if judged else [data for name, data in files.items() if name != task.report]
     if programs and status in (Status.PASSED, Status.FAILED):
         figures["blocks"] = block_count(programs)
     problems = dict.fromkeys((*own, *collector.found))
@@ -130,8 +111,36 @@ def _work_in(folder: Path, task: Task) -> Outcome:
         figures["warning_codes"] = codes
     if errors:
         figures["error_codes"] = dict(Counter(problem.code for problem in errors))
-    told = tuple(_without_folder(problem, folder) for problem in _some([*errors, *warnings]))
-    return Outcome(status, told, len(warnings), files, figures)
+    kept = tuple(_without_folder(problem, folder) for problem in _some([*errors, *warnings]))
+    return Outcome(status, kept, len(warnings), files, figures)
+
+
+def _done(doing: Callable[[], "_Done"], file: str, figures: dict[str, Any]) -> "_Done":
+    """Do the work; what stopped it is its outcome."""
+    try:
+        return doing()
+    except (DamagedShareError, BrokenSealError) as error:
+        return Status.HINDERED, [damaged(file, str(error))]
+    except RefusedError as error:
+        if isinstance(error, ProofFailedError) and error.result.verification is not None:
+            _add_proof(figures, error.result.verification, error.result.toolpaths)
+        return Status.FAILED, error.problems
+    except Exception as error:
+        if (why := hindrance(error)) is not None:
+            return Status.HINDERED, [hindered(file, why)]
+        if isinstance(error, TrunnionError):
+            return Status.UNUSABLE, error.problems
+        return Status.BROKEN, (_broken(file, error),)
+
+
+def _files_to_keep(result: Path, task: Task, status: Status, folder: Path) -> dict[str, bytes]:
+    """Return what came of a task; of one that did not pass, only its report."""
+    files = {each.name: each.read_bytes() for each in sorted(result.iterdir()) if each.is_file()}
+    if status is not Status.PASSED:
+        files = {name: data for name, data in files.items() if name == task.report}
+    if task.report in files:
+        files[task.report] = _told(files[task.report].decode(), folder).encode()
+    return files
 
 
 def _some(problems: Sequence[Problem]) -> list[Problem]:

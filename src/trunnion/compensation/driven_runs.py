@@ -11,7 +11,7 @@ them: that is what the operator is asked to enter. It is reported, for nobody ha
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from trunnion.compensation.centre_runs import NOTHING, CentreRun, run_of_centre
+from trunnion.compensation.centre_runs import CentreRun, run_of_centre
 from trunnion.compensation.contour_tools import ContourTools
 from trunnion.compensation.offsets import Fault
 from trunnion.compensation.stretches import RadiusOf, RegisterValue, Stretch, offsets_of
@@ -80,8 +80,3 @@ def driven_run(run: Run, holds: RegisterValue, radius_of: RadiusOf, contours: Co
         ]
     known = [(each.stretch, each.offset) for each in found if each.offset is not None]
     return DrivenRun(run_of_centre(run, known), tuple(found), holds)
-
-
-def is_compensated(driven: DrivenRun) -> bool:
-    """Whether the tool's centre goes anywhere else than the program says."""
-    return any(each.offset is not None and abs(each.offset) > NOTHING for each in driven.stretches)

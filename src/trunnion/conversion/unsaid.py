@@ -38,14 +38,11 @@ def warn_of_missing_words(run: Run, operations: Sequence[Ints], warn: Warnings) 
     for hole in run.spindle_holes:  # what the spindle does there is told by their cycles
         in_cycles[hole.first : hole.end] = True
     cuts = cuts[~in_cycles[cuts]]
-    kinds = {event.kind for event in run.events}
-    if kinds & {"speed", "spindle"}:
-        _warn_at_first(run, cuts[run.spindle[cuts] == 0], "cuts_without_spindle", warn)
-    if "end" not in kinds:
+    _warn_at_first(run, cuts[run.spindle[cuts] == 0], "cuts_without_spindle", warn)
+    if all(event.kind != "end" for event in run.events):
         warn(int(run.line[-1]), Wording("CNV154", "no_end"), int(run.file[-1]))
-    if kinds & {"tool", "tool_change"}:
-        empty = np.array([not name.strip("0") for name in run.tools])
-        _warn_at_first(run, cuts[empty[run.tool[cuts]]], "cuts_without_tool", warn)
+    empty = np.array([not name.strip("0") for name in run.tools])
+    _warn_at_first(run, cuts[empty[run.tool[cuts]]], "cuts_without_tool", warn)
 
 
 def warn_of_skipped_words(

@@ -68,6 +68,11 @@ def found_files(folder: Path) -> Iterator[FoundFile]:
         yield FoundFile(_name(path, folder), path, FileKind.OTHER, _unreadable(error), is_tried=False)
 
 
+def is_touchable(path: Path) -> bool:
+    """Return whether a file may be opened: a regular one, and none too large."""
+    return not _untouchable(path)
+
+
 def count_files(folder: Path) -> int:
     """How many files there are."""
     return sum(len(names) for _, _, names in os.walk(folder))

@@ -6,10 +6,11 @@ Nothing is written beside the file, and nothing comes back but what is wrong.
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cache
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
 from trunnion.batch.processing import work
@@ -20,13 +21,18 @@ from trunnion.controls import load_control
 from trunnion.errors import Severity, TrunnionError
 from trunnion.jobs.describe.cl_files import describe_cl
 from trunnion.jobs.inputs.reading import as_machine
-from trunnion.survey.found_files import MOST_BYTES
+from trunnion.readers import reader_of
+from trunnion.survey.found_files import MOST_BYTES, is_touchable
 
 #: Memory that a worker may take, bytes; beyond it the file is given up, and not the computer.
 _MEMORY: Final = 4 << 30
 
 #: Name of what is posted or converted, within the folder of the work.
 _NAME: Final = "survey"
+
+#: The code of a call of a file that is not known, and bytes of files beside a program that are given to it then.
+_CALLS_FILE: Final = "NC132"
+_MOST_BESIDE: Final = 50_000_000
 
 #: Of an outcome: the step that it is of.
 STEP: Final = "step"
@@ -139,6 +145,28 @@ def _post(subject: _Subject) -> Outcome:
 
 
 def _verify(subject: _Subject) -> Outcome:
+    outcome = _verified(subject)
+    if not subject.cl and _CALLS_FILE in outcome.figures.get("error_codes", ()) and _take_beside(subject):
+        return _verified(subject)
+    return outcome
+
+
+def _take_beside(subject: _Subject) -> bool:
+    """Give a program the files beside it that it can call; return whether there are any."""
+    trial = subject.trial
+    beside = sorted(each for each in trial.path.parent.iterdir() if each != trial.path and is_touchable(each))
+    room = _MOST_BESIDE
+    for path in reader_of(as_machine(trial.machine)).callable_files(beside):
+        with suppress(OSError):
+            content = path.read_bytes()
+            if (room := room - len(content)) < 0:
+                break
+            subject.files[FILES + PurePosixPath(trial.file).with_name(path.name).as_posix()] = content
+    subject.subprograms = tuple(name for name in subject.files if name != subject.program)
+    return bool(subject.subprograms)
+
+
+def _verified(subject: _Subject) -> Outcome:
     arguments: dict[str, Any] = {"machine": subject.trial.machine, "subprograms": list(subject.subprograms)}
     if subject.cl:
         arguments["cl"] = [subject.cl]

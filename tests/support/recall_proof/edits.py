@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from tests.support.recall_proof.languages import LANGUAGES, Language
+from tests.support.recall_proof.straight_ways import is_on_straight_way
 
 _AXES = "XYZABC"
 _WORD = re.compile(r"(?<![A-Z_$=(,.\d\"])([XYZABC])([-+]?\d*\.?\d+|[-+]?\d+\.)(?![\w.(])")
@@ -142,6 +143,7 @@ def _numbers(blocks: list[Block], language: Language) -> Iterator[Edit]:
                     new
                     and abs(float(new) - value) > 0.01
                     and not (letter == "C" and abs(float(new) - value) % 360 == 0)
+                    and not (is_on_straight_way(blocks, k, {}) and is_on_straight_way(blocks, k, {letter: float(new)}))
                 ):
                     sign = "+" if number[0] in "+-" and new[0] not in "+-" else ""
                     yield Edit(
@@ -164,7 +166,8 @@ def _orders(blocks: list[Block], language: Language) -> Iterator[Edit]:
     for k, block in enumerate(blocks):
         moves = any(abs(float(w[2]) - block.before.get(w[1], 9e9)) > 0.01 for w in block.words)
         if block.cuts and moves:
-            yield Edit("a cut left out", k + 1, with_lines(blocks, k))
+            if not is_on_straight_way(blocks, k):
+                yield Edit("a cut left out", k + 1, with_lines(blocks, k))
             following = blocks[k + 1] if k + 1 < len(blocks) else None
             centre = " CC " in block.code or (following is not None and " CC " in following.code)
             if following and following.cuts and not centre and _code(following) != _code(block):
@@ -253,6 +256,8 @@ def _replaced(blocks: list[Block], language: Language) -> Iterator[Edit]:
         for k, block in enumerate(blocks):
             if kind == "rapid at feed" and not block.rapids:
                 continue
+            if kind == "feed by time" and not any(re.search(r"\bF\d", each.code) for each in blocks):
+                continue  # threads alone have their feed by their pitch
             if kind in ("a tenth of the feed", "ten times the feed") and _is_before_own_feed(blocks, k):
                 continue
             for line in _substituted(block, pattern, new):
@@ -308,7 +313,7 @@ def _dropped(blocks: list[Block], language: Language) -> Iterator[Edit]:
 def _skipped(blocks: list[Block], language: Language) -> Iterator[Edit]:
     for k, block in enumerate(blocks):
         kinds = {
-            "a cut that may be skipped": block.cuts,
+            "a cut that may be skipped": block.cuts and not is_on_straight_way(blocks, k),
             "a rapid that may be skipped": block.rapids,
             "a start of the spindle that may be skipped": not block.spindle and re.search(r"\bM0?3\b", block.code),
             "coolant that may be skipped": not block.coolant and re.search(r"\bM0?[78]\b", block.code),

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import trunnion
 from tests.support.recall_proof.bases import Base
@@ -49,8 +49,14 @@ def diff(base: Base, program: Path) -> Told:
     return Told(not found.same, found.first.text if found.first else "")
 
 
+#: Text of a CL file, codes of the warnings and settings that come with it.
+_Converted: TypeAlias = tuple[str, list[str], dict[str, Any]]
+
+
 def convert(base: Base, program: Path) -> Told:
-    """Whether a CL file of it is refused, comes with other warnings or settings, or is not what the sound one does."""
+    """Whether a CL file of it is refused, comes with other warnings or settings, or is not what the sound one does; or
+    whether what is posted from it is not what is posted from that of the sound one.
+    """
     sound = sound_file(base, program.parent)
     known = _converted(base, sound)
     if not isinstance(known, tuple):
@@ -65,7 +71,30 @@ def convert(base: Base, program: Path) -> Told:
     cl = program.with_suffix(".cls")
     cl.write_text(found[0], encoding="utf-8")
     against = Base(base.family, base.name, base.machine, cl, base.text, base.stated)
-    return proof(against, sound)
+    told = proof(against, sound)
+    if told.reported or found[0] == known[0]:
+        return told
+    return _posted_otherwise(base, known, found, program)
+
+
+def _posted_otherwise(base: Base, known: _Converted, found: _Converted, program: Path) -> Told:
+    """Whether two CL files become different programs: the proof lets a program leave the part before it goes home."""
+    posted = [_posted(base, *each[::2], program.parent, name) for each, name in ((known, "known"), (found, "found"))]
+    if posted[0] is None or posted[1] is None:
+        return Told(posted[0] is not None, "post")
+    differs = not trunnion.diff(posted[0], posted[1], machine=base.machine).same
+    return Told(differs, "post" if differs else "")
+
+
+def _posted(base: Base, text: str, settings: dict[str, Any], folder: Path, name: str) -> Path | None:
+    """The program of a CL file; None: it is refused."""
+    cl, output = folder / f"{name}.cls", folder / f"posted_{name}.{_suffix(base)}"
+    cl.write_text(text, encoding="utf-8")
+    try:
+        trunnion.post(cl, machine=base.machine, output=output, settings=settings)
+    except trunnion.TrunnionError:
+        return None
+    return output
 
 
 def is_convertible(base: Base, folder: Path) -> bool:
@@ -78,7 +107,7 @@ def is_convertible(base: Base, folder: Path) -> bool:
         return False
 
 
-def _converted(base: Base, program: Path) -> tuple[str, list[str], dict[str, Any]] | str:
+def _converted(base: Base, program: Path) -> _Converted | str:
     """The CL file of a program with its warnings and settings, or what refuses it."""
     warned = _Warnings()
     stated = {key: value for key, value in base.stated.items() if key in ("zero", "tool_length")}

@@ -111,13 +111,15 @@ def _turned(block: Block, by: float) -> str:
 
 
 def _lines_in_two(blocks: list[Block], language: Language) -> Iterator[Edit]:
-    """A straight cut with a point half-way; only where no rotary axis turns, and F is no time."""
+    """A straight cut with a point half-way; only where no rotary axis or vector turns the tool, and F is no time."""
     if any(re.search(r"\bG93\b", block.code) for block in blocks):
         return
     for k, block in enumerate(blocks):
         letters = [word[1] for word in block.words]
         known = all(letter in block.before for letter in letters) and set(letters) <= set("XYZ")
         if not (block.cuts and known) or block.cycle or re.search(language.arc, block.code) or block.arc_in_force:
+            continue
+        if re.search(r"\b[IJK][-+]?[\d.]", block.code):
             continue
         if re.search(r"\bR[LR0]\b|\bG4[012]\b", block.code) or block.compensated or " CC " in block.code:
             continue

@@ -1,7 +1,7 @@
 """What a family of controls contributes to reading: one record, in the module ``reader`` of the family's folder."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -9,9 +9,9 @@ from typing import Any
 from trunnion.compensation.styles import UNKNOWN_STYLE
 from trunnion.machines import Machine
 from trunnion.readers.program.interpreter import Interpreter
-from trunnion.readers.program.options import RunOptions
 from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
 from trunnion.readers.program.settings import no_reading
+from trunnion.readers.program.subprograms import callable_files
 from trunnion.readers.program.work_offsets import WorkOffsetWords
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
@@ -22,7 +22,7 @@ RS274_COMMENTS = rb"\([^)\n]*\)|;[^\n]*"
 class FamilyReader:
     """The reader of one family of controls.
 
-    interpreter          makes the interpreter that runs a program on a machine
+    interpreter          runs a program on a machine
     words_without_path   words, as written without leading zeros, that the path does not depend on
     comments             regular expression of comments and texts, in which words mean nothing
     work_offsets         how programs select work offsets
@@ -36,9 +36,10 @@ class FamilyReader:
     lost_smoothing       kind of the event that such a cycle makes -> its name, and the settings that stand for it
     compensation_style   how a control compensates the radius in a plane, a key of ``STYLES``; 0: not known
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
+    variables            what variables are called of which values can be stated; None: there are none
     """
 
-    interpreter: Callable[[Path, Machine, RunOptions], Interpreter[Any]]
+    interpreter: type[Interpreter[Any]]
     words_without_path: frozenset[str]
     work_offsets: WorkOffsetWords
     is_own_word: Callable[[str], bool]
@@ -51,3 +52,8 @@ class FamilyReader:
     lost_smoothing: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     compensation_style: Callable[[Machine], int] = lambda _: UNKNOWN_STYLE
     check_reading: Callable[[Machine], object] = no_reading
+    variables: re.Pattern[str] | None = None
+
+    def callable_files(self, files: Iterable[Path]) -> tuple[Path, ...]:
+        """Return the files whose names programs can call, the first of each name."""
+        return callable_files(files, self.interpreter.suffixes, self.interpreter.prefix)

@@ -1,7 +1,7 @@
 """The subprograms that a program may call."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem, unusable_file
@@ -22,13 +22,13 @@ class Subprograms:
         problems = []
         found: dict[tuple[str, int], Path] = {}
         for path in files:
-            rank = self._rank(path.name.upper())
+            key = self.key(path.name)
             if unusable := unusable_file(path, "an NC program"):
                 problems.append(unusable)
-            elif rank is None:
+            elif key is None:
                 endings = ", ".join(suffix for suffix in self._suffixes if suffix)
                 problems.append(Problem(str(path), 0, Wording("NC130", "not_a_subprogram_name", endings=endings)))
-            elif (first := found.setdefault((self._stem(path.name), rank), path)) is not path:
+            elif (first := found.setdefault(key, path)) is not path:
                 problems.append(Problem(str(path), 0, Wording("NC130", "same_name", first=first)))
         if problems:
             raise InputError(problems)
@@ -45,11 +45,12 @@ class Subprograms:
             return None
         return self._files.get(self._stem(parts[-1]))
 
-    def _rank(self, upper: str) -> int | None:
-        """Return the index of the suffix of a name."""
+    def key(self, name: str) -> tuple[str, int] | None:
+        """Return the name of a file as it is called, and the index of its suffix; None if no program calls it so."""
+        upper = name.upper()
         for k, suffix in enumerate(self._suffixes):
             if upper.endswith(suffix) if suffix else "." not in upper:
-                return k
+                return self._stem(name), k
         return None
 
     def _stem(self, name: str) -> str:
@@ -57,3 +58,13 @@ class Subprograms:
         for suffix in self._suffixes:
             stem = stem.removesuffix(suffix)
         return stem.removeprefix(self._prefix)
+
+
+def callable_files(files: Iterable[Path], suffixes: Sequence[str], prefix: str = "") -> tuple[Path, ...]:
+    """Return the files whose names the control can call, the first of each name; arguments as in ``Subprograms``."""
+    named = Subprograms((), suffixes, prefix)
+    found: dict[tuple[str, int], Path] = {}
+    for path in files:
+        if (key := named.key(path.name)) is not None:
+            found.setdefault(key, path)
+    return tuple(found.values())

@@ -4,7 +4,7 @@ Heights are as in ``trunnion.verification.expected.holes``.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import Final
 
@@ -68,8 +68,8 @@ def _collect_pecks(
             yield motions.fault(k, height, Wording("holes", "rapid_in_solid"))
         elif kind == Kind.LINEAR and height < deepest - 1e-9:
             start = float(motions.height[k - 1])
-            is_back = bool(pecks) and start >= hole.cycle.clearance - hole.tolerance
-            if motions.by_motion and is_back and start - deepest > _MOST_AT_FEED:
+            was_out = _was_out(hole, motions, between)
+            if motions.by_motion and was_out and start - deepest > _MOST_AT_FEED:
                 yield motions.fault(k, height, Wording("holes", "no_rapid_back", way=start - deepest))
             pecks.append(height)
             between.append([])
@@ -78,6 +78,11 @@ def _collect_pecks(
         elif between:
             between[-1].append(k)
         deepest = min(deepest, height)
+
+
+def _was_out(hole: Hole, motions: DrillMotions, between: Sequence[Sequence[int]]) -> bool:
+    """Whether the tool has been out of the hole since the last peck: the way back in is made at rapid then."""
+    return any(motions.height[k] >= hole.cycle.clearance - hole.tolerance for rows in between[-1:] for k in rows)
 
 
 def _cycle_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterator[HoleFault]:

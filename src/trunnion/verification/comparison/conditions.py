@@ -2,7 +2,8 @@
 
 In:     a run; the other program is for the same machine.
 Out:    rows, and in words what holds there: a tool change with the spindle turning, both senses in one block, coolant
-        after a stop, a plane that is on while rotary axes turn, lengths in units that the program does not state.
+        after a stop, a plane that is on while rotary axes turn, a spindle that turns while they are positioned, lengths
+        in units that the program does not state.
 """
 
 from collections.abc import Iterator
@@ -13,10 +14,15 @@ import numpy as np
 from trunnion.messages import Wording
 from trunnion.model.run import EventValue, Run
 from trunnion.verification.event_words import event_word
+from trunnion.verification.kinematics.positioning_moves import rotary_positioning_flags
 from trunnion.verification.spindle_words import TURNING, both_senses
 
 _STOPS: Final = ("stop", "optional_stop")
 _PLANES: Final = ("tilt", "plane", "cycle800")
+_SENSES: Final = {1: "clockwise", -1: "counter-clockwise"}
+
+#: An axis that turns by no more stands, degrees.
+_STILL: Final = 1e-6
 
 
 def conditions(run: Run) -> Iterator[tuple[int, Wording]]:
@@ -27,6 +33,7 @@ def conditions(run: Run) -> Iterator[tuple[int, Wording]]:
     yield from _of_spindle(run)
     yield from _after_stops(run)
     yield from _turns_in_planes(run)
+    yield from _turns_with_spindle(run)
 
 
 def _of_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
@@ -71,3 +78,26 @@ def _turns_in_planes(run: Run) -> Iterator[tuple[int, Wording]]:
     for row, k in zip(rows.tolist(), np.searchsorted(begins, rows, side="right").tolist(), strict=True):
         if on[k - 1] and (in_machine[row] or used[row] > used[begins[k - 1]]):
             yield row, Wording("comparison", "turns_in_plane")
+
+
+def _turns_with_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
+    """Yield where rotary axes are positioned with the spindle turning, once between two motions of the tool.
+
+    Such rows go to no point, so that nothing else of them is compared.
+    """
+    positioning = rotary_positioning_flags(run, 0, len(run))
+    rows = np.flatnonzero(positioning & (run.spindle != 0))
+    if not len(rows):
+        return
+    columns = list(run.machine.rotary)
+    angles = np.concatenate((run.start[None, columns], run.rotary))
+    turned = np.abs(angles[rows + 1] - angles[rows])
+    for k, column in enumerate(columns):
+        if run.machine.axes[column].endless:
+            turned[:, k] = np.abs((turned[:, k] + 180.0) % 360.0 - 180.0)
+    rows = rows[(turned > _STILL).any(axis=1)]
+    # Whether one block turns both axes or two of them turn one each makes no difference.
+    motions = np.cumsum(~positioning)[rows]
+    for row in rows[np.flatnonzero(np.diff(motions, prepend=-1))].tolist():
+        sense = event_word(_SENSES[int(run.spindle[row])])
+        yield row, Wording("comparison", "turns_with_spindle", sense=sense)

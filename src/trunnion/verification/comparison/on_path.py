@@ -58,24 +58,32 @@ def _ends_on_circle(
     tolerance: float,
 ) -> bool:
     """Whether a circular motion ends on another circle; ``motion`` and ``path`` are start and end of both."""
-    if other is None or (np.abs(circle[0] - other[0]) > 2.0 * tolerance).any() or circle[1] @ other[1] < 0.999:
+    if other is None or circle[1] @ other[1] < 0.999:
         return False
-    (begin, tip), (start, end) = motion, path
+    (begin, tip), (start, end), (centre, normal) = motion, path, other
+    if (np.abs(_in_plane(circle[0] - centre, normal)) > 2.0 * tolerance).any():
+        return False
     part, before = (_fraction_of_circle(other, start, point, end) for point in (tip, begin))
     if np.abs(begin - start).max() <= tolerance:
         before = 0.0
-    return 1e-9 < part < 1.0 and before < part
+    rise = float((tip - start - part * (end - start)) @ normal)
+    return 1e-9 < part < 1.0 and before < part and abs(rise) <= 2.0 * tolerance
 
 
 def _fraction_of_circle(circle: tuple[Floats, Floats], start: Floats, point: Floats, end: Floats) -> float:
     """At which fraction of a circle from ``start`` to ``end`` a point lies; -1 if it is not on it."""
     centre, normal = circle
-    a, p, b = start - centre, point - centre, end - centre
+    a, p, b = (_in_plane(each - centre, normal) for each in (start, point, end))
     if abs(float(np.linalg.norm(p) - np.linalg.norm(a))) > 0.01:
         return -1.0
 
     def angle(arm: Floats) -> float:
-        return float(np.arctan2(np.cross(a, arm) @ normal, a @ arm - (a @ normal) * (arm @ normal)) % (2.0 * np.pi))
+        return float(np.arctan2(np.cross(a, arm) @ normal, a @ arm) % (2.0 * np.pi))
 
     whole = angle(b)
     return angle(p) / (whole if whole > 1e-9 else 2.0 * np.pi)
+
+
+def _in_plane(arm: Floats, normal: Floats) -> Floats:
+    """Return a vector without its share along the normal, (3,)."""
+    return np.asarray(arm - (arm @ normal) * normal)

@@ -62,7 +62,8 @@ class PathEvents:
         found += [(hole.first, _spindle_work(run, hole, chuck=same_machine)) for hole in run.spindle_holes]
         left_on = _left_on(run) if same_machine else ()
         found += [(len(run), Wording("comparison", "left_on", what=what)) for what in left_on]
-        found += [(len(run), said) for said in _switched_behind(run, same_machine)]
+        last = int(rows[-1]) if len(rows) else -1
+        found += [(len(run), said) for said in _switched_behind(run, last, same_machine)]
         at = np.searchsorted(rows, [row for row, _ in found])
         self._events: dict[int, list[Wording]] = {}
         for motion, (_, said) in zip(at.tolist(), found, strict=True):
@@ -100,14 +101,16 @@ def _events(run: Run, kinds: Sequence[str]) -> Iterator[tuple[RunEvent, Wording]
             yield event, said
 
 
-def _switched_behind(run: Run, same_machine: bool) -> list[Wording]:
-    """Return what becomes of spindle and coolant behind the last motion: no row shows it. On another machine what the
-    end of a program switches off may have no word.
+def _switched_behind(run: Run, last: int, same_machine: bool) -> list[Wording]:
+    """Return what becomes of spindle, coolant and tool behind the ``last`` row in which the tool moves: no such row
+    shows it. On another machine what the end of a program switches off, or puts away, may have no word.
     """
-    found = {event.kind: event.value for event in run.events if event.before_row == len(run)}
-    if not same_machine and any(event.kind == "end" for event in run.events):
-        found = {kind: value for kind, value in found.items() if value != "off"}
-    kinds = [kind for kind in ("spindle", "coolant") if kind in found]
+    found = {event.kind: event.value for event in run.events if event.before_row > last}
+    if not same_machine:
+        found.pop("tool_change", None)
+        if any(event.kind == "end" for event in run.events):
+            found = {kind: value for kind, value in found.items() if value != "off"}
+    kinds = [kind for kind in ("spindle", "coolant", "tool_change") if kind in found]
     return [Wording("comparison", kind, word=event_word(found[kind])) for kind in kinds]
 
 

@@ -181,12 +181,12 @@ def _fraction_of_line(
         if length > _SHORT or not free_axis:
             return -1.0
         fraction = done
+    off, foot = 0.0, fraction
     fraction = min(max(fraction, done), 1.0)
-    off = 0.0
     for k in range(3):
         step = points.tip[j, k] - points.tip[j - 1, k]
-        off += (motions.tip[i, k] - points.tip[j - 1, k] - fraction * step) ** 2
-    if not math.sqrt(off) <= near + uncertainty * length:
+        off += (motions.tip[i, k] - points.tip[j - 1, k] - foot * step) ** 2
+    if not math.sqrt(off) <= near:
         return -1.0
     if not free_axis:
         before, after = slerp_weights(angle, fraction)
