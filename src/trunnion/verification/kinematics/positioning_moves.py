@@ -134,7 +134,7 @@ def approach_rows(run: Run) -> Ints:
     """
     starts = {0, *(event.before_row for event in run.events if event.kind == "retract")}
     starts.update(row for row in run.state.machine_frame.rows_changing_to(False) if row > 0)
-    found = []
+    found: list[int] = []
     for row in _rows_that_follow(run, starts):
         after = row + 1
         while after < len(run) and repeats_position(run, np.array([after]))[0]:

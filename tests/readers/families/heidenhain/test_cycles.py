@@ -27,9 +27,9 @@ def define(number: int, **values: float) -> str:
     return f"CYCL DEF {number} NAME ~\n" + " ~\n".join(f"{name}={value:+g}" for name, value in values.items()) + "\n"
 
 
-DRILL = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, "Q204": 50, "Q211": 0}
+DRILL: dict[str, float] = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, "Q204": 50, "Q211": 0}
 
-DEEP = {"Q212": 0, "Q205": 0, "Q258": 0, "Q259": 0, "Q257": 0, "Q256": 0}
+DEEP: dict[str, float] = {"Q212": 0, "Q205": 0, "Q258": 0, "Q259": 0, "Q257": 0, "Q256": 0}
 
 
 @pytest.mark.parametrize(
