@@ -57,6 +57,7 @@ CURES: Final = (
     _line("NC142", "", "IF 1==2", "IF 1==2\nENDIF"),
     _line("NC218", "", "G4", "G4 F1"),
     _said("NC161", "", _SINUMERIK + "G0 X0\n", ("M30\nG0 X0\n", "M30\n")),
+    _said("NC161", "another_program", _SINUMERIK.replace("G1 Z5", "M30\nG1 Z5"), ("M30\nG1 Z5", "G1 Z5")),
     _said(
         "NC163",
         "doubled_label",

@@ -121,6 +121,7 @@ class Comparer:
             first=self._difference(self._first),
             worst=self._difference(self._worst or self._first),
             unknown_words=_unknown_words(one.run, two.run),
+            stated=tuple(dict.fromkeys(str(word.wording) for each in (one, two) for word in each.run.stated)),
         )
 
     def _same(self, i: int, j: int, count: int) -> Flags:

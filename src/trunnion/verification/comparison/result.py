@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Final
 
 from trunnion.arrays import Ints
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.results import FIRST, NOT_DATA, Figure
 
 #: Words that are not understood which a result names one by one.
@@ -66,6 +66,7 @@ class Comparison:
     count          how many differences there are, those between the paths up to a limit; a feed, tool, offset or the
                    like that differs from one motion on to another is one
     unknown_words  words of either program that are not understood: then they cannot be called the same
+    stated         words and variables that both stand on, with what somebody has stated of them
     """
 
     SCHEMA: ClassVar[int] = 1
@@ -78,6 +79,7 @@ class Comparison:
     first: Difference | None
     worst: Difference | None
     unknown_words: tuple[str, ...] = ()
+    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
 
     @property
     @Figure(after=FIRST)
@@ -98,6 +100,8 @@ class Comparison:
         if not self.same:
             yield from self.unknown_words[:_MOST_NAMED]
         yield from map(str, self._wordings())
+        if self.stated:
+            yield str(phrase("stands_on_stated", words=self.stated))
 
     def _wordings(self) -> Iterator[Wording]:
         reached = {"points": self.points, "tip": self.tip, "axis": self.axis}
