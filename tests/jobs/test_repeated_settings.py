@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.jobs.inputs.control_settings import written_control
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.options.words import PROOF_SETTINGS
 
 _POCKET = """TOOL PATH/POCKET,TOOL,D10

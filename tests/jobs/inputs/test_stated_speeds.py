@@ -31,8 +31,8 @@ def test_an_operation_without_spindl_turns_at_the_stated_speed(silent: Path, val
     found = trunnion.post(silent, machine="yl569", settings={"spindle": value}, output=tmp_path / "a.mpf")
     assert "S7000" in words(tmp_path / "a.mpf")
     assert found.verification.passed
-    again = {"settings": {"spindle": value}}
-    assert trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], **again).passed
+    again = {"spindle": value}
+    assert trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], settings=again).passed
     assert not trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], settings={"spindle": "6000"}).passed
 
 
