@@ -119,7 +119,8 @@ ZERO: Final = Option(
     "zero",
     "--zero",
     Point("X,Y,Z", by_name=True),
-    "the workpiece zero on the machine, mm; G54=X,Y,Z,G55=X,Y,Z: of each work offset",
+    "the workpiece zero in the machine frame, mm (the value of G54 only if the gauge point is at 0,0,0);"
+    " G54=X,Y,Z,G55=X,Y,Z: of each work offset",
     key="zero_mm",
     level=Level.OWN,
 )

@@ -91,8 +91,8 @@ class Coverage:
         yield phrase("motions_checked", checked=self.checked, motions=self.motions)
         if self.left_out:
             first = self.left_out[0]
-            others = self.motions - self.checked - 1
-            if others > 0:
+            others = self.motions - self.checked
+            if others > 1:
                 yield phrase("motions_left_out_more", block=first.block_name, count=others, why=first.said)
             else:
                 yield phrase("motions_left_out", block=first.block_name, why=first.said)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from tests.support.cures import cl_files, posts, programs, stated_words
+from tests.support.cures import cl_files, posts, programs, stated_words, stocks
 from tests.support.cures.cure import Cure
 
 TABLES: Final[Mapping[str, tuple[Cure, ...]]] = {
@@ -11,4 +11,5 @@ TABLES: Final[Mapping[str, tuple[Cure, ...]]] = {
     "posts": posts.CURES,
     "programs": programs.CURES,
     "stated_words": stated_words.CURES,
+    "stocks": stocks.CURES,
 }
