@@ -30,6 +30,7 @@ def words(file: Path) -> str:
 def test_an_operation_without_spindl_turns_at_the_stated_speed(silent: Path, value: str, tmp_path: Path) -> None:
     found = trunnion.post(silent, machine="yl569", settings={"spindle": value}, output=tmp_path / "a.mpf")
     assert "S7000" in words(tmp_path / "a.mpf")
+    assert found.verification is not None
     assert found.verification.passed
     again = {"spindle": value}
     assert trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], settings=again).passed
