@@ -107,7 +107,7 @@ def simulate() -> None:
     programs = [SAMPLE.with_name(f"{name}.expected.mpf") for name in CUT]
     tools = ("--tool", "1=flat:16,length=75,flutes=40", "--tool", "2=ball:10,length=75,flutes=40")
     stock = ("--stock", "cylinder:108,30,-30", "--cell", "0.5", "--save-stock", "stock.png")
-    # 1: a rapid goes through this stock, as it is told.
+    print("One finding is to be expected: a rapid goes through this stock, which is a plain cylinder.", flush=True)
     run("trunnion", "simulate", *programs, "--machine", "yl569", *stock, *tools, good=(0, 1))
     print(f"the finished stock is drawn in {HERE / 'stock.png'}; --save-stock stock.stl saves it as a solid")
 

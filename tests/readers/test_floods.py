@@ -74,7 +74,7 @@ def test_a_program_in_place_of_a_cl_file_is_named(program: Path, capsys: Capture
         assert main([*command[:1], str(program), *command[1:]]) == 2
         first = capsys.readouterr().err.splitlines()[0]
         assert "this is a Heidenhain Klartext program and no CL file, by BEGIN PGM in line 1" in first
-        assert first.endswith("with its machine [CL110]")
+        assert first.endswith("and verify proves it [CL110]")
 
 
 def test_a_flood_of_a_cl_file_names_a_kind_that_comes_late(tmp_path: Path, capsys: Capture) -> None:

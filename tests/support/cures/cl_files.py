@@ -9,7 +9,8 @@ from tests.support.program_heads import HEADS
 #: A line that goes out.
 _OUT: Final = ""
 
-_CUT: Final = HEAD + "GOTO/20,0,5\n" + FOOT
+_THERE: Final = "GOTO/20,0,5\n" + FOOT
+_CUT: Final = HEAD + _THERE
 _DRILL: Final = "CYCLE/DRILL,FEDTO,-10,RAPTO,3,MMPM,100\n"
 
 
@@ -99,6 +100,8 @@ CURES: Final = (
     _within("CL710", "fedrat_negative", "FEDRAT/MMPM,-100", "FEDRAT/MMPM,100"),
     _within("CL710", "fedrat_not_known", "FEDRAT/SPEEDY,100", "FEDRAT/MMPM,100"),
     _within("CL715", "fedrat_0", "FEDRAT/MMPM,0", "FEDRAT/MMPM,100"),
+    _said("CL716", "inch_in_metric_file", f"UNITS/MM\n{HEAD}FEDRAT/IPM,800\n{_THERE}", ("IPM", "MMPM")),
+    _said("CL716", "metric_in_inch_file", f"UNITS/INCHES\n{HEAD}{_THERE}", ("MMPM", "IPM")),
     _within("CL730", "spindl_speed_0", "SPINDL/RPM,0,CLW", "SPINDL/RPM,1000,CLW"),
     _within("CL730", "spindl_negative_speed", "SPINDL/RPM,-1000", "SPINDL/RPM,1000,CCLW"),
     _within("CL730", "spindl_without_speed", "SPINDL/", "SPINDL/RPM,1000,CLW"),

@@ -12,6 +12,7 @@ _DRILL: Final = "CYCLE/DRILL,FEDTO,-10,RAPTO,3,MMPM,100\n"
 _UNNUMBERED: Final = HEAD.replace("LOAD/TOOL,1,ADJUST,1\n", "")
 _FEED: Final = "FEDRAT/MMPM,500.0\n"
 _SPEED: Final = "SPINDL/RPM,4000.0000,CLW\n"
+_TLDATA: Final = "TLDATA/MILL,10.0000,0.0000,75.0000,0.0000,0.0000\n"
 _TOOL: Final = "LOAD/TOOL,1,ADJUST,1\n"
 
 
@@ -37,7 +38,10 @@ def _holes(
     return _said(code, variant, text, change, on=on, **settings)
 
 
+_COMPENSATED: Final = f"{HEAD}CUTCOM/LEFT\nGOTO/20,0,5\nGOTO/20,30,5\nCUTCOM/OFF\nGOTO/0,30,5\n{FOOT}"
+
 CURES: Final = (
+    _said("SIM147", "difference_not_known", _COMPENSATED.replace(_TLDATA, ""), ("MSYS", f"{_TLDATA}MSYS")),
     _said("CTL310", "cutting_motion_without_feed", _CUT.replace(_FEED, ""), ("GOTO/10.0", _FEED + "GOTO/10.0")),
     _holes("CTL310", "cycle_without_feed", "CYCLE/DRILL,FEDTO,-10,RAPTO,3", _DRILL.strip()),
     _said("CTL510", "operation_cuts_while", _CUT.replace(_SPEED, ""), ("RAPID\n", _SPEED + "RAPID\n")),

@@ -38,6 +38,7 @@ CURES: Final = (
     _said("modal", "", _SINUMERIK.replace("G1 Z5", "G93\nG1 X11 F2\nG1 X12\nG94\nG1 Z5"), ("G1 X12\n", "G1 X12 F2\n")),
     _said("rpm", "", _SINUMERIK.replace("S500", "S90000"), ("S90000", "S5000")),
     _said("travel", "", _SINUMERIK.replace("X10 F100", "X10 F100\nG0 G153 Z900 D0"), ("Z900", "Z100")),
+    _line("NC352", "offset_over_unknown_zero", "G10 L2 P1 X9. Y-5. Z-60.\nG54", "G54", on="matsuura_mx330"),
     _said("NC132", "unknown_or_missing", _SINUMERIK.replace("G1 X10", "HOLES\nG1 X10"), ("HOLES\n", "")),
     _said(
         "NC168",
@@ -57,6 +58,7 @@ CURES: Final = (
     _line("NC142", "", "IF 1==2", "IF 1==2\nENDIF"),
     _line("NC218", "", "G4", "G4 F1"),
     _said("NC161", "", _SINUMERIK + "G0 X0\n", ("M30\nG0 X0\n", "M30\n")),
+    _said("NC161", "another_program", _SINUMERIK.replace("G1 Z5", "M30\nG1 Z5"), ("M30\nG1 Z5", "G1 Z5")),
     _said(
         "NC163",
         "doubled_label",

@@ -21,6 +21,7 @@ from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_p
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, as_machine, read_program
 from trunnion.jobs.inputs.stated_setup import set_up_machine
+from trunnion.jobs.inputs.stated_words import with_stated
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
@@ -57,7 +58,10 @@ def convert(
         Length of the tool there, gauge point to tip, mm.
     settings
         In place of what the program states; for the other machine as ``trunnion.post`` takes them. Between CL files:
-        ``units`` of the one that is written.
+        ``units`` of the one that is written. And values of variables that the program reads and does not set, such as
+        ``{"R5": 2}``.
+    assume
+        What words do that the reader does not know, as for ``verify``.
     force
         Convert what was understood, and write a program that must not run; its head says so.
     observer
@@ -120,7 +124,9 @@ def _converted_cl(
     nc: FilePath | BinaryIO, given: ConvertArguments, observer: Observer, group: OutputGroup | None
 ) -> ConvertResult:
     """Return a CL file that was written in another dialect."""
-    _refuse_for_cl(**{name: given[name] for name in ("to_machine", "subprograms", "zero", "tool_length", "force")})
+    _refuse_for_cl(
+        **{name: given[name] for name in ("to_machine", "subprograms", "zero", "tool_length", "assume", "force")}
+    )
     source = nc if is_stream(nc) else check_path("nc", nc)
     read = [source] if isinstance(source, Path) else []
     edited = str((given["settings"] or {}).get("edited", ""))
@@ -141,9 +147,10 @@ def _converted_program(
     assert machine is not None
     source = as_machine(machine)
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
+    source, settings = with_stated(source, given["settings"], given["assume"])
     control = load_control(source.control)
     place = stated_place(program)
-    job = prepare(target_machine, given["settings"], force=given["force"])
+    job = prepare(target_machine, settings, force=given["force"])
     if place.clamping is not None:
         job = replace(job, notices=placed_notices(place.clamping), clamping=place.clamping)
     check_conversion_settings(job, to_cl)

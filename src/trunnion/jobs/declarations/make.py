@@ -6,6 +6,7 @@ from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.jobs.job import Job, job
 from trunnion.messages import phrase
 from trunnion.options.groups import (
+    ASSUME,
     BODIES,
     CLAMPING,
     CUTTING,
@@ -103,7 +104,11 @@ _CONVERT: Final = job(
     ZERO.but(help="the workpiece zero on the program's own machine, mm"),
     TOOL_LENGTH.but(help="length of the tool there, gauge point to tip"),
     OUTPUT.but(help="result; without it a file of that name here"),
-    SETTINGS.but(help="what templates print, in place of what the program says, and zero; may be repeated"),
+    SETTINGS.but(
+        help="what templates print, in place of what the program says, and zero; or a variable that the program reads"
+        " and does not set: Q13=10; may be repeated"
+    ),
+    ASSUME,
     Option("force", "--force", Switch(), "convert what was understood, and write a program that must not run"),
     JSON,
     run="convert:run",

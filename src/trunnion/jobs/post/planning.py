@@ -24,7 +24,7 @@ from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
-from trunnion.output.compensation_entries import with_radius_taken_off
+from trunnion.output.compensation_entries import unknown_radii, with_radius_taken_off
 from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
@@ -218,7 +218,8 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     leaning = _leaning_operations(planned, number_setting(job.settings, "max_tilt"))
     sideways = sideways_problems(toolpaths) if job.settings.get("drills_sideways") != "allowed" else []
     ways = way_problems(program, subprograms=job.settings.get("programs") == "operations")
-    found = [*merge_repeated(planned.problems), *ways, *conflicts, *insert_problems(program), *leaning, *sideways]
+    remarks = merge_repeated((*planned.problems, *unknown_radii(program)))
+    found = [*remarks, *ways, *conflicts, *insert_problems(program), *leaning, *sideways]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))

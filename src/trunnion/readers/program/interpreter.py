@@ -7,7 +7,7 @@ loaded as soon as a jump, a loop or a subprogram needs it.
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
@@ -34,6 +34,7 @@ from trunnion.readers.program.limits import (
 )
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.program.stated_words import stated_words
 from trunnion.readers.program.subprograms import Subprograms
 from trunnion.readers.program.unreached import UnreachedBlocks
 from trunnion.readers.scan.buffers import ScanSettings
@@ -46,6 +47,13 @@ _MIN_FREE_ROWS: Final = 4096
 #: A scan of fewer blocks takes longer than their interpretation; then so many lines are interpreted.
 _FEW_BLOCKS: Final = 4
 _LINES_WITHOUT_SCAN: Final = 16
+
+
+#: Words that only a program has: it begins or ends.
+_PROGRAM_WORDS: Final = re.compile(
+    rb"^[ \t]*(?:[O:][ \t]*[0-9]|%[ \t]*[A-Z0-9]|PROC[ \t])|^[^(;\n]*?(?<![A-Z])M[ \t]*0*(?:2|30|17|99)(?![0-9])",
+    re.IGNORECASE | re.MULTILINE,
+)
 
 
 class ProgramEnd(Exception):  # noqa: N818 - the end of a program is no error
@@ -153,7 +161,8 @@ class Interpreter(ABC, Generic[A]):
         if self._unlisted:
             more = Wording("NC150", "more", count=self._unlisted)
             diagnostics.append(Diagnostic(0, more, Severity.ERROR, self._files[0]))
-        return self.control.finish(self._files, self._comments, diagnostics)
+        run = self.control.finish(self._files, self._comments, diagnostics)
+        return replace(run, stated=stated_words(self._known.met, diagnostics, self._machine))
 
     def _ends_of_dos(self, main: SourceText) -> Iterator[Diagnostic]:
         """Yield a warning for each file that Ctrl-Z ends."""
@@ -164,13 +173,17 @@ class Interpreter(ABC, Generic[A]):
 
     def _check_rest(self, main: SourceText) -> None:
         """Report text behind the end of the main program that no jump and no call can reach."""
+        first = main.line
         while not main.whole and main.fill():
             self.control.line = main.line
             if self._has_words(main.next_line()):
                 main.load()
                 if main.search(self.jump_words):
                     return
-                self._note(Wording("NC161", "behind_end_of_file"), Severity.ERROR)
+                # A program that ended too early has an end behind its end, and a second one a beginning.
+                is_program = main.search(_PROGRAM_WORDS, first) is not None
+                variant = "another_program" if is_program else "behind_end"
+                self._note(Wording("NC161", variant), Severity.ERROR if is_program else Severity.WARNING)
                 return
 
     @abstractmethod

@@ -126,6 +126,7 @@ class Comparer:
             worst=self._difference(self._worst or self._first),
             unknown_words=_unknown_words(one.run, two.run),
             first_unknown=_first_unknown(one.run, two.run),
+            stated=tuple(dict.fromkeys(str(word.wording) for each in (one, two) for word in each.run.stated)),
         )
 
     def _same(self, i: int, j: int, count: int) -> Flags:

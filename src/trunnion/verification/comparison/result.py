@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from trunnion.arrays import Ints
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.results import FIRST, NOT_DATA, Figure
 
 
@@ -64,6 +64,7 @@ class Comparison:
                    like that differs from one motion on to another is one
     unknown_words  words of either program that are not understood: then they cannot be called the same
     first_unknown  of each kind of them the first, and how many others there are: what a terminal shows
+    stated         words and variables that both stand on, with what somebody has stated of them
     """
 
     SCHEMA: ClassVar[int] = 1
@@ -77,6 +78,7 @@ class Comparison:
     worst: Difference | None
     unknown_words: tuple[str, ...] = ()
     first_unknown: Annotated[tuple[tuple[str, ...], int], NOT_DATA] = ((), 0)
+    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
 
     @property
     @Figure(after=FIRST)
@@ -97,6 +99,8 @@ class Comparison:
         if not self.same:
             yield from self.first_unknown[0]
         yield from map(str, self._wordings())
+        if self.stated:
+            yield str(phrase("stands_on_stated", words=self.stated))
 
     def _wordings(self) -> Iterator[Wording]:
         reached = {"points": self.points, "tip": self.tip, "axis": self.axis}

@@ -43,7 +43,7 @@ _SECONDS: Final = 0.001
 _STYLES: Final = {"A": TYPE_A, "B": UNKNOWN_STYLE}
 
 #: Common variables.
-_VARIABLE: Final = re.compile(r"#[1-9][0-9]{2}")
+VARIABLE: Final = re.compile(r"#[1-9][0-9]{2}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +175,7 @@ def settings_of(machine: Machine) -> Settings:
         length_along_z=table.flag("length_along_z", False),
         compensation_style=_STYLES[table.text("compensation_start", "A", one_of=tuple(_STYLES))],
         kept_by=table.text("kept_by", KEPT_BY),
-        variables=read_variables(table, _VARIABLE, "#500"),
+        variables=read_variables(table, VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
     )
     table.report_unread_keys()

@@ -47,7 +47,7 @@ _START_MODES: Final = {
 }  # fmt: skip
 
 #: Parameters that keep their values from one program to the next.
-_PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
+PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
 
 
 def _start_modes_of(machine: Machine) -> Mapping[str, str]:
@@ -58,7 +58,7 @@ def settings_of(machine: Machine) -> tuple[str, WordMeanings, dict[str, float]]:
     """Read the unit, own words and declared parameters of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
     unit, words = unit_of(table), read_word_meanings(table, is_own_word)
-    variables = read_variables(table, _PARAMETER, "#100")
+    variables = read_variables(table, PARAMETER, "#100")
     check_start_modes(table, _start_modes_of(machine))
     table.report_unread_keys()
     table.raise_problems()

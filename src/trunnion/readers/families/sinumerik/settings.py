@@ -22,7 +22,7 @@ START_MODES: Final = {
 }  # fmt: skip
 
 #: R parameters, variables of the control (GUD) and system variables, in capitals, with their index.
-_VARIABLE: Final = re.compile(r"R(?:0|[1-9][0-9]{0,4})|\$?[A-Z_][A-Z0-9_]+(?:\[[0-9]{1,5}(?:,[0-9]{1,5})*\])?")
+VARIABLE: Final = re.compile(r"R(?:0|[1-9][0-9]{0,4})|\$?[A-Z_][A-Z0-9_]+(?:\[[0-9]{1,5}(?:,[0-9]{1,5})*\])?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def settings_of(machine: Machine) -> Settings:
         length_along_z=table.flag("length_along_z", False),
         swivel_axes=table.texts("swivel_axes", ()),
         corner_feed=table.text("corner_feed", "", one_of=("", FEED_BEFORE, FEED_BEHIND)),
-        variables=read_variables(table, _VARIABLE, "R100"),
+        variables=read_variables(table, VARIABLE, "R100"),
     )
     check_start_modes(table, START_MODES)
     table.report_unread_keys()
