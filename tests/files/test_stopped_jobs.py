@@ -77,8 +77,9 @@ def test_ctrl_c_at_any_operation_leaves_a_whole_job(how: Callable[[], Any], afte
     assert (True, "no file was replaced") not in notes
 
 
+# Before an operation is after the one before it, but for what is written between them.
 @needs_fork
-@pytest.mark.parametrize("after", [False, True])
+@pytest.mark.parametrize("after", [pytest.param(False, marks=pytest.mark.nightly), True])
 def test_a_job_killed_at_any_operation_is_finished_or_rolled_back_by_the_next(after: bool, tmp_path: Path) -> None:
     outcomes, mixed = [], 0
     for number in count(1):
