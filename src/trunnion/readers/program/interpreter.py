@@ -22,6 +22,7 @@ from trunnion.model.run import Comment, Diagnostic, Run
 from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.error_tally import ErrorTally
+from trunnion.readers.program.forms import form_of
 from trunnion.readers.program.known_words import KnownWords
 from trunnion.readers.program.limits import (
     CHARACTERS_PER_STEP,
@@ -33,6 +34,7 @@ from trunnion.readers.program.limits import (
     StepCounter,
 )
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+from trunnion.readers.program.plain_lines import PlainLines
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.stated_words import stated_words
 from trunnion.readers.program.subprograms import Subprograms
@@ -88,6 +90,11 @@ class Interpreter(ABC, Generic[A]):
     #: Words with which blocks of this language run in another order than they stand in.
     jump_words: re.Pattern[bytes] = re.compile(rb"(?!)")
 
+    #: How this language writes comments, what is around its texts, and the letter of program numbers.
+    comment_signs = ("(", ")")
+    text_sign = ""
+    program_letter = ""
+
     control: VirtualControl
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
@@ -108,8 +115,11 @@ class Interpreter(ABC, Generic[A]):
         self._stack: list[A] = []
         self._lines_without_scan = 0
         self._raw = ""
-        self._unreached = UnreachedBlocks(self.jump_words, self._has_words)
+        self._form = form_of(machine)
+        self._lines = PlainLines(self._form, self.comment_signs, self.text_sign, self.program_letter)
+        self._unreached = UnreachedBlocks(self.jump_words, self._has_plain_words)
         self.control = self._make_control()
+        self.control.start_with(self._form.start)
         self._known = KnownWords(machine, self.control)
 
     @abstractmethod
@@ -176,7 +186,7 @@ class Interpreter(ABC, Generic[A]):
         first = main.line
         while not main.whole and main.fill():
             self.control.line = main.line
-            if self._has_words(main.next_line()):
+            if self._has_plain_words(main.next_line()):
                 main.load()
                 if main.search(self.jump_words):
                     return
@@ -189,6 +199,9 @@ class Interpreter(ABC, Generic[A]):
     @abstractmethod
     def _has_words(self, raw: str) -> bool:
         """Whether a line has anything but comments, marks of the transfer and its number."""
+
+    def _has_plain_words(self, raw: str) -> bool:
+        return self._has_words(self._lines.plain(raw))
 
     def _note(self, wording: Wording, severity: Severity) -> None:
         file = self._files[self.control.modal.file.current]
@@ -221,7 +234,7 @@ class Interpreter(ABC, Generic[A]):
                     continue
             line = source.line
             control.line, control.block_number = line, -1
-            self._raw = raw = source.next_line()
+            self._raw = raw = self._lines.plain(source.next_line())
             self._counter.count_blocks(1, len(raw))
             self._execute_known(active, line, raw) if self._known.any else self._execute_line(active, line, raw)
             if source.jumps_back > MOST_JUMPS_WITHOUT_CHOICE:

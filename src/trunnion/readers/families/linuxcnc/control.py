@@ -21,7 +21,8 @@ from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.start_modes import CENTRES, KINEMATICS, check_start_modes, with_tcp_off
 from trunnion.readers.families.linuxcnc.words import is_own_word
 from trunnion.readers.program.declared_variables import read_variables
-from trunnion.readers.program.settings import reading_of, unit_of
+from trunnion.readers.program.forms import read_form
+from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
@@ -59,6 +60,7 @@ def settings_of(machine: Machine) -> tuple[str, WordMeanings, dict[str, float]]:
     table = reading_of(machine)
     unit, words = unit_of(table), read_word_meanings(table, is_own_word)
     variables = read_variables(table, PARAMETER, "#100")
+    read_form(table, family_of(machine))
     check_start_modes(table, _start_modes_of(machine))
     table.report_unread_keys()
     table.raise_problems()

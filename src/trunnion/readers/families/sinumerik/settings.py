@@ -9,7 +9,8 @@ from trunnion.machines import Machine
 from trunnion.readers.control.contour_control import FEED_BEFORE, FEED_BEHIND
 from trunnion.readers.control.start_modes import ANGLES, VECTOR_FRAME, VECTORS, check_start_modes
 from trunnion.readers.program.declared_variables import read_variables
-from trunnion.readers.program.settings import reading_of
+from trunnion.readers.program.forms import read_form
+from trunnion.readers.program.settings import family_of, reading_of
 
 #: Whether the length of the edge in force counts in positions of the machine (G53, G153, SUPA).
 WITH_LENGTH: Final = "with_length"
@@ -57,6 +58,7 @@ def settings_of(machine: Machine) -> Settings:
         corner_feed=table.text("corner_feed", "", one_of=("", FEED_BEFORE, FEED_BEHIND)),
         variables=read_variables(table, VARIABLE, "R100"),
     )
+    read_form(table, family_of(machine))
     check_start_modes(table, START_MODES)
     table.report_unread_keys()
     table.raise_problems()
