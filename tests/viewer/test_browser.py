@@ -494,7 +494,8 @@ def test_rapids_are_drawn_in_dashes_and_cuts_in_one_line(view: Page) -> None:
             rows.add(program.row[piece]);
         }
         const isRapid = (piece) => program.kind[program.row[piece]] === 0;
-        const most = (rapid) => Math.max(...[...many].filter(([it]) => isRapid(it) === rapid).map(([, count]) => count));
+        const counts = (rapid) => [...many].filter(([it]) => isRapid(it) === rapid).map(([, count]) => count);
+        const most = (rapid) => Math.max(...counts(rapid));
         const drawn = [...Array(program.pieces).keys()].filter((piece) => program.known[piece]);
         const known = new Set(drawn.map((piece) => program.row[piece]));
         return [most(true), most(false), [...known].filter((row) => !rows.has(row)).length];
