@@ -18,9 +18,6 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 
-#: Places that are not understood which an error names one by one.
-_MOST_NAMED = 20
-
 #: The code of words of the machine's builder, of which a conversion says itself what becomes of them.
 _OF_BUILDER = "NC225"
 
@@ -45,7 +42,7 @@ class ProgramConverter:
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
             raise RefusedError(
-                (*errors[:_MOST_NAMED], Problem(self._file, 0, Wording("CNV120", "not_understood", count=len(errors))))
+                (*errors, Problem(self._file, 0, Wording("CNV120", "not_understood", count=len(errors))))
             )
         self.report([each for each in found if not _is_carried_over(each)])
         converted = conversion.convert(run, control, job.control if job else None)
@@ -64,7 +61,7 @@ class ProgramConverter:
         """Refuse what must not be lost, unless it is forced."""
         if lost and not self._force:
             raise RefusedError(
-                (*lost[:_MOST_NAMED], Problem(self._file, 0, Wording("CNV130", "cannot_be_converted", count=len(lost))))
+                (*lost, Problem(self._file, 0, Wording("CNV130", "cannot_be_converted", count=len(lost))))
             )
         self.report(lost)
 
