@@ -45,6 +45,9 @@ CURES: Final = (
     _said("CTL310", "cutting_motion_without_feed", _CUT.replace(_FEED, ""), ("GOTO/10.0", _FEED + "GOTO/10.0")),
     _holes("CTL310", "cycle_without_feed", "CYCLE/DRILL,FEDTO,-10,RAPTO,3", _DRILL.strip()),
     _said("CTL510", "operation_cuts_while", _CUT.replace(_SPEED, ""), ("RAPID\n", _SPEED + "RAPID\n")),
+    _said("CTL510", "operation_cuts_while", _CUT.replace(_SPEED, ""), {"spindle": "OP1:4000"}),
+    _said("ARG220", "speed_twice", _CUT.replace(_SPEED, ""), {"spindle": "500,OP1:4000"}, spindle="500,4000"),
+    _said("ARG230", "states_own_speed", _CUT, {"spindle": None}, spindle="OP1:4000"),
     _said(
         "CTL510",
         "operation_cuts_while_spindle",

@@ -18,9 +18,6 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 
-#: Places that are not understood which an error names one by one.
-_MOST_NAMED = 20
-
 #: Problems of conversions, and those of posts that say the same.
 _SAID_FOR = {"CNV146": "CTL230"}
 
@@ -49,7 +46,7 @@ class ProgramConverter:
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
             raise RefusedError(
-                (*errors[:_MOST_NAMED], Problem(self._file, 0, Wording("CNV120", "not_understood", count=len(errors))))
+                (*errors, Problem(self._file, 0, Wording("CNV120", "not_understood", count=len(errors))))
             )
         self.report([each for each in found if not _is_carried_over(each)])
         converted = conversion.convert(run, control, job.control if job else None)
@@ -78,7 +75,7 @@ class ProgramConverter:
             said = {_SAID_FOR[each.code] for each in self.lost if each.code in _SAID_FOR}
             every = [*self.lost, *(each for each in more if each.code not in said)]
             count = Problem(self._file, 0, Wording("CNV130", "cannot_be_converted", count=len(every)))
-            raise RefusedError((*every[:_MOST_NAMED], count))
+            raise RefusedError((*every, count))
 
     def warn_of_one_program(self, files: int) -> None:
         """Warn that a program with subprograms becomes one without."""
