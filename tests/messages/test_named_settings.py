@@ -40,8 +40,8 @@ OF_OPERATIONS: Final = {"tool": "A:1,B:2", "spindle": "A:100,B:200"}
 
 #: Words behind "setting" and "=" of other things: keys of definitions, results of hooks, values of tools.
 NO_SETTINGS: Final = {
-    "and", "another", "differs", "for", "in", "of", "or", "out", "that", "to", "limits_mm", "output", "namespace", "number",
-    "row", "moves", "length", "flutes", "shank", "holder",
+    "and", "another", "differs", "for", "in", "of", "or", "out", "that", "to", "limits_mm", "output", "namespace",
+    "number", "row", "moves", "length", "flutes", "shank", "holder",
 }  # fmt: skip
 
 #: Arguments of ``trunnion.verify`` that the command does not have.
