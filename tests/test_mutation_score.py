@@ -74,7 +74,7 @@ def test_tests_that_may_run_a_line_are_in_the_order_of_their_distance(tmp_path: 
         sources.tests_of(f"src/trunnion/parts/{name}", line) for name, line in (("kernels.py", 3), ("few.py", 3))
     )
     near, far = "tests/parts/test_few.py::Few::test_size", "tests/test_all.py::test_few"
-    assert in_kernel == [near, "tests/parts/test_slow.py::test_doubled", far]
+    assert in_kernel == [near, far, "tests/parts/test_slow.py::test_doubled"]
     assert in_constant == [near, far]
 
 

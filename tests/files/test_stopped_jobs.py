@@ -50,7 +50,11 @@ def check_whole(folder: Path) -> bool:
 
 @pytest.mark.parametrize(
     ("how", "after"),
-    [(raise_ctrl_c, False), (raise_ctrl_c, True), (lambda: signal.raise_signal(signal.SIGINT), True)],
+    [
+        (raise_ctrl_c, False),
+        pytest.param(raise_ctrl_c, True, marks=pytest.mark.nightly),
+        (lambda: signal.raise_signal(signal.SIGINT), True),
+    ],
 )
 def test_ctrl_c_at_any_operation_leaves_a_whole_job(how: Callable[[], Any], after: bool, tmp_path: Path) -> None:
     outcomes, notes = [], set()

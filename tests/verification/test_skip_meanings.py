@@ -252,8 +252,15 @@ def with_opskip(within: str) -> str:
     return f"{before}OPSKIP/ON\n{within}OPSKIP/OFF\n{behind}"
 
 
-@pytest.mark.parametrize("machine", [*MACHINES, "generic_head_head_ca"])
-@pytest.mark.parametrize("within", WITHIN)
+#: Each of it on every third machine, and on each machine some of it; nightly has the others.
+WITHIN_ON_MACHINES = [
+    pytest.param(machine, within, marks=[pytest.mark.nightly] * ((k + other) % 3 > 0))
+    for k, within in enumerate(WITHIN)
+    for other, machine in enumerate([*MACHINES, "generic_head_head_ca"])
+]
+
+
+@pytest.mark.parametrize(("machine", "within"), WITHIN_ON_MACHINES)
 def test_an_opskip_of_which_no_block_may_be_skipped_fails(machine: str, within: str, tmp_path: Path) -> None:
     cl, program = tmp_path / "p.cls", tmp_path / "p.nc"
     cl.write_text(with_opskip(WITHIN[within]), encoding="utf-8")

@@ -2,8 +2,9 @@
 
 from typing import Final
 
-from tests.support.cures.cure import Change, Cure, read
+from tests.support.cures.cure import Change, Cure, read, verify
 from tests.support.posting import CLEAR, FOOT, HEAD
+from tests.support.program_heads import HEADS
 
 #: A line that goes out.
 _OUT: Final = ""
@@ -31,7 +32,10 @@ def _holes(code: str, variant: str, cycle: str, cured: str) -> Cure:
 _SECOND: Final = HEAD.replace("OP1", "OP2")
 _ARC: Final = "CIRCLE/10,5,5,0,0,1,5"
 
+_PROGRAM: Final = HEADS["mikron_600u"].format(lines="L X+10 F100")
+
 CURES: Final = (
+    Cure("CL110", "is_program", read, _PROGRAM, (), cured_by=verify("mikron_600u")),
     _said("CL130", "operation_no_end_path", HEAD, ("GOTO/10.0,0.0,5.0\n", "GOTO/10.0,0.0,5.0\nEND-OF-PATH\n")),
     _said("CL130", "operation_no_end", HEAD + "GOTO/20,0", ("GOTO/20,0", "GOTO/20,0,5\nEND-OF-PATH\n")),
     _said("CL140", "file_empty", "", ("", _CUT)),

@@ -54,6 +54,7 @@ class Cure:
     changes         what its cure changes, in text or settings
     settings        with which it is drawn
     refuses         the cure promises a refusal
+    cured_by        what the cure wants done in place of the trial; None: the same again
     """
 
     code: str
@@ -63,6 +64,7 @@ class Cure:
     changes: tuple[Change, ...]
     settings: Mapping[str, str] = field(default_factory=dict)
     refuses: bool = False
+    cured_by: Trial | None = None
 
     def faults(self, folder: Path) -> Iterator[str]:
         """What is wrong with the cure; nothing where it does what it says."""
@@ -83,7 +85,7 @@ class Cure:
                 for name in change:
                     if name not in said:
                         yield f"{self.code} {self.variant}: the cure does not name {name}: {said}"
-        after = self.trial(text, settings, folder)
+        after = (self.cured_by or self.trial)(text, settings, folder)
         if message in after.said:
             yield f"{self.code} {self.variant} is drawn still: {said}"
         if after.is_sound == self.refuses:

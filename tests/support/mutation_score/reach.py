@@ -5,6 +5,8 @@ import re
 from collections import defaultdict
 from collections.abc import Collection, Iterator
 from functools import cached_property
+from heapq import heappop, heappush
+from math import inf, log2
 from pathlib import Path
 from typing import NamedTuple
 
@@ -45,20 +47,30 @@ class Sources:
         return users
 
     def tests_of(self, file: str, line: int) -> list[str]:
-        """The tests that may run a line: those first that are fewer mentions away, quick, and of its name."""
+        """The tests that may run a line: those first that few and rare names lead to, quick, and of its name."""
         *folders, stem = file.removesuffix(".py").split("/")[2:]
         near = ["/".join(("tests", *folders[: k + 1], "")) for k in range(len(folders))]
-        found, known, distance = dict[str, tuple[int, str]](), set[str](), 0
-        reached = [next(part for part in self.parts[file] if line <= part.last)]
-        while reached:
-            for test in (part.test for part in reached if part.test):
-                alike = sum(map(test.startswith, near)) + sum(word.rstrip("s") in test for word in stem.split("_"))
-                found.setdefault(test, (distance + 3 * test.startswith(self.slow) - 2 * alike, test))
-            names = {name for part in reached if not part.test for name in part.names} - known
-            known |= names
-            reached = [part for name in names for part in self.users.get(name, ())]
-            distance += 1
-        return sorted(found, key=lambda test: found[test])
+        found, known = dict[str, float](), set[str]()
+        names = [(0.0, name) for name in next(part for part in self.parts[file] if line <= part.last).names]
+        while names:
+            way, name = heappop(names)
+            if name in known:
+                continue
+            known.add(name)
+            users = self.users.get(name, ())
+            way += log2(1.0 + len(users))
+            for part in users:
+                if part.test:
+                    found[part.test] = min(way, found.get(part.test, inf))
+                else:
+                    for each in part.names - known:
+                        heappush(names, (way, each))
+
+        def rank(test: str) -> tuple[float, str]:
+            alike = sum(map(test.startswith, near)) + sum(word.rstrip("s") in test for word in stem.split("_"))
+            return found[test] + 8.0 * test.startswith(self.slow) - 3.0 * alike, test
+
+        return sorted(found, key=rank)
 
 
 def _parts_of(file: str, tree: ast.Module | ast.ClassDef, known_as: frozenset[str], prefix: str) -> Iterator[Part]:
