@@ -29,7 +29,7 @@ class Outcome:
         return found | {(code, "") for code, _ in found}
 
     def cures(self, code: str, variant: str) -> list[str]:
-        """The cures of a message, as they were said, or as its explanation has them; and the settings that it is with."""
+        """The cures of a message, as said or as its explanation has them; and the settings that it is with."""
         if not variant:
             return [explanations()[code].cure]
         return [
