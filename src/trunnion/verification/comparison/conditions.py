@@ -67,13 +67,14 @@ def _of_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
 
 def _after_stops(run: Run) -> Iterator[tuple[int, Wording]]:
     """Yield words of coolant and spindle after a stop: many machines turn them off there, and they are off without."""
-    stopped = -1
+    stopped = started = -1
     for event in run.events:
         if event.kind in _STOPS:
             stopped = event.before_row
         elif event.kind == "coolant" and event.before_row == stopped:
             yield stopped, Wording("comparison", "coolant_after_stop", word=event_word(event.value))
-        elif event.kind == "spindle" and event.value in TURNING and event.before_row == stopped:
+        elif event.kind == "spindle" and event.value in TURNING and event.before_row == stopped != started:
+            started = stopped  # once: a program may say it again
             yield stopped, Wording("comparison", "spindle_after_stop", word=event_word(event.value))
 
 

@@ -25,8 +25,9 @@ _WORDS: Final = (
 
 _PLANES: Final = ("tilt", "plane", "cycle800")
 
-#: Not stated yet; in machine coordinates, or while no work offset was selected.
-_NOWHERE, _IN_MACHINE = -1, 0
+#: Not stated yet; in machine coordinates; in those of the workpiece before the program has selected a work offset: a
+#: program that selects its only one later is as those that ran.
+_NOWHERE, _IN_MACHINE, _UNSELECTED = -1, 0, -2
 
 
 def first_statements(run: Run) -> Ints:
@@ -61,7 +62,9 @@ def _state(name: str, runs: tuple[Run, Run], columns: tuple[StepColumn, StepColu
         return first.at(a), second.at(b)
 
     def counts(a: Ints, b: Ints) -> Flags:
-        return np.asarray(offsets[0].at(a) == offsets[1].at(b))  # another offset is a difference of its own
+        # Another offset is a difference of its own.
+        same = np.asarray(offsets[0].at(a) == offsets[1].at(b))
+        return same & (first.at(a) != _UNSELECTED) & (second.at(b) != _UNSELECTED)
 
     return ComparedState(counts, lambda a, b: np.equal(*values(a, b)), values, said)
 
@@ -76,6 +79,7 @@ def _column(run: Run, word: int) -> StepColumn:
     """Return where an axis has been stated last in each row, as a work offset or one of the two values above."""
     rows = np.setdiff1d(np.flatnonzero(run.programmed & np.uint8(word)), _rows_of_planes(run))
     offsets = run.state.work_offset.at(rows).astype(np.int64)
+    offsets[offsets == 0] = _UNSELECTED
     codes = np.where(run.state.machine_frame.at(rows), _IN_MACHINE, offsets)
     changes = np.flatnonzero(np.diff(codes, prepend=_NOWHERE))
     steps = {0: _NOWHERE, **dict(zip(rows[changes].tolist(), codes[changes].tolist(), strict=True))}
