@@ -5,7 +5,7 @@ python3 make.py simulate   set up, cut a part with its three programs, and draw 
 python3 make.py impeller   set up, and make an impeller from measured points: paths, programs, proof, and the part
 python3 make.py test       set up, and run what judges a change: tests, style, types, the site
 python3 make.py nightly    the rest: the whole matrix, long cases, all draws, fuzzing, archives; a number is the seed
-python3 make.py quick      style, types, import contracts, the fast tests and the site, where the change reaches them
+python3 make.py quick      a minute and a half of it: style, types, contracts, the tests nearest to the change
 python3 make.py docs       build the documentation site in build/site
 python3 make.py package    build the wheel and the sdist in dist, and try both in environments of their own
 python3 make.py run ...    run a program of the environment, such as pytest
@@ -107,7 +107,7 @@ def simulate() -> None:
     programs = [SAMPLE.with_name(f"{name}.expected.mpf") for name in CUT]
     tools = ("--tool", "1=flat:16,length=75,flutes=40", "--tool", "2=ball:10,length=75,flutes=40")
     stock = ("--stock", "cylinder:108,30,-30", "--cell", "0.5", "--save-stock", "stock.png")
-    # 1: a rapid goes through this stock, as it is told.
+    print("One finding is to be expected: a rapid goes through this stock, which is a plain cylinder.", flush=True)
     run("trunnion", "simulate", *programs, "--machine", "yl569", *stock, *tools, good=(0, 1))
     print(f"the finished stock is drawn in {HERE / 'stock.png'}; --save-stock stock.stl saves it as a solid")
 
@@ -132,7 +132,7 @@ def check() -> None:
 
 
 def quick() -> None:
-    """Run what a commit needs: the fast tests that the change reaches, or all where nothing can be said of it."""
+    """Run what a commit needs: the tests nearest to the change, as many as a minute and a half has room for."""
     set_up(".[test,docs]")
     command = [str(program_of(HOME, "python")), "-m", "tests.support.reached"]
     environment = {**os.environ, **KEEPING}
@@ -140,8 +140,8 @@ def quick() -> None:
     reached = done.stdout.split()
     tests = [each for each in reached if each != "docs"]
     with ThreadPoolExecutor(1) as beside:
-        others = beside.submit(in_turn, check, *([] if tests and "docs" not in reached else [site]))
-        run(*TESTS, *(tests or ("-m", "not slow")))
+        others = beside.submit(in_turn, check, *([site] if "docs" in reached else []))
+        run(*TESTS, *tests)
         others.result()
 
 

@@ -2,13 +2,14 @@
 
 import os
 import tempfile
-from pathlib import Path
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.support.durations import PROCESSOR_SECONDS, SLOW, kept
 from tests.support.examples import DRAWS
-from tests.support.slow import is_slow
+from tests.support.locations import TESTS
 
 # Kernels compile at their first call, and machines are busy: no test depends on time. What a random machine makes
 # impossible is left out by ``assume``, and some draws of machines leave much out. In CI a change is judged by the same
@@ -22,6 +23,8 @@ for _name, _draws in DRAWS.items():
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
     )
 settings.load_profile("trunnion")
+
+BEGUN = pytest.StashKey[float]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -38,24 +41,37 @@ def pytest_configure(config: pytest.Config) -> None:
         settings.load_profile("nightly")
 
 
-def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Do not even import the slow ones where they are left out."""
-    return True if config.getoption("markexpr") == "not slow" and is_slow(collection_path) else None
-
-
 @pytest.hookimpl(trylast=True)  # Hypothesis has marked its own
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the slow ones, let them begin first, and part those of nightly from the others."""
-    slow = {path for path in {item.path for item in items} if is_slow(path)}
-    for item in items:
-        if item.path in slow:
-            item.add_marker(pytest.mark.slow)
+    """Let the slow ones begin first, and part those of nightly from the others."""
+    slow = {TESTS / file for file, seconds in kept().items() if seconds > SLOW}
     items.sort(key=lambda item: item.path not in slow)  # a long one that began last would have one worker wait
     nightly = config.getoption("nightly")
     rest = [item for item in items if not is_wanted(item, nightly=nightly)]
     if rest:
         config.hook.pytest_deselected(items=rest)
         items[:] = [item for item in items if is_wanted(item, nightly=nightly)]
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
+    """Begin to count the processor time of a test."""
+    item.stash[BEGUN] = processor_seconds()
+    return (yield)
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
+    """Have ``--junitxml`` say what processor time a test took, with the programs that it started and awaited."""
+    try:
+        return (yield)
+    finally:
+        item.user_properties.append((PROCESSOR_SECONDS, f"{processor_seconds() - item.stash[BEGUN]:.3f}"))
+
+
+def processor_seconds() -> float:
+    """Processor time of this process and of those that it started and awaited."""
+    return sum(os.times()[:4])
 
 
 def is_wanted(item: pytest.Item, *, nightly: bool) -> bool:

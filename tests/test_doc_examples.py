@@ -50,7 +50,7 @@ def test_the_python_of_a_page_runs(
     assert shown or page != "README.md"
 
 
-@pytest.mark.parametrize("asked", ["--plot placing.svg", "--goal collisions"])
+@pytest.mark.parametrize("asked", ["--plot placing.svg", pytest.param("--goal collisions", marks=pytest.mark.nightly)])
 def test_the_samples_of_placing_are_what_is_printed(
     asked: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

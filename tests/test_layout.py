@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tests.support.locations import ROOT, TESTS
-from tests.support.slow import SLOW
 
 SOURCES = ROOT / "src" / "trunnion"
 
@@ -41,10 +40,6 @@ def test_each_folder_tests_a_part_of_the_sources_of_its_name() -> None:
 
 def test_support_has_no_tests() -> None:
     assert not list((TESTS / "support").rglob("test_*.py"))
-
-
-def test_what_is_marked_slow_exists() -> None:
-    assert [name for name in SLOW if not (TESTS / name).exists()] == []
 
 
 def test_modules_and_folders_have_one_subject() -> None:

@@ -8,8 +8,9 @@ from pathlib import Path
 import make
 import pytest
 
-from tests.support.locations import ROOT
-from tests.support.reached import files_of, import_graph, reached_tests, reaches_site
+from tests.support import durations
+from tests.support.locations import ROOT, TESTS
+from tests.support.reached import all_tests, chosen, import_graph, reached_tests, reaches_site
 
 SOURCE = (ROOT / "make.py").read_text(encoding="utf-8")
 
@@ -50,7 +51,7 @@ def test_what_its_programs_import_is_compiled_once_whatever_the_shell_says(monke
 def test_a_change_reaches_the_tests_that_import_it_and_belong_to_a_package_that_does() -> None:
     graph = import_graph()
 
-    def reached(*files: str) -> set[str] | None:
+    def reached(*files: str) -> dict[str, int] | None:
         return reached_tests(files, graph)
 
     of_page, of_words = reached("src/trunnion/viewer/live.py"), reached("src/trunnion/readers/families/fidia/words.py")
@@ -58,23 +59,63 @@ def test_a_change_reaches_the_tests_that_import_it_and_belong_to_a_package_that_
     assert of_words is not None
     assert "tests.viewer.test_live" in of_page
     assert not {name for name in of_page if name.startswith(("tests.output", "tests.readers"))}
-    assert {"tests.readers.families.fidia.test_programs", "tests.conversion.test_pairs"} <= of_words
-    assert reached("tests/support/batch_work.py") == {
+    assert {"tests.readers.families.fidia.test_programs", "tests.conversion.test_pairs"} <= of_words.keys()
+    assert (reached("tests/support/batch_work.py") or {}).keys() == {
         name for name in graph.find_downstream_modules("tests.support.batch_work") if ".test_" in name
     }
     assert "tests.readers.test_documentation" in (reached("docs/reader.md") or ())
     assert reached("src/trunnion/machines/library/yl569.toml")
+    verifier = reached("src/trunnion/verification/verifier.py") or {}
+    assert verifier["tests.verification.test_checks"] < verifier["tests.cli.test_verify"]
     unnamed = "x" * 20  # a file that a test names reaches that test
     assert reached(f"{unnamed}.bin") is None
-    assert reached(f"docs/{unnamed}.md") == set()
+    assert reached(f"docs/{unnamed}.md") == {}
 
 
-def test_slow_tests_run_with_a_change_of_themselves_or_their_namesake_only() -> None:
-    slow, quick = "tests.matrix.test_matrix", "tests.cl.test_errors"
-    assert set(files_of([slow, quick], [])) - set(files_of([], [])) == {"tests/cl/test_errors.py"}
-    assert "tests/matrix/test_matrix.py" in files_of([slow], ["tests/matrix/test_matrix.py"])
-    assert "tests/cli/test_place.py" in files_of(["tests.cli.test_place"], ["src/trunnion/cli/place.py"])
-    assert "tests/cli/test_place.py" not in files_of(["tests.cli.test_place"], ["src/trunnion/cli/post.py"])
+def test_the_nearest_run_and_of_them_the_quickest_while_there_is_time() -> None:
+    tests = {"tests.cl.test_far": 5, "tests.cli.test_near": 2, "tests.cli.test_long": 2, "tests.cl.test_own": 3}
+    seconds = {"cli/test_near.py": 4.0, "cli/test_long.py": 20.0, "cl/test_far.py": 3.0, "cl/test_own.py": 5.0}
+
+    def of_folders(files: list[str]) -> list[str]:
+        return [file.removeprefix("tests/") for file in files if file.count("/") > 1]
+
+    def run_with(budget: float, *changed: str) -> tuple[list[str], list[str]]:
+        of_whole = durations.UNLISTED * len(list(TESTS.glob("test_*.py")))
+        run, out = chosen(tests, changed, of_whole + budget, seconds)
+        return of_folders(run), of_folders(out)
+
+    near, long, own, far = "cli/test_near.py", "cli/test_long.py", "cl/test_own.py", "cl/test_far.py"
+    assert run_with(40.0) == ([near, long, own, far], [])
+    assert run_with(12.5) == ([near, own, far], [long])
+    assert run_with(1.0) == ([], [near, long, own, far])
+    assert run_with(1.0, "src/trunnion/cl/reader.py") == ([], [near, own, long, far])  # those of cl are nearer
+
+
+def test_what_changed_and_its_namesake_run_whatever_they_take() -> None:
+    tests, seconds = {"tests.cli.test_place": 1, "tests.matrix.test_matrix": 4}, {"cli/test_place.py": 99.0}
+    for changed in ("src/trunnion/cli/place.py", "tests/cli/test_place.py"):
+        assert "tests/cli/test_place.py" in chosen(tests, [changed], 0.0, seconds)[0]
+    assert "tests/cli/test_place.py" not in chosen(tests, ["src/trunnion/cli/post.py"], 98.0, seconds)[0]
+
+
+def test_where_nothing_can_be_said_all_tests_are_reached() -> None:
+    files = {path.relative_to(ROOT).as_posix() for path in TESTS.rglob("test_*.py")}
+    assert set(chosen(all_tests(), [], 1e6, {})[0]) == files
+
+
+def test_durations_are_of_files_that_exist_and_come_from_reports(tmp_path: Path) -> None:
+    assert [file for file in durations.kept() if not (TESTS / file).exists()] == []
+    report = tmp_path / "report.xml"
+    report.write_text(
+        '<testsuites><testsuite><testcase classname="tests.cl.test_scan"><properties>'
+        '<property name="processor_seconds" value="1.25"/></properties></testcase>'
+        '<testcase classname="tests.cl.test_scan"><properties><property name="processor_seconds" value="1.5"/>'
+        "</properties></testcase><testcase classname='tests.test_docs'/></testsuite></testsuites>",
+        encoding="utf-8",
+    )
+    found = durations.measured([report])
+    assert found == {"cl/test_scan.py": 2.75, "test_docs.py": 0.0}
+    assert durations.listing(found).splitlines()[1:] == ['"cl/test_scan.py" = 3']
 
 
 def test_the_site_is_built_for_pages_and_for_docstrings_that_it_shows() -> None:

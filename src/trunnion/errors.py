@@ -9,9 +9,11 @@ CI systems jump to the line. ``trunnion.explanations`` knows what each code mean
 """
 
 import stat
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import chain
 from pathlib import Path
 
 from trunnion.messages import LIBRARY, Wording, Words
@@ -125,6 +127,41 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
         same[0] if len(same) == 1 else replace(same[0], wording=same[0].wording.within("repeated", count=len(same)))
         for same in alike.values()
     )
+
+
+def kind_of(wording: Wording) -> tuple[str, ...]:
+    """Return of what kind a message is: its code and variant, with those of the wordings that are filled in."""
+    parts = (kind_of(value) for _, value in wording.parameters if isinstance(value, Wording))
+    return tuple(chain((wording.code, wording.variant), *parts))
+
+
+def first_of_kinds(problems: Sequence[Problem], most: int) -> tuple[list[Problem], int]:
+    """Where more than ``most`` lines have errors, keep the first error of each kind, with the number of its kind.
+
+    Errors of a file as a whole, and all that is no error, stay as they are. Kinds are those of one file (``kind_of``).
+
+    Returns the problems, with ``most`` kinds of errors at most, and the number of errors of the kinds left out.
+    """
+    in_lines = [problem for problem in problems if problem.severity is Severity.ERROR and problem.line > 0]
+    if len(in_lines) <= most:
+        return list(problems), 0
+    firsts, counts = dict[tuple[str, tuple[str, ...]], Problem](), Counter[tuple[str, tuple[str, ...]]]()
+    for problem in in_lines:
+        kind = problem.file, kind_of(problem.wording)
+        firsts.setdefault(kind, problem)
+        counts[kind] += 1
+    named = list(firsts.items())[:most]
+    said = {
+        id(first): first if counts[kind] == 1 else replace(first, wording=_first_of(first.wording, counts[kind]))
+        for kind, first in named
+    }
+    grouped = set(map(id, in_lines))
+    found = [said.get(id(each), each) for each in problems if id(each) in said or id(each) not in grouped]
+    return found, len(in_lines) - sum(counts[kind] for kind, _ in named)
+
+
+def _first_of(wording: Wording, count: int) -> Wording:
+    return wording.within("first_of_kind", count=count)
 
 
 def argument_problem(name: str, wording: Wording, severity: Severity = Severity.ERROR) -> Problem:

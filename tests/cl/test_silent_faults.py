@@ -243,3 +243,19 @@ def test_zeros_for_letters_are_a_damaged_word(body: Body) -> None:
     (event,) = body("GOTO/0,0,0", "G0T0/5,5,5").events
     assert isinstance(event, UnknownStatement)
     assert (event.acts, event.what) == (True, "G0T0 may be a damaged GOTO")
+
+
+@pytest.mark.parametrize(
+    ("unit", "feed", "told"),
+    [
+        ("MM", "FEDRAT/800,IPM", "800 IPM counts inches or feet, and the file is in millimetres (UNITS in line 2)"),
+        ("MM", "FEDRAT/2,IPR", "the feed becomes 50.8 mm"),
+        ("INCHES", "FEDRAT/200,MMPM", "200 MMPM counts millimetres, and the file is in inches (UNITS in line 2)"),
+        ("MM", "FEDRAT/200,MMPM", ""),
+        ("INCHES", "FEDRAT/8,IPM", ""),
+    ],
+)
+def test_a_feed_in_a_unit_that_the_file_does_not_have_is_told_once(read: Read, unit: str, feed: str, told: str) -> None:
+    lines = ["PARTNO A", f"UNITS/{unit}", "LOADTL/1", "RAPID", "GOTO/0,0,50", feed, "GOTO/0,0,-2", feed, "GOTO/1,0,-2"]
+    remarks = [each for each in read("\n".join([*lines, "FINI"]) + "\n").remarks if each.code == "CL716"]
+    assert [(each.line, told in each.what) for each in remarks] == ([(6, True)] if told else [])

@@ -25,6 +25,8 @@ TYPED = {
     ("post", "part.cls", "--machine", "dmu6"): "dmu65",
     ("post", "par"): "part.cls",
     ("schema", "proj"): "project",
+    ("explain", "CL11"): "CL110",
+    ("verify", "--set", "radius_reg"): "radius_register=",
 }
 
 #: What parses a script without running it.
@@ -55,6 +57,8 @@ def test_bash_completes_commands_options_words_and_files(tmp_path: Path) -> None
     assert completed("post", "par", folder=tmp_path) == ["part.cls"]
     assert completed("schema", "proj", folder=tmp_path) == ["project"]
     assert completed("post", "--turn", "", folder=tmp_path) == []
+    assert completed("explain", "CL11", folder=tmp_path) == ["CL110"]
+    assert completed("verify", "--set", "radius_reg", folder=tmp_path) == ["radius_register="]
 
 
 @pytest.mark.parametrize("shell", SCRIPTS)

@@ -13,18 +13,20 @@ from trunnion.machines import shipped_machines
 
 def test_the_list_names_every_shipped_machine(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["machines"]) == 0
-    lines = capfd.readouterr().out.splitlines()
+    heads, *lines = capfd.readouterr().out.splitlines()
+    assert re.split(r" {2,}", heads)[:3] == ["machine", "part to tool", "rotary axes"]
     listed = [line.split()[0] for line in lines]
     assert listed == shipped_machines()
     assert {"yl569", "ucp800", "hs664rt", "dmu65", "mikron_600u"} < set(listed)
     told = {line.split()[0]: re.split(r" {2,}", line)[1:] for line in lines}
     assert told["dmu65"] == [
-        "table/table", "A -90 to 0°, C endless", "X 735, Y 650, Z 560 mm", "Heidenhain TNC 640", "DMG DMU 65",
+        "C A bed X Y Z", "table/table", "A -90 to 0°, C endless",
+        "X 735, Y 650, Z 560 mm", "Heidenhain TNC 640", "DMG DMU 65",
     ]  # fmt: skip
-    assert told["generic_head_head_ca"][0] == "head/head"
-    assert told["yl569"][:2] == ["table/table", "B -11 to 100°, C endless"]
-    assert told["generic_head_table_bc"][0] == "head/table"
-    assert told["hs664rt"][2] == "travel not stated"
+    assert told["generic_head_head_ca"][:2] == ["X bed Y Z C A", "head/head"]
+    assert told["yl569"][1:3] == ["table/table", "B -11 to 100°, C endless"]
+    assert told["generic_head_table_bc"][1] == "head/table"
+    assert told["hs664rt"][3] == "travel not stated"
 
 
 def test_a_definition_is_printed_as_it_is(capfd: pytest.CaptureFixture[str]) -> None:

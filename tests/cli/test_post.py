@@ -255,7 +255,10 @@ def test_an_nc_program_is_told_once(tmp_path: Path, capfd: pytest.CaptureFixture
     assert main(["post", str(program), "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]) == 2
     said = capfd.readouterr().err.splitlines()
     assert len(said) == 2
-    assert "if this is an NC program, verify, diff, convert, fit and place take it, with its machine" in said[0]
+    assert (
+        "if this is an NC program, convert turns it into a CL file or posts it for another machine, and verify proves"
+        in said[0]
+    )
     assert "begins with a block number, as in an NC program" in said[1]
 
 

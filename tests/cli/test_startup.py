@@ -36,6 +36,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert set(done.stdout.split()) == {
         "trunnion.cli",
+        "trunnion.cli.columns",
         "trunnion.cli.command_line",
         "trunnion.cli.command_line.help_texts",
         "trunnion.cli.command_line.parser",
@@ -86,6 +87,7 @@ def test_the_version_is_said_without_the_commands(tmp_path: Path) -> None:
     assert not imported & {"argparse", "hashlib", "json", "shutil", "tempfile", "numpy"}
     assert {name for name in imported if name.startswith("trunnion.")} == {
         "trunnion.cli",
+        "trunnion.cli.columns",
         "trunnion.cli.printing",
         "trunnion.cli.process",
         "trunnion.cli.terminal_text",

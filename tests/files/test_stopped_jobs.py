@@ -50,7 +50,11 @@ def check_whole(folder: Path) -> bool:
 
 @pytest.mark.parametrize(
     ("how", "after"),
-    [(raise_ctrl_c, False), (raise_ctrl_c, True), (lambda: signal.raise_signal(signal.SIGINT), True)],
+    [
+        (raise_ctrl_c, False),
+        pytest.param(raise_ctrl_c, True, marks=pytest.mark.nightly),
+        (lambda: signal.raise_signal(signal.SIGINT), True),
+    ],
 )
 def test_ctrl_c_at_any_operation_leaves_a_whole_job(how: Callable[[], Any], after: bool, tmp_path: Path) -> None:
     outcomes, notes = [], set()
@@ -77,8 +81,9 @@ def test_ctrl_c_at_any_operation_leaves_a_whole_job(how: Callable[[], Any], afte
     assert (True, "no file was replaced") not in notes
 
 
+# Before an operation is after the one before it, but for what is written between them.
 @needs_fork
-@pytest.mark.parametrize("after", [False, True])
+@pytest.mark.parametrize("after", [pytest.param(False, marks=pytest.mark.nightly), True])
 def test_a_job_killed_at_any_operation_is_finished_or_rolled_back_by_the_next(after: bool, tmp_path: Path) -> None:
     outcomes, mixed = [], 0
     for number in count(1):

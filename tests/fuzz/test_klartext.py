@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.support.examples import examples
+from tests.support.examples import examples, seeds_of
 from tests.support.fuzz import klartext
 from tests.support.fuzz.mangle import mangle
 from trunnion.errors import InputError
@@ -51,7 +51,7 @@ def test_random_bytes_are_run_or_refused(folder: Path, data: bytes) -> None:
     klartext.judge(data, folder, "dmu65")
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds_of(20))
 def test_mangled_programs_are_run_or_refused(folder: Path, seed: int) -> None:
     rng = random.Random(seed)
     for _ in range(20):

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.support.examples import examples
+from tests.support.examples import examples, seeds_of
 from tests.support.fuzz import oracle, pieces, seeds
 from tests.support.fuzz.mangle import mangle
 from trunnion.errors import InputError
@@ -53,7 +53,7 @@ def test_random_letters_of_the_language_are_run_or_refused(folder: Path, text: s
     oracle.judge_program(text.encode(), folder)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds_of(20))
 def test_mangled_programs_are_run_or_refused(folder: Path, seed: int) -> None:
     rng = random.Random(seed)
     for _ in range(20):

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.controls.vocabulary import PROGRAM_CHOICES
 from trunnion.jobs.inputs.control_settings import written_control
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.options.words import PROOF_SETTINGS
 
 _POCKET = """TOOL PATH/POCKET,TOOL,D10
@@ -62,8 +62,8 @@ def test_settings_without_which_the_proof_is_the_same_are_refused(tmp_path: Path
         trunnion.verify(program, machine="haas_umc750", settings={"edge_from": "adjust"})
 
 
-def test_settings_to_repeat_are_settings_of_controls() -> None:
+def test_settings_to_repeat_are_settings_of_posts() -> None:
     names = ("matsuura_mx330", "haas_umc750", "yl569", "dmu65", "hs664rt")
     controls = [written_control(trunnion.load_machine(name)) for name in names]
     known = {key for control in controls if control for key in control.settings}
-    assert set(PROOF_SETTINGS) <= known | set(PROGRAM_CHOICES)
+    assert set(PROOF_SETTINGS) <= known | set(RUN_SETTINGS)

@@ -145,3 +145,42 @@ def test_turns_to_another_plane_are_not_skipped(
     path.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
     assert (asked, main(["post", str(path), "--machine", machine, "--output", str(out)])) == (2, 0)
     assert "turns to another plane between blocks that may be skipped" in capsys.readouterr().err
+
+
+#: One hole of several may be skipped.
+_ONE_HOLE = """\
+TOOL PATH/DRILLS,TOOL,D8
+TLDATA/MILL,8,0,60,0,0
+LOADTL/1
+SPINDL/RPM,2000,CLW
+RAPID
+GOTO/0,0,50,0,{axis}
+CYCLE/DRILL,RAPTO,3,FEDTO,-10,RTRCTO,20,MMPM,150
+GOTO/0,0,0
+OPSKIP/ON
+GOTO/20,0,0
+OPSKIP/OFF
+GOTO/40,0,0
+CYCLE/OFF
+RAPID
+GOTO/60,0,80
+END-OF-PATH
+"""
+
+
+@pytest.mark.parametrize("axis", ["0,1", "-0.5,0.8660254"])
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "dmu65", "yl569", "hs664rt", "xyzac_trt"])
+def test_a_hole_by_motion_that_may_be_skipped_passes_with_the_way_to_it(
+    machine: str, axis: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cl, program = tmp_path / "skip.cls", tmp_path / "skip.nc"
+    cl.write_text(_ONE_HOLE.format(axis=axis), encoding="utf-8")
+    assert main(["post", str(cl), "--machine", machine, "--set", "mode=tcp", "--output", str(program)]) == 0
+    # The way to the next hole has no sign of its own.
+    blocks = program.read_text(encoding="utf-8").splitlines()
+    last = max(k for k, block in enumerate(blocks) if block.startswith("/"))
+    blocks[last + 1] = "/" + blocks[last + 1]
+    program.write_text("\n".join(blocks) + "\n", encoding="utf-8")
+    capsys.readouterr()
+    assert main(["verify", str(program), "--machine", machine, "--cl", str(cl)]) == 1
+    assert "may be skipped (/), and the CL file has no OPSKIP there" in capsys.readouterr().out

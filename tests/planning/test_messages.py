@@ -69,7 +69,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
         slides(roomy("generic_head_head_ca"), X=(-20.0, 20.0)),
         operation_of(moves_of(np.array([[0.0, 0.0, 0.0]]), directions(np.zeros(1), np.zeros(1)))), None,
         "part.cls:10: error: axis X would go to 37.0+, above its limit 20 mm",
-        r"X exceeds its limit by 17.000 mm",
+        r"bring X back by 17.000 mm: shift the workpiece zero",
     ),
     "more than a slide's travel": (
         BC, operation_of(moves_of(np.array([[0.0] * 3, [9000.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0]] * 2))), None,
@@ -102,7 +102,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
         slides(roomy("generic_head_head_ca"), Y=(-170.0, 170.0)),
         operation_of(two_points((40.0, 60.0), (40.0, 120.0))), OFF,
         "part.cls:11: error: on the way to this point axis Y would go to 17\\d.\\d+, above its limit 170 mm",
-        "Y exceeds its limit by ",
+        "bring Y back by ",
     ),
     "a step across the pole": (
         roomy("generic_head_head_ca"), operation_of(two_points((0.3, 0.0), (0.3, 150.0))),

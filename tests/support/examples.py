@@ -1,5 +1,7 @@
 """How many draws a property has, and how many faults a sweep: all in ``make.py nightly``, a third elsewhere."""
 
+from typing import Any
+
 import pytest
 from hypothesis import settings
 
@@ -21,3 +23,8 @@ def examples(count: int) -> int:
 def part_of(count: int, percent: int) -> int:
     """A part of some draws."""
     return max(min(count, FEWEST), round(0.01 * count * percent))
+
+
+def seeds_of(count: int) -> list[Any]:
+    """Parameters 0, 1, …: the first third of them for ``make.py test``, the rest for nightly."""
+    return [pytest.param(seed, marks=[pytest.mark.nightly] * (3 * seed >= count)) for seed in range(count)]

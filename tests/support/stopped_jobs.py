@@ -3,8 +3,10 @@
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from itertools import count
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Final, NoReturn
 
 import pytest
@@ -109,10 +111,18 @@ def in_a_process_that_dies(work: Callable[[], Any], number: int, *, after: bool)
 
 def stopped_between_moves(folder: Path) -> None:
     """Leave a job that was killed when its first file was in its place."""
-    for number in count(1):
-        write_job(folder, b"old")
-        in_a_process_that_dies(lambda: write_job(folder, b"new", "MORE.SPF"), number, after=True)
-        if (folder / "nc" / "SUB.SPF").read_bytes() == b"new":
-            assert (folder / "nc" / "one.mpf").read_bytes() == b"old"
-            return
-        settle(folder)
+    assert _killed_at(folder, _number_between_moves())
+    assert (folder / "nc" / "one.mpf").read_bytes() == b"old"
+
+
+def _killed_at(folder: Path, number: int) -> bool:
+    """Kill a job after an operation; whether its first file is in its place then."""
+    in_a_process_that_dies(lambda: write_job(folder, b"new", "MORE.SPF"), number, after=True)
+    return (folder / "nc" / "SUB.SPF").read_bytes() == b"new"
+
+
+@cache
+def _number_between_moves() -> int:
+    """The operation that puts the first file of a job into its place: the same one each time."""
+    with TemporaryDirectory() as place:
+        return next(each for each in count(1) if _killed_at(old_job(Path(place, str(each))), each))

@@ -36,7 +36,7 @@ def test_each_motion_is_counted_or_left_out_with_a_reason(tmp_path: Path) -> Non
         "rpm": (4, [still]),
     }
     assert all(each.motions == len(found.run) == 9 for each in seen.values())
-    assert "checked 5 of 9 motions; not line 2 and 3 others, the first: it is a rapid" in checks["speed"].told
+    assert "checked 5 of 9 motions; 4 are left out, the first line 2: it is a rapid" in checks["speed"].told
 
 
 def test_a_change_of_speed_needs_two_motions_at_feed(tmp_path: Path) -> None:

@@ -51,6 +51,12 @@ def few_rows_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(positioning_moves, "CHUNK", 4)
 
 
+@pytest.fixture
+def no_row_stands_still(monkeypatch: pytest.MonkeyPatch) -> None:
+    """These runs have words, and no positions."""
+    monkeypatch.setattr(positioning_moves, "repeats_position", lambda _, rows: np.zeros(len(rows), np.bool_))
+
+
 @given(rows=ROWS, first=st.integers(0, 20), count=st.integers(0, 20))
 def test_the_first_position_in_workpiece_coordinates(
     rows: list[tuple[int, bool, bool, bool]], first: int, count: int
@@ -60,6 +66,7 @@ def test_the_first_position_in_workpiece_coordinates(
     assert first_workpiece_position(run_of(rows), first, end) == (goes[0] if goes else None)
 
 
+@pytest.mark.usefixtures("no_row_stands_still")
 @given(rows=ROWS)
 def test_an_approach_goes_across_at_rapid_and_down_next(rows: list[tuple[int, bool, bool, bool]]) -> None:
     after_frame = {row for row in range(1, len(rows)) if rows[row - 1][2] and not rows[row][2]}

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from trunnion.errors import InputError, Problem, Severity, warning
+from trunnion.errors import InputError, Problem, Severity, kind_of, warning
 from trunnion.messages import Wording
 
 #: More problems than this are counted, not listed.
@@ -18,13 +18,16 @@ class StatementError(Exception):
 
 
 class Diagnostics:
-    """Errors and remarks of one file: at most ``MAX_LISTED`` of each, and the number of the others."""
+    """Errors and remarks of one file: at most ``MAX_LISTED`` of each, the first of each further kind, and the number of
+    the others.
+    """
 
     def __init__(self, file: str) -> None:
         self.file = file
         self._lists: dict[Severity, list[Problem]] = {severity: [] for severity in Severity}
         self._more = dict.fromkeys(Severity, 0)
         self._repeated: dict[tuple[str, str], int] = {}
+        self._kinds = set[tuple[str, ...]]()
 
     def error(self, line: int, wording: Wording) -> None:
         """Note a problem that makes the file unusable."""
@@ -66,9 +69,10 @@ class Diagnostics:
         return self._listed(Severity.WARNING)
 
     def _add(self, problem: Problem) -> None:
-        listed = self._lists[problem.severity]
-        if len(listed) < MAX_LISTED:
+        listed, kind = self._lists[problem.severity], (problem.severity, *kind_of(problem.wording))
+        if len(listed) < MAX_LISTED or kind not in self._kinds:
             listed.append(problem)
+            self._kinds.add(kind)
         else:
             self._more[problem.severity] += 1
 

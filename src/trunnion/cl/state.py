@@ -220,12 +220,22 @@ class ReaderState:
             raise StatementError(Wording("CL430", "coordinate_system_points"))
         self.system = numbers
 
-    def note_feed_unit(self, word: str) -> None:
-        """Note the first line with a feed in mm, and in inches: they give the unit of a file without UNITS."""
-        if FEED_UNITS[word][0] == 1.0:
+    def note_feed_unit(self, word: str, feed: float) -> None:
+        """Note the first line with a feed in mm, and in inches: they give the unit of a file without UNITS.
+
+        Where UNITS stands, the first feed of the other unit is a remark: ``word`` may be a slip of the CAM system.
+        """
+        factor = FEED_UNITS[word][0]
+        is_metric = factor == 1.0
+        is_first = not (self.first_mm_feed if is_metric else self.first_inch_feed)
+        if is_metric:
             self.first_mm_feed = self.first_mm_feed or self.line
         else:
             self.first_inch_feed = self.first_inch_feed or self.line
+        if self.length_unit is not None and is_first and is_metric is not (self.length_unit[0] == 1.0):
+            variant = "metric_in_inch_file" if is_metric else "inch_in_metric_file"
+            said = {"word": word, "feed": feed, "value": feed * factor, "line": self.length_unit[1]}
+            self.diagnostics.remark(self.line, Wording("CL716", variant, **said))
 
     def note_unknown(
         self, statement: Statement, what: str, *words: str, acts: bool = True, meant: tuple[str, ...] = ()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from trunnion.cli.printing import print_result, tell
 from trunnion.cli.results import show
-from trunnion.cli.wording import problem_line
+from trunnion.cli.wording import problem_line, problem_lines
 from trunnion.errors import InputError, RefusedError, TrunnionError
 from trunnion.jobs.job import Given
 from trunnion.jobs.post_project.cases import Case, ChangedProgram, find_cases, posted_case
@@ -58,7 +58,7 @@ def _test(path: Path, *, accept: bool, quiet: bool) -> tuple[str, int]:
 
 
 def _tell_error(case: Case, error: TrunnionError, said: Callable[[str], None]) -> tuple[str, int]:
-    tell(*map(problem_line, error.problems))
+    tell(*problem_lines(error.problems))
     is_refused = isinstance(error, RefusedError)
     what = "REFUSED: a program must not run" if is_refused else "NOT TESTED: it cannot be posted"
     said(one_line(f"{case.path}: {what}"))

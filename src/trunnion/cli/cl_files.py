@@ -8,9 +8,9 @@ from threading import Event
 from typing import BinaryIO
 
 from trunnion.cl.read import ClReading
-from trunnion.cl.watched import read_watched
 from trunnion.cli.progress import progress
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.inputs.cl_or_program import read_cl_file
 from trunnion.jobs.job import STDIN, streams
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Toolpath
@@ -74,4 +74,4 @@ def _read(file: str | BinaryIO, how: ClReading, scanning: Event) -> list[Toolpat
             yield tell
 
     path = Path(file) if isinstance(file, str) else file
-    return read_watched(path, watch, how)
+    return read_cl_file(path, watch, how)

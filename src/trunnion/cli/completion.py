@@ -1,17 +1,26 @@
-"""``trunnion completion``: what makes a shell complete commands, options and their words, from the registry."""
+"""``trunnion completion``: what makes a shell complete commands, options and their words, from the registry.
+
+The words of ``trunnion explain`` are its codes, those of ``--set`` the settings of all shipped controls.
+"""
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Final
 
 from trunnion.cli.printing import print_result
+from trunnion.explanations import explanations
+from trunnion.jobs.describe.controls import describe_controls
 from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS
 from trunnion.machines import shipped_machines
-from trunnion.options.kinds import Choice, FileIn, FileOut, Switch
+from trunnion.options.kinds import Choice, FileIn, FileOut, Setting, Switch
 from trunnion.options.option import Option
 
 #: What leads to definitions of machines, which have names too.
 _MACHINES: Final = frozenset({"machine", "machines", "definition"})
+
+#: The argument that takes codes of messages.
+_CODES: Final = "codes"
 
 
 def run(given: Given) -> int:
@@ -20,10 +29,21 @@ def run(given: Given) -> int:
     return 0
 
 
+@cache
+def _settings() -> list[str]:
+    """Return what begins a setting of any shipped control."""
+    controls = describe_controls()
+    return sorted({f"{each.name}=" for control in controls for each in (*control.settings, *control.run_settings)})
+
+
 def _words(option: Option) -> list[str]:
     """Words that an option takes, as far as they are known."""
     if isinstance(option.kind, Choice):
         return list(option.kind.words)
+    if isinstance(option.kind, Setting):
+        return _settings()
+    if option.name == _CODES:
+        return list(explanations())
     return shipped_machines() if isinstance(option.kind, FileIn) and option.kind.leads in _MACHINES else []
 
 
@@ -68,6 +88,7 @@ def _bash_lines() -> Iterator[str]:
     yield '        *) COMPREPLY=($(compgen -W "$words" -- "$word"))'
     yield '           [ -n "$files" ] && COMPREPLY+=($(compgen -f -- "$word")) ;;'
     yield "    esac"
+    yield '    case "${COMPREPLY[0]}" in *=) compopt -o nospace 2>/dev/null ;; esac'
     yield "    return 0"
     yield "}"
     yield "complete -o filenames -F _trunnion trunnion"

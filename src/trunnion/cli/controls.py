@@ -1,8 +1,10 @@
 """``trunnion controls``."""
 
+import sys
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from trunnion.cli.columns import CodeLine, table, width_of
 from trunnion.cli.results import show
 from trunnion.jobs.describe.controls import (
     ControlDescription,
@@ -34,10 +36,11 @@ def _list_entry(control: ControlDescription) -> dict[str, object]:
 
 
 def _list_lines(found: Sequence[ControlDescription]) -> Iterator[str]:
-    widths = [max(len(text) for text in texts) for texts in zip(*((c.key, c.family) for c in found), strict=True)]
-    for control in found:
-        columns = f"{control.key:<{widths[0]}}  {control.family:<{widths[1]}}  {len(control.settings):2} settings"
-        yield f"{columns}  {control.name}: {control.description}"
+    rows = (
+        (control.key, control.family, f"{len(control.settings)} settings", f"{control.name}: {control.description}")
+        for control in found
+    )
+    return table(rows, width_of(sys.stdout))
 
 
 def control_lines(control: ControlDescription) -> Iterator[str]:
@@ -52,7 +55,7 @@ def control_lines(control: ControlDescription) -> Iterator[str]:
     yield from ("", "Texts of its programs, in their order; {field} stands for a value")
     for text in control.texts:
         yield _INDENT + text.name
-        yield from (_INDENT * 2 + line for line in text.lines)
+        yield from (CodeLine(_INDENT * 2 + line) for line in text.lines)
     yield from ("", "Settings of this control: --set NAME=VALUE, or --set NAME=OPERATION:VALUE where it says so")
     yield from _setting_lines(control.settings)
     yield from ("", "Settings of every control")

@@ -1,9 +1,11 @@
 """``trunnion explain``: what a code of a message, or a check, means."""
 
+import sys
 import textwrap
 from collections.abc import Sequence
 from dataclasses import replace
 
+from trunnion.cli.columns import width_of
 from trunnion.cli.results import show
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, Problem
@@ -12,6 +14,7 @@ from trunnion.jobs.describe.codes import all_explanations
 from trunnion.jobs.describe.codes import explain as explain_code
 from trunnion.jobs.job import Given
 
+#: The most that lines have.
 _WIDTH = 100
 
 
@@ -40,7 +43,8 @@ def _asked(codes: Sequence[str]) -> tuple[list[Explanation], list[Problem]]:
 
 def _text(found: Explanation) -> str:
     parts = (found.means, f"At the machine: {found.matters}", f"What to do: {found.cure}")
-    paragraphs = (textwrap.fill(in_command_words(part), _WIDTH) for part in parts)
+    width = min(width_of(sys.stdout) or _WIDTH, _WIDTH)
+    paragraphs = (textwrap.fill(in_command_words(part), width) for part in parts)
     return "\n\n".join((f"{found.code}: {found.title}", *paragraphs))
 
 

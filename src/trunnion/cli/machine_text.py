@@ -1,22 +1,35 @@
 """What a machine's definition means, as text and as data for ``trunnion check``; and all of them, a line each."""
 
 import math
+import sys
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from trunnion.cli.columns import CodeLine, table, width_of
 from trunnion.cli.wording import in_command_words
 from trunnion.controls import load_control
 from trunnion.jobs.describe.machines import MachineDescription
 from trunnion.machines import Axis, Machine
-from trunnion.machines.jog_table import AxisJog, JogTable, RotaryPose, named_direction, number_text
+from trunnion.machines.jog_table import (
+    AxisJog,
+    JogTable,
+    RotaryPose,
+    named_direction,
+    number_text,
+    order_of_axes,
+)
 from trunnion.machines.machine import Mount, Vector
 from trunnion.results import to_data
 
 _LEGEND: Final = (
-    "Jog the machine and compare. X Y Z are the directions of the definition; the table is what carries the part,",
-    "the head what carries the tool. With Z up and -Y towards the operator what goes to +Z rises, and -Y is the front.",
+    "Jog the machine and compare. X Y Z are the directions of the definition.",
+    "The table is what carries the part, the head what carries the tool.",
+    "With Z up and -Y towards the operator, what goes to +Z rises, and -Y is the front.",
     'An axis that goes the other way at the machine wants positive = "reversed" (a rotary one), or another direction.',
 )
+
+#: Above the columns of the list of machines; the order goes from the workpiece to the tool.
+_HEADS: Final = ("machine", "part to tool", "rotary axes", "range", "travel", "control", "name")
 
 _PART: Final = {Mount.PART: "table", Mount.TOOL: "head"}
 
@@ -43,7 +56,7 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
     yield from ("", f"Texts of {found.control}; {{field}} stands for a value")
     for text in found.texts:
         yield f"  {text.name}"
-        yield from (f"    {line}" for line in text.lines)
+        yield from (CodeLine(f"    {line}") for line in text.lines)
     yield from ("", "What is assumed", *(f"  {in_command_words(each)}" for each in found.assumed))
 
 
@@ -128,11 +141,8 @@ def _point(vector: Vector) -> str:
 
 
 def machine_list(machines: Sequence[Machine]) -> Iterator[str]:
-    """Key, where the rotary axes are, what all axes reach, control and name, in columns."""
-    rows = [_cells(machine) for machine in machines]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        yield "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+    """Key, the order of the axes and where the rotary ones are, what all reach, control and name, in columns."""
+    return table([_HEADS, *map(_cells, machines)], width_of(sys.stdout))
 
 
 def _cells(machine: Machine) -> tuple[str, ...]:
@@ -142,6 +152,7 @@ def _cells(machine: Machine) -> tuple[str, ...]:
     kind = "/".join(_PART[axis.mount] for axis in reversed(rotary))
     return (
         machine.key,
+        " ".join(order_of_axes(machine)),
         kind,
         ", ".join(_turn_text(axis) for axis in reversed(rotary)),
         _slide_travel(sorted(slides, key=lambda each: each.name)),

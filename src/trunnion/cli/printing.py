@@ -1,7 +1,9 @@
 """Lines on stdout and stderr."""
 
 import sys
+from collections.abc import Iterable
 
+from trunnion.cli.columns import CodeLine, folded, width_of
 from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
@@ -11,12 +13,27 @@ from trunnion.wording import one_line, printable
 def tell(*lines: str) -> None:
     """Print lines to stderr, each as one line: names in them may come from any file."""
     for line in lines:
-        print(one_line(line), file=sys.stderr)
+        print(*folded(one_line(line), width_of(sys.stderr)), sep="\n", file=sys.stderr)
 
 
 def tell_problem(line: str) -> None:
     """Print the line of a problem to stderr, with its severity in colour where that is a terminal."""
-    print(severity_painted(one_line(line)), file=sys.stderr)
+    first, *further = folded(one_line(line), width_of(sys.stderr))
+    print(severity_painted(first), *further, sep="\n", file=sys.stderr)
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Print lines to stdout, each as one line, and on a terminal broken where it is too narrow.
+
+    Raises what ``print_result`` raises.
+    """
+    wide = width_of(sys.stdout)
+    print_result(*(piece for line in lines for piece in folded(_as_one_line(line), wide)))
+
+
+def _as_one_line(line: str) -> str:
+    """Return a text as one line, which stays code if it is."""
+    return line if isinstance(line, CodeLine) and line.isprintable() else one_line(line)
 
 
 def print_result(*lines: str, end: str = "\n") -> None:

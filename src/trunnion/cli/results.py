@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Iterable
 
-from trunnion.cli.printing import print_result, tell
+from trunnion.cli.printing import print_lines, print_result, tell
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
 from trunnion.results import as_json, to_data
-from trunnion.wording import one_line
 
 
 def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:
@@ -20,7 +19,10 @@ def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, as
     if given.json == "-":
         print_result(as_json(to_data(result())))
         return
-    (tell if aside else print_result)(*map(one_line, lines))
+    if aside:
+        tell(*lines)
+    else:
+        print_lines(lines)
     if given.json is not None:
         with atomic_file(given.json, inputs=given.read) as sink:
             sink.write((as_json(to_data(result())) + "\n").encode())

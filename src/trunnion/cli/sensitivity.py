@@ -1,8 +1,11 @@
 """``trunnion sensitivity``: which number of a machine's geometry a program depends on."""
 
+import sys
 from collections.abc import Iterator
+from itertools import chain
 
 from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity
+from trunnion.cli.columns import table, width_of
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import spoken
@@ -30,7 +33,6 @@ def run(given: Given) -> int:
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     """Yield a sensitivity as a table."""
-    wide = max(len(each.number.name) for each in found.numbers)
     yield f"{found.run.files[0]}: {counted(found.motions, 'motion')} at feed; workpiece zero {_zero_words(found)}"
     yield (
         "errors of the tip in mm: the largest, with its block (at), and the root of the mean square over all motions"
@@ -38,10 +40,10 @@ def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     )
     if found.zero_at is not None:
         yield "zero set: what is on the part after the workpiece zero was set with the same error; as it is: all of it"
-    zeroed = f"{'zero set: mm':>12}  {'at':<18} {'rms':>8}  " if found.zero_at is not None else ""
-    yield f"{'number':<{wide}} {'off by':>8}  {zeroed}{'as it is: mm':>12}  {'at':<18} {'rms':>8}  axis deg"
-    for each in found.numbers:
-        yield _line(each, found, wide)
+    zeroed = ("zero set: mm", "at", "rms") if found.zero_at is not None else ()
+    heads = ("number", "off by", *zeroed, "as it is: mm", "at", "rms", "axis deg")
+    numbers = frozenset(column for column, head in enumerate(heads) if head not in ("number", "at"))
+    yield from table([heads, *(_cells(each, found) for each in found.numbers)], width_of(sys.stdout), numbers)
     if found.idle:
         yield "without effect: " + ", ".join(number.name for number in found.idle)
 
@@ -50,11 +52,11 @@ def _zero_words(found: Sensitivity) -> str:
     return "not set" if found.zero_at is None else f"set {zero_text(found.zero_at)}"
 
 
-def _line(each: NumberSensitivity, found: Sensitivity, wide: int) -> str:
-    parts = "".join(_extent(part, found) for part in (each.zeroed, each.tip) if part is not None)
+def _cells(each: NumberSensitivity, found: Sensitivity) -> tuple[str, ...]:
+    extents = (_extent(part, found) for part in (each.zeroed, each.tip) if part is not None)
     axis = f"{each.axis_deg:.6f}" if each.axis_deg else "-"
-    return f"{each.number.name:<{wide}} {amount_text(each):>8}  {parts}{axis:>8}"
+    return (each.number.name, amount_text(each), *chain.from_iterable(extents), axis)
 
 
-def _extent(extent: ErrorExtent, found: Sensitivity) -> str:
-    return f"{extent.largest:>12.5f}  {place_text(extent, found.run):<18} {extent.rms:>8.5f}  "
+def _extent(extent: ErrorExtent, found: Sensitivity) -> tuple[str, str, str]:
+    return f"{extent.largest:.5f}", place_text(extent, found.run), f"{extent.rms:.5f}"

@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 from trunnion.cli.printing import tell, tell_problem
 from trunnion.cli.progress import progress
-from trunnion.cli.wording import in_command_words, problem_line
+from trunnion.cli.wording import in_command_words, problem_lines
 from trunnion.errors import InputError, Problem
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.observer import Observer
@@ -38,9 +38,9 @@ class Terminal(Observer):
             tell(f"set-up {name}")
 
     def problems(self, problems: Sequence[Problem]) -> None:
-        """Print problems, one a line."""
-        for problem in problems:
-            tell_problem(problem_line(problem))
+        """Print problems, one a line; of a flood of errors the first of each kind."""
+        for line in problem_lines(problems):
+            tell_problem(line)
 
     def planned(self, plan: Plan) -> None:
         """Print the decisions of the planner."""

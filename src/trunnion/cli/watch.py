@@ -14,7 +14,7 @@ from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of
 from trunnion.cli.terminal import warn_of_old
-from trunnion.cli.wording import problem_line
+from trunnion.cli.wording import problem_lines
 from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk, output_group
 from trunnion.jobs.inputs.input_files import machine_files
@@ -74,7 +74,7 @@ class _Warnings(Observer):
 
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line."""
-        tell(*map(problem_line, problems))
+        tell(*problem_lines(problems))
 
     def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
         """Show a progress bar."""
@@ -122,7 +122,7 @@ def _failure(error: TrunnionError | OSError, is_unchanged: bool) -> str:
         return "has changed while it was posted; it is posted again when it rests"
     if isinstance(error, OSError):
         return f"NOT posted: {error.strerror or error}"
-    tell(*map(problem_line, error.problems))
+    tell(*problem_lines(error.problems))
     kind = "the program must not run" if isinstance(error, RefusedError) else "what it is made from cannot be used"
     return f"NOT posted: {kind} ({counted(len(error.problems), 'message')})"
 

@@ -1,15 +1,19 @@
 """Messages of the library in the words of the command line: options in place of arguments."""
 
 import re
+from collections.abc import Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
 from trunnion.cli.terminal_text import severity_painted
-from trunnion.errors import Problem, TrunnionError
+from trunnion.errors import Problem, TrunnionError, first_of_kinds
 from trunnion.jobs.registry import JOBS
-from trunnion.messages import Words
+from trunnion.messages import Words, phrase
+
+#: So many errors in lines are printed one by one; of more, so many kinds.
+_MOST_ERRORS: Final = 10
 
 #: Arguments that a command knows by their place, or under several names.
 _BY_PLACE: Final = {"cl": "CL", "code": "CODE", "first": "NC", "second": "NC"}
@@ -37,7 +41,10 @@ class CommandWords(Words):
         """Return a setting with a value."""
         options = JOBS[self.command].options if self.command else ()
         flag = next((option.flag for option in options if option.setting == name and option.flag), "")
-        return f"{flag} {value}" if flag else f"--set {name}={value}"
+        if flag:
+            return f"{flag} {value}"
+        text = f"{name}={value}"
+        return f'--set "{text}"' if " " in text else f"--set {text}"
 
     def argument(self, name: str, value: str) -> str:
         """Return an option with a value."""
@@ -75,9 +82,17 @@ def painted_line(problem: Problem) -> str:
     return severity_painted(problem_line(problem))
 
 
+def problem_lines(problems: Sequence[Problem]) -> Iterator[str]:
+    """Yield problems as the command line prints them; of a flood of errors the first of each kind."""
+    shown, left = first_of_kinds(problems, _MOST_ERRORS)
+    yield from map(problem_line, shown)
+    if left:
+        yield str(phrase("errors_left", count=left))
+
+
 def error_lines(error: TrunnionError) -> str:
     """Return the problems of an error, each in its line."""
-    return "\n".join(map(painted_line, error.problems))
+    return "\n".join(map(severity_painted, problem_lines(error.problems)))
 
 
 def _option(argument: str) -> str:

@@ -45,6 +45,13 @@ class SetUpArguments(TypedDict, total=False):
     tool_length: LengthLike | None
 
 
+class StatedArguments(TypedDict, total=False):
+    """What is stated of a program besides the definition."""
+
+    settings: Settings | None
+    assume: Mapping[str, str] | None
+
+
 class ClampingArguments(TypedDict, total=False):
     """How the part is clamped, degrees."""
 
@@ -92,20 +99,21 @@ class PostArguments(ReadingArguments, SetUpArguments, ClampingArguments, total=F
     sheet_tools: Mapping[str, Any] | None
 
 
-class ConvertArguments(ReadingArguments, SetUpArguments, total=False):
+class ConvertArguments(ReadingArguments, SetUpArguments, StatedArguments, total=False):
     """Arguments of ``trunnion.convert``."""
 
     machine: MachineLike | None
     to_machine: MachineLike | None
     to_cl: bool
     to_dialect: str | None
+    positions: Literal["tip", "gauge_line"] | None
+    registers: Mapping[str, str] | None
     output: OutputLike
     subprograms: Sequence[FilePath]
-    settings: Settings | None
     force: bool
 
 
-class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total=False):
+class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, StatedArguments, total=False):
     """Arguments of ``trunnion.verify``."""
 
     cl: ToolpathLike | Iterable[ToolpathLike]
@@ -120,7 +128,6 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total
     frame: Literal["first", "absolute"]
     feed: Literal["programmed", "fastest"]
     feed_limit: float | None
-    settings: Settings | None
     radius_register: Literal["unknown", "difference", "radius"] | None
     cutcom: Literal["centreline", "contour"] | None
     tool_libraries: Sequence[FilePath]
@@ -130,7 +137,7 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, total
     columns: bool
 
 
-class DiffArguments(TypedDict, total=False):
+class DiffArguments(StatedArguments, total=False):
     """Arguments of ``trunnion.diff``."""
 
     to_machine: MachineLike | None
@@ -141,7 +148,7 @@ class DiffArguments(TypedDict, total=False):
 
 
 class SimulateArguments(
-    ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, total=False
+    ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, ClampingArguments, StatedArguments, total=False
 ):
     """Arguments of ``trunnion.simulate``."""
 
@@ -205,7 +212,7 @@ class SensitivityArguments(SetUpArguments, total=False):
     zero_at: str | Mapping[str, float] | None
 
 
-class ViewArguments(ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, total=False):
+class ViewArguments(ReadingArguments, BodyArguments, CuttingArguments, SetUpArguments, StatedArguments, total=False):
     """Arguments of ``trunnion.write_view``."""
 
     hooks: Sequence[FilePath]
@@ -213,7 +220,6 @@ class ViewArguments(ReadingArguments, BodyArguments, CuttingArguments, SetUpArgu
     against: FilePath | Sequence[FilePath] | None
     against_machine: MachineLike | None
     setup: str | None
-    settings: Settings | None
     radius_register: Literal["unknown", "difference", "radius"] | None
     cl: ToolpathLike | Iterable[ToolpathLike]
     subprograms: Sequence[FilePath]

@@ -9,7 +9,7 @@ from typing import Any, BinaryIO, Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
-from trunnion.options.kinds import FileIn
+from trunnion.options.kinds import FileIn, Setting
 from trunnion.options.option import Group, Option, flat
 
 #: stdin as a file.
@@ -89,8 +89,8 @@ class Given:
         """
         options = [each for each in self.job.options if not each.own and each.name not in left_out]
         found = {each.name: self._argument(each) for each in options}
+        found |= {each.name: dict(found[each.name]) for each in options if isinstance(each.kind, Setting)}
         if "settings" in found:
-            found["settings"] = dict(found["settings"])
             found = {name: value for name, value in found.items() if not self._is_setting(name)}
         return found
 

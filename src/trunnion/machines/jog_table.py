@@ -82,14 +82,19 @@ class JogTable:
     preferred: str
 
 
-def jog_table(machine: Machine) -> JogTable:
-    """Return what the definition of a machine means."""
+def order_of_axes(machine: Machine) -> tuple[str, ...]:
+    """Return the names of the axes from the workpiece to the tool, with ``bed`` between those of both sides."""
     order = [axis.name for axis in machine.axes]
     bed = next((k for k, axis in enumerate(machine.axes) if axis.mount is Mount.TOOL), len(order))
+    return (*order[:bed], "bed", *order[bed:])
+
+
+def jog_table(machine: Machine) -> JogTable:
+    """Return what the definition of a machine means."""
     poses = tuple(rotary_pose(machine, values) for values in _pose_values(machine))
     tilted = next((pose for pose in reversed(poses) if pose.in_travel), poses[-1])
     return JogTable(
-        order=(*order[:bed], "bed", *order[bed:]),
+        order=order_of_axes(machine),
         axes=tuple(_jog(machine, axis) for axis in machine.axes),
         poses=poses,
         same_axis=(tilted, rotary_pose(machine, _other_values(machine, tilted.values))),

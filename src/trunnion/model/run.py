@@ -33,6 +33,7 @@ from trunnion.model.run_positions import joined_chunks
 from trunnion.model.run_setups import RunSetups
 from trunnion.model.spindle_work import SpindleHole
 from trunnion.model.splines import Splines
+from trunnion.model.stated_words import StatedWord
 from trunnion.model.toolpath import Arcs
 
 #: Rows computed at a time: a few megabytes, and long enough that handing over to the other thread costs nothing.
@@ -152,6 +153,7 @@ class Run:
     planes         (k, 3, 4)       tilted planes and rotated frames in which positions are tips: maps from programmed
                                    positions to the workpiece frame
     spindle_holes                  the holes whose cycles drive the spindle: threads, oriented and stopped bores
+    stated                         words and variables of which somebody has stated what they do or hold
     skipped                        the program with the switches of block skip on, in each combination of levels that is
                                    looked at (``skip_combinations``), all together first; in ``Run`` itself all are off
 
@@ -205,6 +207,7 @@ class Run:
     mode_words: tuple[ModeWord, ...] = ()
     assumed_modes: tuple[str, ...] = ()
     setups: RunSetups | None = None
+    stated: tuple[StatedWord, ...] = ()
     skipped: tuple[SkippedRun, ...] = ()
 
     def __post_init__(self) -> None:
@@ -382,8 +385,6 @@ class Run:
         column = self.orientation_between(0, len(self))
         column.setflags(write=False)
         return column
-
-    # What each of these is stands above.
 
     file = _whole("file", np.uint16)
     feed = _whole("feed", np.float64)

@@ -32,6 +32,20 @@ OTHER_MACHINE: Final = MACHINE.but(name="to_machine", flag="--to-machine", key="
 
 SETTINGS: Final = Option("settings", "--set", Setting(), many=Many.REPEAT, key="settings")
 
+#: What unknown words of a program do, besides what the definition says.
+ASSUME: Final = Option(
+    "assume",
+    "--assume",
+    Setting(metavar="WORD=EFFECT"),
+    'what a word does that the reader does not know, as [control.known] has it: "G65 P9810=moves nothing"',
+    many=Many.REPEAT,
+)
+
+#: Values of variables alone, where there is nothing else to set.
+VARIABLES: Final = SETTINGS.but(
+    key="", help="value of a variable that the program reads and does not set: Q13=10, R5=2, #100=1; may be repeated"
+)
+
 SUBPROGRAMS: Final = Option(
     "subprograms",
     "--subprograms",
@@ -105,7 +119,8 @@ ZERO: Final = Option(
     "zero",
     "--zero",
     Point("X,Y,Z", by_name=True),
-    "the workpiece zero on the machine, mm; G54=X,Y,Z,G55=X,Y,Z: of each work offset",
+    "the workpiece zero in the machine frame, mm (the value of G54 only if the gauge point is at 0,0,0);"
+    " G54=X,Y,Z,G55=X,Y,Z: of each work offset",
     key="zero_mm",
     level=Level.OWN,
 )

@@ -5,6 +5,9 @@ from typing import Final
 #: Values of the setting ``feed``.
 FEEDS: Final = ("programmed", "fastest")
 
+#: What positions of a program are while no tool length is in force.
+POSITIONS: Final = ("tip", "gauge_line")
+
 #: What becomes of a file that is not as a job has written it, where a new program takes its place.
 EDITED: Final = ("refuse", "keep", "replace")
 
@@ -12,7 +15,7 @@ EDITED: Final = ("refuse", "keep", "replace")
 PROOF_SETTINGS: Final = (
     "same_tool", "operation_clearance", "first_approach", "stop_between", "radius_offset", "edge_from", "rapid_feed",
     "rigid_tap", "swivel_data", "delta_length", "delta_radius", "tolerance", "three_axis_tolerance",
-    "fallback_tolerance",
+    "fallback_tolerance", "spindle",
 )  # fmt: skip
 
 #: What the best place is best for.

@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from trunnion.controls.vocabulary import ENTRY_NOTICE, RADIUS_NUMBER_WORD, RADIUS_REGISTER_SETTING
+from trunnion.errors import Problem, warning
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CutterComp
 from trunnion.output.program import Program
@@ -57,7 +59,7 @@ class CompensationEntry:
         what, size = ("diameter", 2.0 * self.radius) if self.doubled == _ALWAYS else ("radius", self.radius)
         if self.contour or self.holds == "radius":
             return f"the {what}"
-        return f"the {what} minus {size:.10g} mm" if size else f"the {what} minus that of the CL file"
+        return f"the {what} minus {size:.10g} mm" if size else f"the {what} minus that of CAM"
 
 
 def entries_at_control(program: Program) -> list[str]:
@@ -73,6 +75,16 @@ def _entries(program: Program, calls: Sequence[str]) -> Iterator[CompensationEnt
     groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
     for motions, call in zip(groups, calls, strict=True):
         yield from entries_of(program, motions, call)
+
+
+def unknown_radii(program: Program) -> Iterator[Problem]:
+    """Yield a warning for each operation with CUTCOM along the tool's centre whose CL file states no radius."""
+    for motion in program.motions:
+        operation = motion.operation
+        events = (event for event in operation.events if isinstance(event, CutterComp))
+        on = next((event for event in events if event.side != "OFF" and not event.contour), None)
+        if motion.starts_operation and on is not None and not operation.tool.diameter:
+            yield warning(operation.file or program.file, on.line, Wording("SIM147", "difference_not_known"))
 
 
 def entries_of(program: Program, motions: Sequence[Motion], call: str) -> Iterator[CompensationEntry]:

@@ -36,6 +36,9 @@ TIME_TOKEN_DIGITS: Final = 7
 #: What follows a time on a machine whose definition does not state how fast all its axes go at rapid.
 _RAPIDS_LEFT_OUT: Final = " + rapids"
 
+#: Times of an operation; where a template prints that of the program too, that one says what both leave out.
+_OWN_TIMES: Final = frozenset({"time", "time_shown"})
+
 _NO_POSITION: Final = (None, None, None)
 
 
@@ -50,6 +53,8 @@ class TemplateValues:
         modes = {motion.mode for motion in program.motions}
         offsets = {program.effective_setting("work_offset", motion.operation) for motion in program.motions}
         self._prints_times = prints_times(program)
+        printed = [{name for name, _ in template.fields()} for template in program.control.templates.values()]
+        self._total_follows = all({f"total_{name}" for name in names & _OWN_TIMES} <= names for names in printed)
         self._operation_numbers = list(accumulate(int(motion.starts_operation) for motion in program.motions))
         self._used = {
             PLANES_USED: "on" if MachiningMode.TILTED in modes else None,
@@ -158,7 +163,7 @@ class TemplateValues:
         names = "time", "total_time", "time_shown", "total_time_shown"
         if not self._prints_times:
             return dict.fromkeys(names)
-        own, total = self._time_text(operation), self._time_text(0)
+        own, total = self._time_text(operation, noted=not self._total_follows), self._time_text(0)
         shown = (own, total) if self._program.effective_setting("times") == "on" else (None, None)
         return dict(zip(names, (own, total, *shown), strict=True))
 
@@ -168,9 +173,12 @@ class TemplateValues:
         shown = prints_times(self._program)
         return [self._time_text(number) if shown else None for number in range(1, count + 1)]
 
-    def _time_text(self, number: int) -> PrintedText:
-        """Return the machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
-        is_left_out = any(axis.rapid is None for axis in self._program.machine.axes)
+    def _time_text(self, number: int, *, noted: bool = True) -> PrintedText:
+        """Return the machining time of an operation, counted from 1, or of the program (0); or what stands for it.
+
+        ``noted``: it says where it counts no rapids.
+        """
+        is_left_out = noted and any(axis.rapid is None for axis in self._program.machine.axes)
         left_out = self._family.escape_comment(_RAPIDS_LEFT_OUT) if is_left_out else ""
         if self._program.time_token:
             return PrintedText(self._program.time_token + str(number).zfill(TIME_TOKEN_DIGITS) + left_out)

@@ -5,9 +5,11 @@ The readers are written from the manuals of the controls. They share nothing wit
 
 from trunnion.machines.forward import forward_rows
 from trunnion.model.axis_positions import resolve_turns, write_joints
-from trunnion.readers.program.kinds import kind_problem, with_kind
+from trunnion.readers.program.kinds import kind_problem, program_for_cl_file, with_kind
 from trunnion.readers.program.known_words import KnownWord, known_words
 from trunnion.readers.program.options import RunOptions
+from trunnion.readers.program.settings import GIVEN
+from trunnion.readers.program.stated_words import with_stated
 from trunnion.readers.registry import can_read, check_reading, reader_of, run_program
 from trunnion.readers.scan.letter_blocks import read_blocks
 from trunnion.readers.scan.rows import execute_blocks
@@ -16,6 +18,6 @@ from trunnion.readers.scan.rows import execute_blocks
 KERNELS = (write_joints, forward_rows, read_blocks, execute_blocks, resolve_turns)
 
 __all__ = [
-    "KERNELS", "KnownWord", "RunOptions", "can_read", "check_reading", "kind_problem", "known_words", "reader_of",
-    "run_program", "with_kind",
+    "GIVEN", "KERNELS", "KnownWord", "RunOptions", "can_read", "check_reading", "kind_problem", "known_words",
+    "program_for_cl_file", "reader_of", "run_program", "with_kind", "with_stated",
 ]  # fmt: skip

@@ -21,6 +21,7 @@ from trunnion.messages import Wording, phrase
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
+from trunnion.model.stated_words import StatedWord
 from trunnion.model.unknown_setups import offsets_without_zero, tools_without_length
 from trunnion.verification.block_names import block_name_of
 
@@ -79,6 +80,14 @@ def assumed_modes(run: Run) -> tuple[str, ...]:
     return tuple(dict.fromkeys(word for each in runs for word in each.assumed_modes))
 
 
+def stated_words(run: Run) -> tuple[StatedWord, ...]:
+    """Return the words and variables that a program relies on and only somebody's statement explains, in each meaning
+    of it.
+    """
+    runs = (run, *(each.run for each in run.skipped))
+    return tuple(dict.fromkeys(word for each in runs for word in each.stated))
+
+
 def _no_start_modes(run: Run) -> Wording | None:
     words = assumed_modes(run)
     return phrase("assumed_modes", words=words) if words else None
@@ -120,7 +129,7 @@ SPINDLE: Final = Basis("spindle", _no_spindle_speeds)
 START_MODES: Final = Basis("start_modes", _no_start_modes)
 START_OFFSET: Final = Basis("start_offset", _no_start_offset)
 
-#: What ``[proof] require`` and ``--strict`` may demand, with its bases; of the last two each program has its own.
+#: What ``[proof] require`` and ``--strict`` may demand, with its bases; of the last three each program has its own.
 DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "zero": (ZERO,),
     "tool_length": (TOOL_LENGTH,),
@@ -128,6 +137,7 @@ DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "start_modes": (START_MODES, START_OFFSET),
     "radius_register": (),
     "measured": (),
+    "given_words": (),
 }
 
 
@@ -143,6 +153,8 @@ def missing_demands(demands: Iterable[str], run: Run, holds: RegisterValue) -> I
             yield from missing_of(DEMANDS[name], run)
     if "radius_register" in demands and any(offset is None for _, offset in offsets_of(run, holds, lambda _: 0.0)):
         yield phrase("no_radius_register")
+    if "given_words" in demands and (given := [each for each in stated_words(run) if each.is_given]):
+        yield phrase("given_words", words=tuple(each.wording for each in given))
     if "measured" in demands:
         kinds = set(ValueKind) - {ValueKind.BODIES, ValueKind.TABLE}
         if names := tuple(map(str, unmeasured_values(run.machine, kinds, joint_samples(run)))):

@@ -38,6 +38,7 @@ class Standing:
     warnings      that were given
     not_measured  values that answers of checks stand on although nobody has measured them
     assumed       modes that the control is taken to start with: neither the program nor the definition states them
+    stated        words and variables that the program relies on, with what somebody has stated of them
     turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force
     moves         whether there is a motion: without one nothing of a path was checked
     """
@@ -49,6 +50,7 @@ class Standing:
     warnings: int = 0
     not_measured: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
+    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
     turns_before_offset: str = ""
     moves: Annotated[bool, NOT_DATA] = True
 
@@ -83,6 +85,8 @@ class Standing:
             yield phrase("standing_warnings", count=self.warnings)
         if self.not_measured:
             yield phrase("standing_not_measured", count=len(self.not_measured))
+        if self.stated:
+            yield phrase("stands_on_stated", words=self.stated)
         if self.assumed:
             yield phrase("assumed_modes", words=self.assumed)
         if self.turns_before_offset:

@@ -43,7 +43,7 @@ def test_times_in_comments_agree_with_the_report(settings: dict[str, str], tmp_p
     seconds = [operation["seconds"] for operation in said["operations"]]
     assert sum(seconds) == pytest.approx(said["time"]["seconds"])
     text = "".join(file.read_text(encoding="utf-8") for file in (tmp_path / "PART.h", *result.subprograms))
-    found = re.findall(r"; machining time (.+) \+ rapids of (.+) \+ rapids", text)
+    found = re.findall(r"; machining time (.+) of (.+) \+ rapids", text)
     assert found == [(format_duration(each), format_duration(sum(seconds))) for each in seconds]
     assert "ZZTIME" not in text
     assert min(seconds) > 10.0
@@ -86,7 +86,7 @@ def test_a_program_in_memory_has_its_times(tmp_path: Path) -> None:
     cl.write_text(TEXT, encoding="utf-8")
     text = trunnion.post(cl, machine="dmu65", columns=False).text
     assert text is not None
-    assert len(re.findall(r"machining time [\d.:]+ (?:s|min) \+ rapids of [\d.:]+ (?:s|min) \+ rapids\n", text)) == 3
+    assert len(re.findall(r"machining time [\d.:]+ (?:s|min) of [\d.:]+ (?:s|min) \+ rapids\n", text)) == 3
     assert "END PGM" in text.splitlines()[-1]
 
 
@@ -97,7 +97,7 @@ def test_a_control_without_colons_in_comments_has_words_for_times(tmp_path: Path
         cl, machine="haas_umc750", settings={"times": "on", "operation_list": "on"}, columns=False
     ).text
     assert text is not None
-    assert re.search(r"\(MACHINING TIME 1 MIN \d+ S \+ RAPIDS OF 1 MIN \d+ S \+ RAPIDS\)", text)
+    assert re.search(r"\(MACHINING TIME 1 MIN \d+ S OF 1 MIN \d+ S \+ RAPIDS\)", text)
     assert re.search(r"\(1 MIN \d+ S \+ RAPIDS, S1000, F200\)", text)
 
 
@@ -111,7 +111,20 @@ def test_a_time_says_that_it_counts_no_rapids_where_their_speed_is_not_stated(
     assert posted.text is not None
     assert posted.verification is not None
     own, total = re.findall(r"machining time(?: :)? (.+) of (.+)\n", posted.text, re.IGNORECASE)[0]
-    assert own == total
-    assert own.endswith(f" s{left_out}")
+    assert f"{own}{left_out}" == total
+    assert own.endswith(" s")
     line, *_ = time_lines(posted.verification)
     assert ("without" in line and line.endswith("motions whose time is not known")) == bool(left_out)
+
+
+def test_a_template_with_the_time_of_the_operation_alone_says_that_it_counts_no_rapids(tmp_path: Path) -> None:
+    machine, cl = tmp_path / "ours.toml", tmp_path / "part.cls"
+    cl.write_text(OPERATION.format(name="OP1", tool=1, rows=CUT), encoding="utf-8")
+    machine.write_text(
+        'extends = "dmu65"\nname = "Ours"\n[control]\nextends = "heidenhain_tnc640"\n'
+        "[control.templates]\noperation_start = '; takes {time}'\n",
+        encoding="utf-8",
+    )
+    text = trunnion.post(cl, machine=machine, columns=False).text
+    assert text is not None
+    assert re.search(r"; takes [\d.]+ s \+ rapids\n", text)

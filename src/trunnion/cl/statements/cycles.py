@@ -162,8 +162,8 @@ def _positions(state: ReaderState, found: CycleParts, word: str, given: tuple[fl
 
 def _feed(state: ReaderState, found: CycleParts, word: str, given: tuple[float, ...]) -> None:
     factor, per_rev = FEED_UNITS[word]
-    state.note_feed_unit(word)
     (feed,) = numbers(f"CYCLE {word}", given, 1)
+    state.note_feed_unit(word, feed)
     found.couplets.append(("MMPR" if per_rev else "MMPM", (feed * factor,)))
 
 

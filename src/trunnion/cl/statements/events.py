@@ -53,6 +53,7 @@ _FULFILLED_MODES = frozenset(
 def fedrat(state: ReaderState, statement: Statement) -> None:
     """Set the modal feed and its unit."""
     statement.refuse_contradictions(_FEED_WORDS)
+    unit = None
     for word in statement.words():
         if word == _INVERSE:
             state.feed_factor, state.feed_per_rev, state.feed_inverse, state.bare_feeds = 1.0, False, True, False
@@ -65,12 +66,14 @@ def fedrat(state: ReaderState, statement: Statement) -> None:
             raise StatementError(Wording("CL710", "fedrat_not_known", listed=statement.listed()))
         state.feed_factor, state.feed_per_rev = FEED_UNITS[word]
         state.feed_inverse = state.bare_feeds = False
-        state.note_feed_unit(word)
+        unit = word
     (value,) = numbers("FEDRAT", statement.plain_numbers(), 1)
     if value < 0:
         raise StatementError(Wording("CL710", "fedrat_negative", value=value))
     if value == 0:
         state.diagnostics.remark(state.line, Wording("CL715", "fedrat_0"))
+    if unit is not None:
+        state.note_feed_unit(unit, value)
     value *= state.feed_factor
     feed = FeedChange(state.operation_row, value, state.feed_per_rev, state.bare_feeds, state.feed_inverse)
     state.builder.feeds.append(feed)

@@ -5,6 +5,7 @@ from typing import Final
 from trunnion.jobs.job import Job, job
 from trunnion.messages import phrase
 from trunnion.options.groups import (
+    ASSUME,
     BODIES,
     CLAMPING,
     CUTCOM,
@@ -23,6 +24,7 @@ from trunnion.options.groups import (
     TOOL_LENGTH,
     TOOL_LIBRARIES,
     TOOL_UNIT,
+    VARIABLES,
     WORK_OFFSET,
     ZERO,
 )
@@ -90,8 +92,9 @@ _VERIFY: Final = job(
     ),
     SETTINGS.but(
         help=f"setting that the program was posted with and its CL files do not show: {', '.join(PROOF_SETTINGS)};"
-        " may be repeated",
+        " or a variable that the program reads and does not set: Q13=10; may be repeated",
     ),
+    ASSUME,
     Option(
         "recorded", "--recorded", FileIn(),
         "compare with what the machine did: a recording (.csv or .parquet)",
@@ -132,6 +135,8 @@ _DIFF: Final = job(
     Option(
         "path", "--path", Switch(), "compare where the tool goes, but not feed, spindle, tool and coolant",
     ),
+    VARIABLES,
+    ASSUME,
     JSON,
     run="diff:run",
     examples=[
@@ -154,6 +159,8 @@ _SIMULATE: Final = job(
     READING.but(strict={"key": ""}),
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     SUBPROGRAMS.but(help="files of the subprograms that they call; no others are opened"),
+    VARIABLES,
+    ASSUME,
     RADIUS_REGISTER,
     SETUP,
     CLAMPING.but(

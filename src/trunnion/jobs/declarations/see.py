@@ -5,6 +5,7 @@ from typing import Final
 from trunnion.jobs.job import Job, job
 from trunnion.messages import phrase
 from trunnion.options.groups import (
+    ASSUME,
     BODIES,
     CUTTING,
     HOOKS,
@@ -58,7 +59,11 @@ _VIEW: Final = job(
         name="against_machine", flag="--against-machine", help="machine of that, if it is another", key=""
     ),
     Option("setup", "--setup", Text("NAME"), "set-up of a project, if it has several: its name or number"),
-    SETTINGS.but(help="for CL files, as post has it; may be repeated"),
+    SETTINGS.but(
+        help="for CL files, as post has it; or a variable that the program reads and does not set: Q13=10; may be"
+        " repeated"
+    ),
+    ASSUME,
     READING_AS_SETTINGS,
     HOOKS.but(help="Python file that changes the CL files, as post has it; it is run; may be repeated", key=""),
     Option("cl", "--cl", FileIn("CL", stdin=True), "CL file that it was made from", many=Many.REPEAT),

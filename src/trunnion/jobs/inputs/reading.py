@@ -9,7 +9,6 @@ from typing import BinaryIO, Final, TypeAlias
 from trunnion import machines, readers
 from trunnion.cl import DIALECTS, is_cl_file, not_one_file, other_system
 from trunnion.cl.read import AS_IT_SAYS, ClReading
-from trunnion.cl.watched import read_watched
 from trunnion.controls.definition_files import is_control_file
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
@@ -22,6 +21,7 @@ from trunnion.jobs.inputs.arguments import (
     is_stream,
     wrong_argument,
 )
+from trunnion.jobs.inputs.cl_or_program import read_cl_file
 from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.inputs.settings import number_setting
 from trunnion.jobs.observer import SILENT, Observer
@@ -120,7 +120,7 @@ def _read(cl: object, how: ClReading, observer: Observer, argument: str) -> list
         check_choice("dialect", how.dialect, tuple(DIALECTS))
     if within is not None and not _is_spline_tolerance(within):
         raise wrong_argument("spline_tolerance", within, phrase("give_fine_tolerance"))
-    return read_watched(path, observer.progress, how)
+    return read_cl_file(path, observer.progress, how)
 
 
 def cl_reading(settings: Mapping[str, str], strict: bool = False) -> ClReading:

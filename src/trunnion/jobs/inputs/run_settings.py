@@ -106,6 +106,12 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         "contour",
         default="what the CL files say; else centreline",
     ),
+    "spindle": RunSetting(
+        "Speed of the spindle, rev/min, of operations that cut while it stands because no SPINDL comes before, or of "
+        "one that has none of its own. Clockwise; with a minus counter-clockwise.",
+        form="RPM or OPERATION:RPM",
+        example="8000,DRILL:1200",
+    ),
     "spline_tolerance": RunSetting(
         "How far the points that splines (NURBS) of CL files become may leave them between each other.",
         "the smaller of INTOL and OUTTOL, from 0.0001 to 0.01; 0.001 without them",

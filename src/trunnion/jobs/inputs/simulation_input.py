@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike
 from trunnion.model.run import Run
 from trunnion.simulation.meshes import TriangleMesh
@@ -54,6 +55,8 @@ class SetupInput:
     tool_length: LengthLike | None = None
     until: str | int | None = None
     radius_register: str | None = None
+    settings: Settings | None = None
+    assume: Mapping[str, str] | None = None
     turn: float | None = None
     tilt: float | None = None
     cl_is_turned: bool = False

@@ -36,9 +36,6 @@ from trunnion.placing.program_heads import damaged_notices, stated_place
 from trunnion.placing.program_rows import _rows_at_workpiece, rows_of_run
 from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
 
-#: Places that are not understood which an error names one by one.
-_MOST_NAMED = 20
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedInput:
@@ -180,7 +177,7 @@ def _toolpaths_of(file: ToolpathLike, how: ClReading, machine: Machine, observer
 def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run:
     run = readers.run_program(program, machine, readers.RunOptions(subprograms=subprograms))
     if run.errors:
-        found = [Problem(each.file, each.line, each.wording) for each in run.errors[:_MOST_NAMED]]
+        found = [Problem(each.file, each.line, each.wording) for each in run.errors]
         raise RefusedError(
             (*found, Problem(str(program), 0, Wording("PLC120", "not_understood", count=len(run.errors))))
         )

@@ -15,16 +15,18 @@ from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
+from trunnion.jobs.inputs.stated_speeds import with_stated_speeds
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.operation_setups import planned_machines, with_operation_setups
 from trunnion.jobs.post.post_job import PostJob, prepare
+from trunnion.jobs.post.settings_to_fill import settings_to_fill
 from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
-from trunnion.output.compensation_entries import with_radius_taken_off
+from trunnion.output.compensation_entries import unknown_radii, with_radius_taken_off
 from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
@@ -121,6 +123,7 @@ def load_toolpaths(
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
     toolpaths = replace_unknown_statements(changed(_with_repeated(toolpaths)), job.control, job.machine)
+    toolpaths = with_stated_speeds(toolpaths, job.settings)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
@@ -218,7 +221,8 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
     leaning = _leaning_operations(planned, number_setting(job.settings, "max_tilt"))
     sideways = sideways_problems(toolpaths) if job.settings.get("drills_sideways") != "allowed" else []
     ways = way_problems(program, subprograms=job.settings.get("programs") == "operations")
-    found = [*merge_repeated(planned.problems), *ways, *conflicts, *insert_problems(program), *leaning, *sideways]
+    remarks = merge_repeated((*planned.problems, *unknown_radii(program)))
+    found = [*remarks, *ways, *conflicts, *insert_problems(program), *leaning, *sideways]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))
@@ -261,7 +265,8 @@ def new_problems(program: Program, observer: Observer, known: Sequence[Problem] 
     found = [problem for problem in problems if problem not in errors]
     observer.problems(found)
     if errors:
-        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
+        ordered = sorted(errors, key=lambda problem: (problem.file, problem.line))
+        raise InputError((*ordered, *settings_to_fill(ordered, program)))
     return found
 
 

@@ -24,6 +24,7 @@ from trunnion.jobs.inputs.reading import FilePath, as_machine, as_run, as_toolpa
 from trunnion.jobs.inputs.settings import work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.inputs.stated_setup import set_up_machine
+from trunnion.jobs.inputs.stated_words import refuse_settings, with_stated
 from trunnion.jobs.observer import Observer
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
@@ -54,7 +55,8 @@ def prepare_setup(
 
     Raises ``InputError`` when a file or an argument cannot be used, or nothing says the form of a tool.
     """
-    machine = as_machine(given.machine)
+    machine, left = with_stated(as_machine(given.machine), given.settings, given.assume)
+    refuse_settings(left, machine)
     readers.reader_of(machine)
     machine = set_up_machine(machine, given.zero, given.tool_length)
     angles = checked_angles(given.turn, given.tilt)

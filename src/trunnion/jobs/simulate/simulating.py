@@ -71,6 +71,9 @@ def simulate(
         N number of the block before which the last program ends.
     radius_register
         As for ``verify``: the tool's centre goes beside the path under radius compensation.
+    settings, assume
+        Values of variables that the programs read and do not set, and what words do that the reader does not know, as
+        for ``verify``.
     zero, tool_length
         As for ``verify``: without both, machine positions (G53, M91) are taken as retracts along the tool axis.
     turn, tilt
@@ -144,7 +147,7 @@ def _overruled(
 
 
 def _is_left_out(value: object) -> bool:
-    return value is None or value is False or (isinstance(value, list | tuple) and not value)
+    return value is None or value is False or (isinstance(value, list | tuple | dict) and not value)
 
 
 def _without(places: Places, names: Iterable[str]) -> Places:

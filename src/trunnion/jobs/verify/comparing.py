@@ -10,6 +10,7 @@ from trunnion.jobs.arguments import DiffArguments, taken
 from trunnion.jobs.inputs.control_settings import blocks_in_compensation, rapid_feed_of
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import check_tolerance
+from trunnion.jobs.inputs.stated_words import refuse_settings, with_stated
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.verification import restore_rapids
@@ -41,6 +42,9 @@ def diff(
         is in inches: their last digit is 0.0001 inch.
     path
         Compare where the tool goes, and whether at rapid, but not feed, spindle, tool and coolant.
+    settings, assume
+        Values of variables that the programs read and do not set, such as ``{"#100": 5}``, and what words do that
+        the reader does not know, as for ``verify``.
 
     Returns
     -------
@@ -64,6 +68,9 @@ def diff(
     check_tolerance("tolerance", tolerance)
     one = as_machine(machine)
     two = one if to_machine is None else as_machine(to_machine, "to_machine")
+    one, left = with_stated(one, found["settings"], found["assume"])
+    two, of_two = (one, left) if to_machine is None else with_stated(two, found["settings"], found["assume"])
+    refuse_settings([key for key in left if key in of_two], one, two)
     for each in (one, two):
         readers.reader_of(each)
     compile_ahead(readers.KERNELS)

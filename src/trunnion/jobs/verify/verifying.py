@@ -13,6 +13,7 @@ from trunnion.jobs.inputs.arguments import check_observer, check_paths
 from trunnion.jobs.inputs.control_settings import written_control
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike, set_up_machine
+from trunnion.jobs.inputs.stated_words import with_stated
 from trunnion.jobs.inputs.tool_lengths import library_tools, with_lengths_of_tools
 from trunnion.jobs.observer import SILENT, Observer, Remembering
 from trunnion.jobs.verify.arguments import checked
@@ -86,7 +87,11 @@ def verify(
         The setting ``feed_limit`` of that post, mm/min.
     settings
         Settings that the program was posted with and its CL files do not show, such as
-        ``{"same_tool": "clearance", "operation_clearance": 25}``; by default those of the control's definition.
+        ``{"same_tool": "clearance", "operation_clearance": 25}``; by default those of the control's definition. And
+        values of variables that it reads and does not set, such as ``{"Q13": 10}``.
+    assume
+        What words do that the reader does not know, as ``[control.known]`` of a definition has it:
+        ``{"G65 P9810": "moves nothing"}``. It is believed, and ``standing`` names it.
     radius_register
         What radius compensation works with: ``"difference"``, by how much the tool is larger than in the CL file, or
         ``"radius"``, its radius; by default as the control's definition says.
@@ -127,12 +132,14 @@ def verify(
     """
     check_observer(observer)
     observer = Remembering(observer)
-    found = checked(taken(VerifyArguments, "verify", given))
+    found = taken(VerifyArguments, "verify", given)
+    stated, settings = with_stated(as_machine(machine), found["settings"], found["assume"])
+    found = checked({**found, "settings": settings})
     if (recording := found["recorded"]) is not None:
         from trunnion.jobs.twin.recording import as_recording  # few programs are compared with one
 
         recording = as_recording(recording)
-    on = _set_up(as_machine(machine), found["zero"], found["tool_length"])
+    on = _set_up(stated, found["zero"], found["tool_length"])
     tools = library_tools(check_paths("tool_libraries", found["tool_libraries"]), found["unit"])
     on = replace(on, machine=with_lengths_of_tools(on.machine, (), tools))
     read = read_program(nc, on, found, observer)

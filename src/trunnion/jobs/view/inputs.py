@@ -99,6 +99,7 @@ def view_program(
     verification = verify(
         run, machine=machine, cl=toolpaths, radius_register=given["radius_register"], observer=observer
     )
+    observer.problems([Problem(each.file, each.line, each.wording) for each in run.errors])
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
 

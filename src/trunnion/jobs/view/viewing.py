@@ -18,6 +18,7 @@ from trunnion.jobs.inputs.control_settings import register_value
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.stated_setup import set_up_machine
+from trunnion.jobs.inputs.stated_words import with_stated
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
 from trunnion.jobs.result_output import declared_output
@@ -79,7 +80,8 @@ def _prepared(
         raise InputError(argument_problem("nc", Wording("PAG110", "nothing_to_view")))
     if given["machine"] is None:
         raise InputError(argument_problem("machine", Wording("PAG110", "missing_machine")))
-    placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
+    stated, settings = with_stated(as_machine(given["machine"]), settings, given["assume"])
+    placed = set_up_machine(stated, given["zero"], given["tool_length"])
     of_stock = ("stock", "part", "fixtures", "tools", "tool_libraries", "unit", "near", "cell", "accuracy")
     holds = register_value(given["radius_register"], settings, placed)
     simulated = view_simulation(placed, holds, **{name: given[name] for name in of_stock})
@@ -136,7 +138,9 @@ def write_view(
     setup
         Name or number of a project's set-up, if it has several.
     settings, units, dialect, strict
-        For CL files, as for ``post``.
+        For CL files, as for ``post``. ``settings`` may have values of variables, too, as for ``verify``.
+    assume
+        What words do that the reader does not know, as for ``verify``.
     cl
         Its CL files: the page then names the CL line of each block, and what the proof finds.
     hooks

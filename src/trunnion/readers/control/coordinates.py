@@ -24,7 +24,7 @@ from trunnion.readers.control.arcs import ArcMap
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION, RowRecorder
 from trunnion.readers.control.rows_in_use import RowsInUse
-from trunnion.readers.control.trailing_modes import TrailingModes, WordPlace
+from trunnion.readers.control.trailing_modes import USUAL_MODES, TrailingModes, WordPlace
 
 #: Millimetres of an inch.
 INCH: Final = 25.4
@@ -63,8 +63,8 @@ class CoordinateControl(RowRecorder):
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(machine, note)
         self._zero_slides, self._zero_tip = self._zero_positions()
-        self.absolute = True
-        self.plane_axis = 2
+        self.absolute, self.plane_axis = True, 2
+        self.usual_modes = dict(USUAL_MODES)
         self.length_unit = 1.0
         self.feed_unit = 1.0
         self.tcp = False
@@ -274,8 +274,7 @@ class CoordinateControl(RowRecorder):
 
     def usual(self, name: str) -> Hashable:
         """Return the value of a mode with which any program may end; that of the units is up to the control."""
-        usual = {"distances": True, "plane": 2, "feed": 94, "offset": 54, "centres": True}
-        return usual.get(name, False)
+        return self.usual_modes.get(name, False)
 
     def report_trailing_modes(self) -> None:
         """Report the modes that the program sets behind the last motion with a use for them, if they outlive its end.

@@ -1,7 +1,13 @@
 """Modes that a program sets behind its last motion: they have no use in it, the next one may begin with them."""
 
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Final
+
+#: With which modes any program may end.
+USUAL_MODES: Final[Mapping[str, Hashable]] = {
+    "distances": True, "plane": 2, "feed": 94, "offset": 54, "centres": True,
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

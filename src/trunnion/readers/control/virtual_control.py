@@ -6,7 +6,7 @@ rows. What only one family does is in that family's control, which extends this 
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -78,6 +78,15 @@ class VirtualControl(ContourControl, ABC):
         """Let nothing move in an offset that a block writes over a workpiece zero that nobody has given."""
         if self.machine.workpiece_zero is None:
             self.preconditions.require(key, Wording("NC352", "offset_over_unknown_zero", word=word), self.line)
+
+    def start_with(self, modes: Mapping[str, Hashable]) -> None:
+        """Start with modes that the definition states, by their names in ``start_modes``."""
+        self.start_modes = {name: word for name, word in self.start_modes.items() if name not in modes}
+        self.usual_modes |= modes
+        self.absolute = bool(modes.get("distances", self.absolute))
+        plane = modes.get("plane", self.plane_axis)
+        assert isinstance(plane, int)
+        self.plane_axis = plane
 
     # Scans
 

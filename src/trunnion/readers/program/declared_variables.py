@@ -9,6 +9,9 @@ from trunnion.definitions import Table
 from trunnion.errors import Severity
 from trunnion.messages import Wording
 
+#: The code under which a value that is taken is noted.
+OF_VARIABLES: Final = "NC227"
+
 #: A definition that declares none.
 NO_VARIABLES: Final[Mapping[str, float]] = MappingProxyType({})
 
@@ -48,7 +51,7 @@ class DeclaredVariables:
         value = self._values.get(name)
         if value is not None and name not in self._told:
             self._told.add(name)
-            self._note(Wording("NC227", "declared_value", name=name, value=value), Severity.WARNING)
+            self._note(Wording(OF_VARIABLES, "declared_value", name=name, value=value), Severity.WARNING)
         return value
 
 

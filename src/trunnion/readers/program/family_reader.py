@@ -36,6 +36,7 @@ class FamilyReader:
     lost_smoothing       kind of the event that such a cycle makes -> its name, and the settings that stand for it
     compensation_style   how a control compensates the radius in a plane, a key of ``STYLES``; 0: not known
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
+    variables            what variables are called of which values can be stated; None: there are none
     """
 
     interpreter: type[Interpreter[Any]]
@@ -51,6 +52,7 @@ class FamilyReader:
     lost_smoothing: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     compensation_style: Callable[[Machine], int] = lambda _: UNKNOWN_STYLE
     check_reading: Callable[[Machine], object] = no_reading
+    variables: re.Pattern[str] | None = None
 
     def callable_files(self, files: Iterable[Path]) -> tuple[Path, ...]:
         """Return the files whose names programs can call, the first of each name."""

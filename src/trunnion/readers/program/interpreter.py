@@ -7,7 +7,7 @@ loaded as soon as a jump, a loop or a subprogram needs it.
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
@@ -22,6 +22,7 @@ from trunnion.model.run import Comment, Diagnostic, Run
 from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.error_tally import ErrorTally
+from trunnion.readers.program.forms import form_of
 from trunnion.readers.program.known_words import KnownWords
 from trunnion.readers.program.limits import (
     CHARACTERS_PER_STEP,
@@ -33,7 +34,9 @@ from trunnion.readers.program.limits import (
     StepCounter,
 )
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+from trunnion.readers.program.plain_lines import PlainLines
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.program.stated_words import stated_words
 from trunnion.readers.program.subprograms import Subprograms
 from trunnion.readers.program.unreached import UnreachedBlocks
 from trunnion.readers.scan.buffers import ScanSettings
@@ -46,6 +49,13 @@ _MIN_FREE_ROWS: Final = 4096
 #: A scan of fewer blocks takes longer than their interpretation; then so many lines are interpreted.
 _FEW_BLOCKS: Final = 4
 _LINES_WITHOUT_SCAN: Final = 16
+
+
+#: Words that only a program has: it begins or ends.
+_PROGRAM_WORDS: Final = re.compile(
+    rb"^[ \t]*(?:[O:][ \t]*[0-9]|%[ \t]*[A-Z0-9]|PROC[ \t])|^[^(;\n]*?(?<![A-Z])M[ \t]*0*(?:2|30|17|99)(?![0-9])",
+    re.IGNORECASE | re.MULTILINE,
+)
 
 
 class ProgramEnd(Exception):  # noqa: N818 - the end of a program is no error
@@ -80,6 +90,11 @@ class Interpreter(ABC, Generic[A]):
     #: Words with which blocks of this language run in another order than they stand in.
     jump_words: re.Pattern[bytes] = re.compile(rb"(?!)")
 
+    #: How this language writes comments, what is around its texts, and the letter of program numbers.
+    comment_signs = ("(", ")")
+    text_sign = ""
+    program_letter = ""
+
     control: VirtualControl
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
@@ -100,8 +115,11 @@ class Interpreter(ABC, Generic[A]):
         self._stack: list[A] = []
         self._lines_without_scan = 0
         self._raw = ""
-        self._unreached = UnreachedBlocks(self.jump_words, self._has_words)
+        self._form = form_of(machine)
+        self._lines = PlainLines(self._form, self.comment_signs, self.text_sign, self.program_letter)
+        self._unreached = UnreachedBlocks(self.jump_words, self._has_plain_words)
         self.control = self._make_control()
+        self.control.start_with(self._form.start)
         self._known = KnownWords(machine, self.control)
 
     @abstractmethod
@@ -153,7 +171,8 @@ class Interpreter(ABC, Generic[A]):
         if self._unlisted:
             more = Wording("NC150", "more", count=self._unlisted)
             diagnostics.append(Diagnostic(0, more, Severity.ERROR, self._files[0]))
-        return self.control.finish(self._files, self._comments, diagnostics)
+        run = self.control.finish(self._files, self._comments, diagnostics)
+        return replace(run, stated=stated_words(self._known.met, diagnostics, self._machine))
 
     def _ends_of_dos(self, main: SourceText) -> Iterator[Diagnostic]:
         """Yield a warning for each file that Ctrl-Z ends."""
@@ -164,18 +183,25 @@ class Interpreter(ABC, Generic[A]):
 
     def _check_rest(self, main: SourceText) -> None:
         """Report text behind the end of the main program that no jump and no call can reach."""
+        first = main.line
         while not main.whole and main.fill():
             self.control.line = main.line
-            if self._has_words(main.next_line()):
+            if self._has_plain_words(main.next_line()):
                 main.load()
                 if main.search(self.jump_words):
                     return
-                self._note(Wording("NC161", "behind_end_of_file"), Severity.ERROR)
+                # A program that ended too early has an end behind its end, and a second one a beginning.
+                is_program = main.search(_PROGRAM_WORDS, first) is not None
+                variant = "another_program" if is_program else "behind_end"
+                self._note(Wording("NC161", variant), Severity.ERROR if is_program else Severity.WARNING)
                 return
 
     @abstractmethod
     def _has_words(self, raw: str) -> bool:
         """Whether a line has anything but comments, marks of the transfer and its number."""
+
+    def _has_plain_words(self, raw: str) -> bool:
+        return self._has_words(self._lines.plain(raw))
 
     def _note(self, wording: Wording, severity: Severity) -> None:
         file = self._files[self.control.modal.file.current]
@@ -208,7 +234,7 @@ class Interpreter(ABC, Generic[A]):
                     continue
             line = source.line
             control.line, control.block_number = line, -1
-            self._raw = raw = source.next_line()
+            self._raw = raw = self._lines.plain(source.next_line())
             self._counter.count_blocks(1, len(raw))
             self._execute_known(active, line, raw) if self._known.any else self._execute_line(active, line, raw)
             if source.jumps_back > MOST_JUMPS_WITHOUT_CHOICE:

@@ -158,6 +158,15 @@ def kind_problem(program: Path, machine: Machine) -> Problem | None:
     return None if doubt is None else Problem(str(program), 1, doubt)
 
 
+def program_for_cl_file(file: Path) -> Problem | None:
+    """Return that a file is a program, where it was to be a CL file."""
+    found = recognize(file)
+    if found is None or not found.found:
+        return None
+    line, letters = found.found[0]
+    return Problem(str(file), 0, Wording("CL110", "is_program", kind=found.kind.name, mark=letters, line=line))
+
+
 def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wording | None:
     """Return what a program seems to be.
 
@@ -171,7 +180,7 @@ def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wo
         for name, (line, letters) in zip(("first", "second"), found.found, strict=False):
             said |= {name: letters, f"{name}_line": line}
         return Wording("NC113", ("is_text", "is_kind_by_one", "is_kind")[min(len(found.found), 2)], **said)
-    return Wording("NC113", "is_for_other_control") if is_certain else None
+    return Wording("NC113", "is_for_other_control") if is_certain and found is None else None
 
 
 def _lines(file: Path) -> Iterator[tuple[int, str]]:

@@ -15,7 +15,7 @@ from trunnion.definitions.duplicate_keys import report_duplicates
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.readers.control.virtual_control import VirtualControl
-from trunnion.readers.program.settings import control_of
+from trunnion.readers.program.settings import GIVEN, control_of
 
 #: What a word may do.
 EFFECTS: Final = (
@@ -23,6 +23,9 @@ EFFECTS: Final = (
     "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant through", "coolant off",
     "tcp on", "tcp off", "waits",
 )  # fmt: skip
+
+#: Other names of effects.
+_ALIKE: Final = {"moves nothing": "no effect"}
 
 #: The effect of a word after which the machine is elsewhere.
 HOME: Final = "comes back home"
@@ -51,11 +54,17 @@ _TOOL: Final = re.compile(r"(?<![A-Z0-9])T=?[ \t]*([0-9]{1,9})")
 
 @dataclass(frozen=True, slots=True)
 class KnownWord:
-    """A declared word: its ``effects``, and what it ``means`` to people; empty if that is not said."""
+    """A declared word: its ``effects``, and what it ``means`` to people; empty if that is not said.
+
+    says      its effects as they are written
+    is_given  it is declared for one run, and not by the definition
+    """
 
     word: str
     effects: tuple[str, ...]
     means: str
+    says: str = ""
+    is_given: bool = False
 
     @property
     def code(self) -> int | None:
@@ -121,14 +130,17 @@ def _first_path(table: dict[str, object]) -> list[str]:
 def _known_word(table: Table, key: str) -> KnownWord:
     value = table.text(key, None)  # None: no text, which is noted
     text, _, means = (value if value is not None else EFFECTS[0]).partition(":")
-    effects = tuple(effect.strip() for effect in text.split(","))
+    written = tuple(effect.strip() for effect in text.split(","))
+    effects = tuple(_ALIKE.get(effect, effect) for effect in written)
     if unknown := [effect for effect in effects if effect not in EFFECTS]:
-        table.add_problem(key, Wording("NC190", "no_effect", unknown=repr(unknown[0]), effects=tuple(EFFECTS)))
+        known = (*EFFECTS, *_ALIKE)
+        table.add_problem(key, Wording("NC190", "no_effect", unknown=repr(unknown[0]), effects=known))
     if not key.strip():
         table.add_problem("", Wording("NC190", "word_without_letters"))
     elif not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
         table.add_problem(key, Wording("NC190", "no_word_program"))
-    return KnownWord(_normal(key), effects, means.strip())
+    is_given = table.location(key)[0] == GIVEN
+    return KnownWord(_normal(key), effects, means.strip(), ", ".join(written), is_given)
 
 
 def _normal(key: str) -> str:
@@ -162,6 +174,8 @@ class KnownWords:
         self._code = re.compile(rf"(?<![A-Z0-9_.$])M0*({codes})(?![0-9=])(?:\([^)]*\))?", re.I) if codes else None
         self._continues = False
         self.any = bool(words)
+        #: Those that the program has met.
+        self.met: dict[KnownWord, None] = {}
 
     def take(self, raw: str) -> tuple[str | None, tuple[KnownWord, ...]]:
         """Return what is left of a line, None if a declared word has the whole block, and the declared words in it."""
@@ -183,7 +197,8 @@ class KnownWords:
             before = raw[: match.start()]
             if ";" in before or before.count("(") > before.count(")") or before.count('"') % 2:
                 return match[0]
-            found.append(self._codes[int(match[1])])
+            found.append(word := self._codes[int(match[1])])
+            self.met[word] = None
             return " " * len(match[0])
 
         return self._code.sub(remove, raw), tuple(found)
@@ -198,6 +213,7 @@ class KnownWords:
                 self._control.add_event("m", float(word.code))
 
     def _execute_block(self, word: KnownWord, text: str) -> None:
+        self.met[word] = None
         tool = _TOOL.search(text.upper())
         if tool is not None and "tool change" in word.effects:
             self._control.select_tool(f"{int(tool[1])}")

@@ -10,6 +10,9 @@ from trunnion.families import DEFAULT_FAMILY
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 
+#: Stands for the file of what is stated for one run, besides the definition.
+GIVEN: Final = "(given)"
+
 #: In ``[control.reading.words]``: the control does not have the word, or has it with another meaning.
 UNKNOWN: Final = "unknown"
 

@@ -11,6 +11,7 @@ from trunnion.messages import Wording
 from trunnion.readers.control import arcs
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION
+from trunnion.readers.control.start_modes import CENTRES
 from trunnion.readers.control.virtual_control import LINEAR, RAPID, Circle, VirtualControl
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings
 
@@ -46,6 +47,12 @@ class Rs274Control(VirtualControl):
         self.usual_inches = unit == "inch"
         if unit:
             self.set_units(unit == "inch", True)
+
+    def start_with(self, modes: Mapping[str, Hashable]) -> None:
+        """Start with modes that the definition states."""
+        super().start_with(modes)
+        if CENTRES in modes:
+            self.relative_centres = bool(modes[CENTRES])
 
     def usual(self, name: str) -> Hashable:
         """Return the value of a mode with which any program may end."""

@@ -29,6 +29,9 @@ from trunnion.readers.scan.letter_blocks import read_blocks
 MOTIONS: Final = {0: RAPID, 10: LINEAR, 20: CLOCKWISE, 30: COUNTER_CLOCKWISE}
 CANCEL: Final = 800
 
+#: How the definition says that M2 and M30 of a subprogram end only that.
+_RETURNS: Final = ("end_in_subprogram", "returns")
+
 #: Letters of axes; a machine has five of them.
 AXES: Final = "XYZABCUVW"
 
@@ -199,6 +202,8 @@ class Rs274Interpreter(Interpreter[A]):
             control.add_event(*iso_m_codes.EVENTS[code])
         elif code == iso_m_codes.TOOL_CHANGE:
             control.change_tool()
+        elif code in iso_m_codes.PROGRAM_ENDS and len(self._stack) > 1 and self._form.is_so(*_RETURNS):
+            self._leave_program()
         elif code in iso_m_codes.PROGRAM_ENDS:
             control.report_unused_offsets()
             control.report_trailing_modes()
@@ -232,6 +237,8 @@ class Rs274Interpreter(Interpreter[A]):
             if "R" not in circle_words:
                 control.relied_from.setdefault(CENTRES, control.row)
         control.move(axes, None, circle=control.circle(circle_words, turns), feed_written=self._check_feed(block))
+        if control.motion > LINEAR and self._form.is_so("behind_circles", "line"):
+            self.motion_code, control.motion = 10, LINEAR
 
     def _check_feed(self, block: Block) -> bool:
         """Report a motion without a feed; returns whether the block has an F word."""

@@ -35,6 +35,10 @@ _CELLS: Final = 200
 #: Sizes that a number may have, mm.
 _LARGEST: Final = 1e5
 
+#: Sizes without a word, such as 120x80x30, as they are written on drawings.
+_SIZE: Final = re.compile(r"-?\d+(?:\.\d+)?", re.ASCII)
+_SIZES: Final = re.compile(rf"{_SIZE.pattern}(?: ?[xX\u00d7*,;] ?{_SIZE.pattern}){{1,5}}", re.ASCII)
+
 _NUMBER: Final = re.compile(r"[+-]?(\d{1,9}(\.\d{0,12})?|\.\d{1,12})", re.ASCII)
 
 
@@ -98,6 +102,13 @@ def stock_shape(
         low, high = text.bounds
         return StockShape(low, high, mesh=text)
     kind, colon, sizes = str(text).partition(":")
+    if _SIZES.fullmatch(str(text)) and not Path(str(text)).exists():
+        found = tuple(_SIZE.findall(str(text)))
+        is_block = len(found) in (3, 6)
+        raise _wrong(
+            text,
+            Wording("SIM122", "sizes_of_block", sizes=found) if is_block else Wording("SIM122", "sizes_alone"),
+        )
     if not colon or kind not in ("box", "cylinder"):
         mesh = load_mesh(text, name="stock", closed=True, deviation=deviation, warn=warn)
         return StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)

@@ -12,6 +12,7 @@ from trunnion.verification.checks.passages import passage_rows, settings_to_repe
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
 from trunnion.verification.kinematics.machine_positions import MachinePositions
+from trunnion.verification.kinematics.positioning_moves import stands_still
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.rewind_retracts import RewindRetract, find_rewind_retracts
@@ -22,9 +23,6 @@ _KINDS = {Kind.RAPID: "at_rapid", Kind.LINEAR: "on_line", Kind.ARC: "on_circle"}
 
 #: Tool axes are the same when no component differs by more than this.
 _SAME_AXIS = 1e-6
-
-#: Axes that move by less than this, mm or degrees, stand still.
-_STILL = 1e-9
 
 
 def check_order(context: ComparedContext) -> Check:
@@ -39,12 +37,9 @@ def check_order(context: ComparedContext) -> Check:
     machine_positions = MachinePositions.of(run)
     measurable = [row for row in matching.extra if not machine_positions.crossed(np.array([row]))[0]]
     lawful |= {row for row in measurable if _retracts_before_home(run, row, tolerance)}
-    unexplained = [row for row in matching.extra if row not in lawful]
-    # From machine to workpiece coordinates the distance is not known: no such motion stands still.
-    known = set(measurable)
-    stands_still = [row in known and _stands_still(run, row) for row in unexplained]
-    still = [row for row, stands in zip(unexplained, stands_still, strict=True) if stands]
-    extra = [row for row, stands in zip(unexplained, stands_still, strict=True) if not stands]
+    stands = stands_still(run, np.array(matching.extra, np.int64)).tolist()
+    still = [row for row, stays in zip(matching.extra, stands, strict=True) if stays]
+    extra = [row for row, stays in zip(matching.extra, stands, strict=True) if not stays and row not in lawful]
     missing, no_point = Wording("order", "no_block"), Wording("order", "no_point")
     places = [context.place_of_missing(cl, missing) for cl in matching.missing[:MAX_PLACES]]
     to_repeat = settings_to_repeat(context) if extra else {}
@@ -98,11 +93,6 @@ def _retracts_before_home(run: Run, row: int, tolerance: float) -> bool:
     straight = float(np.linalg.norm(step - back * axis)) <= 4.0 * tolerance
     turned = float(np.abs(positions.axis[0] - axis).max()) > _SAME_AXIS
     return back > 0.0 and straight and not turned
-
-
-def _stands_still(run: Run, row: int) -> bool:
-    before, after = run.positions(np.array([row - 1, row])).joints
-    return bool((np.abs(after - before) < _STILL).all()) and int(run.kind[row]) != Kind.ARC
 
 
 def check_kind(context: ComparedContext) -> Check:

@@ -17,7 +17,7 @@ from trunnion.model.run import RowPositions, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.rotary_moves_at_part import rows_away
 from trunnion.verification.context import ComparedContext, Context
-from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes
+from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes, repeats_position
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Place
@@ -28,7 +28,7 @@ _SAME_AXIS = 1e-6
 #: No setting leads lower above all operations, mm.
 _LEAST_CLEARANCE = 1.0
 
-#: Motions between two operations at most: up, across.
+#: Motions between two operations at most, without those that repeat a position: up, across.
 _MOST_ROWS = 2
 
 
@@ -68,15 +68,20 @@ def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]
     run, extra = context.run, context.matching.extra
     rows: Ints = np.array(extra, np.int64)
     for unbroken in np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1):
-        if not 0 < len(unbroken) <= _MOST_ROWS or unbroken[0] == 0 or unbroken[-1] + 1 >= len(run):
+        if not len(unbroken) or unbroken[0] == 0 or unbroken[-1] + 1 >= len(run):
             continue
-        first, down = int(unbroken[0]), int(unbroken[-1]) + 1
-        way = _Way(context, first, down)
-        if len(unbroken) == 1 and _comes_from_home(run, first):
+        # A block that repeats its position is no leg of the way.
+        arrives = int(unbroken[-1]) + 1
+        every = np.append(unbroken, arrives)
+        *legs, down = every[~repeats_position(run, every)].tolist() or [arrives]
+        if not 0 < len(legs) <= _MOST_ROWS:
+            continue
+        way = _Way(context, legs[0], down)
+        if len(legs) == 1 and _comes_from_home(run, legs[0]):
             # Whatever the settings: above all points the leg is harmless. A plane has first legs of its own.
-            if run.state.tcp[first] and way.comes_down_from(context.highest_point(way.axis)):
-                yield [first], math.inf
-        elif _begins_operation(context, down) and (height := way.height) is not None:
+            if run.state.tcp[legs[0]] and way.comes_down_from(context.highest_point(way.axis)):
+                yield unbroken.tolist(), math.inf
+        elif _begins_operation(context, arrives) and (height := way.height) is not None:
             yield unbroken.tolist(), height - context.highest_point(way.axis)
 
 

@@ -67,7 +67,7 @@ def _skipped_blocks(context: ComparedContext) -> Iterator[tuple[RunEvent, list[i
     regions, cl = _regions(context, of_sections), context.matching.cl
     holes = list(_holes(context))
     for event in events:
-        drilled = next((hole for hole in holes if hole.first <= event.before_row < hole.end), None)
+        drilled = _hole_at(context, holes, event.before_row)
         if drilled is not None and (found := _stretch_of_hole(context, of_sections, drilled.index)):
             yield event, found
             continue
@@ -105,6 +105,13 @@ def _regions(
 def _holes(context: ComparedContext) -> Iterator[MatchedHole]:
     """Yield the rows of the holes that the CL file has."""
     return (each for each in match_holes(context.run, context.expected) if each.index < len(context.expected.holes))
+
+
+def _hole_at(context: ComparedContext, holes: Sequence[MatchedHole], row: int) -> MatchedHole | None:
+    """Return the hole at which a row is, or to which it leads from the hole before, with no CL point between them."""
+    hole = next((hole for hole in holes if row < hole.end), None)
+    count = context.matching.nc.count_before
+    return hole if hole is not None and (hole.first <= row or count(row) == count(hole.first)) else None
 
 
 def _stretch_of_hole(

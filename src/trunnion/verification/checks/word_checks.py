@@ -1,14 +1,14 @@
 """Words of a program that the reader does not know or cannot act upon."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
 from trunnion.encoding import decode
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, Severity, first_of_kinds
 from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic, Run
-from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, Faults
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.results import Check, Place
 
@@ -31,7 +31,15 @@ def check_words(context: Context) -> Check:
         good = Wording("words", "with_remarks", known=good, count=others)
     if not errors and remarks:
         return Check("words", True, good, places=tuple(_place(context, each) for each in diagnostics[:MAX_PLACES]))
-    return check_from_places("words", [_place(context, error) for error in errors], good)
+    faults = Faults(list(_places(context, errors)), len(errors))
+    return faults.check("words", good)
+
+
+def _places(context: Context, errors: Sequence[Diagnostic]) -> Iterator[Place]:
+    """Yield the places of errors; of more than a check names those of the first of each kind."""
+    problems = [Problem(each.file, each.line, each.wording) for each in errors]
+    shown, _ = first_of_kinds(problems, MAX_PLACES)
+    yield from (_place(context, Diagnostic(each.line, each.wording, file=each.file)) for each in shown)
 
 
 def _known(diagnostics: Sequence[Diagnostic]) -> Wording:

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.errors import Problem, first_of_kinds
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -30,6 +31,9 @@ _MAX_DIFFERENCES: Final = 1000
 
 #: Differences that are kept with their places.
 _MOST_NOTED: Final = 2000
+
+#: Kinds of words that are not understood which a terminal shows.
+_MOST_KINDS: Final = 10
 
 _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
 
@@ -121,6 +125,8 @@ class Comparer:
             first=self._difference(self._first),
             worst=self._difference(self._worst or self._first),
             unknown_words=_unknown_words(one.run, two.run),
+            first_unknown=_first_unknown(one.run, two.run),
+            stated=tuple(dict.fromkeys(str(word.wording) for each in (one, two) for word in each.run.stated)),
         )
 
     def _same(self, i: int, j: int, count: int) -> Flags:
@@ -292,8 +298,16 @@ def _row(program: MovingRows, motion: int) -> int:
 
 def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:
     """Words that are not understood: what they do may depend on all that comes before, so that they prove nothing."""
+    return tuple(_word_line(each.file, each.line, each.text) for run in (one, two) for each in run.errors)
+
+
+def _first_unknown(one: Run, two: Run) -> tuple[tuple[str, ...], int]:
+    """Return the first of each kind of words that are not understood, and how many there are of further kinds."""
+    errors = [Problem(each.file, each.line, each.wording) for run in (one, two) for each in run.errors]
+    shown, left = first_of_kinds(errors, _MOST_KINDS)
+    return tuple(_word_line(each.file, each.line, each.wording.with_cure().what) for each in shown), left
+
+
+def _word_line(file: str, line: int, text: str) -> str:
     begin = Wording("comparison", "not_understood", word="").what  # as most of them do
-    words = ((error, error.text.removeprefix(begin)) for run in (one, two) for error in run.errors)
-    return tuple(
-        f"{each.file}:{each.line}: {Wording('comparison', 'not_understood', word=word)}" for each, word in words
-    )
+    return f"{file}:{line}: {Wording('comparison', 'not_understood', word=text.removeprefix(begin))}"

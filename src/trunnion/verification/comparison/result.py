@@ -2,14 +2,11 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Final
+from typing import Annotated, ClassVar
 
 from trunnion.arrays import Ints
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.results import FIRST, NOT_DATA, Figure
-
-#: Words that are not understood which a result names one by one.
-_MOST_NAMED: Final = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +63,8 @@ class Comparison:
     count          how many differences there are, those between the paths up to a limit; a feed, tool, offset or the
                    like that differs from one motion on to another is one
     unknown_words  words of either program that are not understood: then they cannot be called the same
+    first_unknown  of each kind of them the first, and how many others there are: what a terminal shows
+    stated         words and variables that both stand on, with what somebody has stated of them
     """
 
     SCHEMA: ClassVar[int] = 1
@@ -78,6 +77,8 @@ class Comparison:
     first: Difference | None
     worst: Difference | None
     unknown_words: tuple[str, ...] = ()
+    first_unknown: Annotated[tuple[tuple[str, ...], int], NOT_DATA] = ((), 0)
+    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
 
     @property
     @Figure(after=FIRST)
@@ -96,8 +97,10 @@ class Comparison:
     def lines(self) -> Iterator[str]:
         """Yield the result for a terminal."""
         if not self.same:
-            yield from self.unknown_words[:_MOST_NAMED]
+            yield from self.first_unknown[0]
         yield from map(str, self._wordings())
+        if self.stated:
+            yield str(phrase("stands_on_stated", words=self.stated))
 
     def _wordings(self) -> Iterator[Wording]:
         reached = {"points": self.points, "tip": self.tip, "axis": self.axis}
@@ -105,8 +108,8 @@ class Comparison:
             yield Wording("comparison", "same", **reached)
             return
         unknown = len(self.unknown_words)
-        if unknown > _MOST_NAMED:
-            yield Wording("comparison", "more_words", count=unknown - _MOST_NAMED)
+        if self.first_unknown[1]:
+            yield Wording("comparison", "more_words", count=self.first_unknown[1])
         if self.count and self.points:
             yield Wording("comparison", "different", count=self.count, **reached)
         elif self.count:

@@ -13,6 +13,7 @@ from trunnion.arrays import Codes, Flags, Ints
 from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.row_ranges import CHUNK
 
 #: How far a motion may deviate from the tool axis and still be along it, mm; and how much the axis may change.
@@ -23,6 +24,9 @@ _SAME_AXIS = 1e-9
 #: this, mm, or on its way: the tool may be longer or shorter than the one that the program was posted for.
 _ARRIVED = 0.01
 _FROM_HOME = 200.0
+
+#: Axes that move by less than this, mm or degrees, stand still.
+_STILL = 1e-9
 
 #: Rows that are searched at first.
 _FEW = 64
@@ -80,6 +84,30 @@ def tool_axis_exit_rows(run: Run) -> Ints:
     return np.asarray(rows[(out > 0.0) & (aside < _STRAIGHT) & same_axis])
 
 
+def stands_still(run: Run, rows: Ints) -> Flags:
+    """Which rows repeat the position before them, (k,) bool; an arc goes round to it.
+
+    From a machine position to one of the workpiece the distance is not known: no such row stands still.
+    """
+    still = np.zeros(len(rows), np.bool_)
+    maybe = np.flatnonzero((run.kind[rows] != Kind.ARC) & (rows > 0))
+    maybe = maybe[~MachinePositions.of(run).crossed(rows[maybe])]
+    if len(maybe):
+        way = run.positions(rows[maybe]).joints - run.positions(rows[maybe] - 1).joints
+        still[maybe] = (np.abs(way) < _STILL).all(axis=1)
+    return still
+
+
+def repeats_position(run: Run, rows: Ints) -> Flags:
+    """Which rows stand still and state no axis that the row before them does not, (k,) bool.
+
+    Behind a way home another axis may move, though its number is the one from before.
+    """
+    words = int(POSITION_WORDS | ROTARY_WORDS)
+    new = run.programmed[rows] & ~run.programmed[np.maximum(rows - 1, 0)] & words
+    return np.asarray(stands_still(run, rows) & (new == 0))
+
+
 def comes_from_home(run: Run, row: int) -> bool:
     """Whether a row begins at a machine position or behind a retract, so that nothing says how high above the part.
 
@@ -102,22 +130,26 @@ def approach_rows(run: Run) -> Ints:
     Where a head tilts the tool in a plane, it is a leg of linear axes (``is_leg_of_axes``).
 
     The tool was retracted before, comes from a machine position, or is where the operator has left it: a program may
-    begin so. How high it is then is not known where the machine's travel is not known.
+    begin so. How high it is then is not known where the machine's travel is not known. A leg may be repeated.
     """
     starts = {0, *(event.before_row for event in run.events if event.kind == "retract")}
     starts.update(row for row in run.state.machine_frame.rows_changing_to(False) if row > 0)
-    found = []
+    found: list[int] = []
     for row in _rows_that_follow(run, starts):
-        if row + 1 >= len(run) or (run.kind[row : row + 2] != Kind.RAPID).any() or run.state.machine_frame[row + 1]:
+        after = row + 1
+        while after < len(run) and repeats_position(run, np.array([after]))[0]:
+            after += 1
+        legs = np.array([row, after])
+        if after >= len(run) or (run.kind[legs] != Kind.RAPID).any() or run.state.machine_frame[after]:
             continue
         if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):
             continue
-        across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[row : row + 2])
-        by_cycle = bool(names_no_axis(run.programmed[row + 1 : row + 2])[0])
+        across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[legs])
+        by_cycle = bool(names_no_axis(run.programmed[after : after + 1])[0])
         comes_down = along == int(ProgrammedWord.Z) or by_cycle
         x_and_y = not across & ~int(ProgrammedWord.X | ProgrammedWord.Y)
         if (x_and_y and comes_down) or is_leg_of_axes(run, row):
-            found.append(row)
+            found += range(row, after)
     return np.array(found, np.int64)
 
 

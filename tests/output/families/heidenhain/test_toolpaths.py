@@ -36,7 +36,7 @@ def test_a_three_axis_program_whole(post: Post) -> None:
         "PLANE RESET STAY",
         "* - OP1",
         "; tool D10, milling tool, diameter 10, corner 0",
-        "; machining time 6.9 s + rapids of 6.9 s + rapids",
+        "; machining time 6.9 s of 6.9 s + rapids",
         "M129",
         "PLANE RESET STAY",
         "M137",

@@ -485,3 +485,8 @@ def test_radius_compensation_begins_and_ends_on_lines(run: Runner, text: str, li
     found = fanuc(run, f"G0 X0. Y0. Z0.\n{text}M30\n")
     errors = [each.line for each in found.diagnostics if "radius compensation begins or ends" in each.text]
     assert errors == lines
+
+
+def test_back_boring_without_a_shift_does_not_go_into_the_hole(run: Runner) -> None:
+    found = fanuc(run, "G90 G0 X0. Y0. Z30.\nG98 G87 X1. Z-5. R-20. F100.\nG80\n")
+    assert any("without a shift" in fault.text for fault in found.errors)

@@ -10,6 +10,7 @@ from trunnion.errors import Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.hole_motion import CycleExecutionError, peck_depths
+from trunnion.readers.families.heidenhain.words import CYCLE_LINES, CYCLE_PARAMETERS
 
 BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
 
@@ -26,7 +27,9 @@ def define(number: int, **values: float) -> str:
     return f"CYCL DEF {number} NAME ~\n" + " ~\n".join(f"{name}={value:+g}" for name, value in values.items()) + "\n"
 
 
-DRILL = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, "Q204": 50, "Q211": 0}
+DRILL: dict[str, float] = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, "Q204": 50, "Q211": 0}
+
+DEEP: dict[str, float] = {"Q212": 0, "Q205": 0, "Q258": 0, "Q259": 0, "Q257": 0, "Q256": 0}
 
 
 @pytest.mark.parametrize(
@@ -42,15 +45,15 @@ DRILL = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, 
         (203, {"Q212": 1, "Q213": 1, "Q205": 2, "Q208": 500, "Q256": 1}, "R12 F4 F5 F-1 F12 R1 F-5 F12 R60"),
         (204, {"Q249": 5, "Q250": 20, "Q251": 15, "Q252": 3.5, "Q253": 750, "Q254": 200, "Q255": 0, "Q214": 1},
          "R12 R12 F-27 F-27 F-20 F-27 F-27 F12 R12 R60"),
-        (205, {"Q212": 0, "Q205": 0, "Q258": 1, "Q259": 1, "Q257": 0}, "R12 F4 R12 R5 F-2 R12 R-1 F-5 R12 R60"),
-        (205, {"Q202": 15, "Q212": 0, "Q205": 0, "Q257": 5, "Q256": 1}, "R12 F5 F6 F0 F1 F-5 R12 R60"),
-        (205, {"Q202": 15, "Q379": 8, "Q253": 700}, "R12 F2 F-5 R12 R60"),
+        (205, {**DEEP, "Q258": 1, "Q259": 1}, "R12 F4 R12 R5 F-2 R12 R-1 F-5 R12 R60"),
+        (205, {**DEEP, "Q202": 15, "Q257": 5, "Q256": 1}, "R12 F5 F6 F0 F1 F-5 R12 R60"),
+        (205, {**DEEP, "Q202": 15, "Q379": 8, "Q253": 700}, "R12 F2 F-5 R12 R60"),
         (206, {}, "R12 F-5 F12 R60"),
         (207, {"Q239": 1.5}, "R12 F-5 F12 R60"),
         (209, {"Q239": 1, "Q257": 10, "Q256": 2}, "R12 F0 F2 F-5 F12 R60"),
         (209, {"Q239": -1, "Q257": 10, "Q256": 0}, "R12 F0 F12 F-5 F12 R60"),
         (240, {"Q343": 0}, "R12 F-5 R12 R60"),
-        (241, {"Q379": 0, "Q208": 900}, "R12 F-5 F12 R60"),
+        (241, {"Q379": 0, "Q253": 700, "Q208": 900}, "R12 F-5 F12 R60"),
         (241, {"Q379": 6, "Q253": 700, "Q208": 900}, "R12 F6 F-5 F12 R60"),
     ],
 )  # fmt: skip
@@ -59,6 +62,47 @@ def test_cycles_of_the_200_series(number: int, values: dict[str, float], expecte
     assert found.diagnostics == ()
     assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
     close(found.tip[-1, :2], [3, 4])
+
+
+#: What the reader needs of each cycle, with values that it can make.
+SOUND: dict[int, dict[str, float]] = {
+    **dict.fromkeys((200, 201, 206), DRILL | {"Q208": 0}),
+    202: DRILL | {"Q208": 300, "Q214": 1},
+    203: DRILL | {"Q212": 0, "Q213": 0, "Q205": 0, "Q208": 500, "Q256": 1},
+    204: DRILL | {"Q249": 5, "Q250": 20, "Q251": 15, "Q252": 3.5, "Q253": 750, "Q254": 200, "Q255": 0, "Q214": 1},
+    205: DRILL | DEEP,
+    207: DRILL | {"Q239": 1.5},
+    208: DRILL | {"Q334": 2, "Q335": 20},
+    209: DRILL | {"Q239": 1, "Q257": 10, "Q256": 2},
+    240: DRILL | {"Q343": 0},
+    241: DRILL | {"Q379": 0, "Q253": 700, "Q208": 900},
+}
+
+
+def test_a_definition_without_a_line_that_the_motions_depend_on_is_an_error(run: Runner) -> None:
+    assert SOUND.keys() | {247} == CYCLE_PARAMETERS.keys()
+    for number, values in SOUND.items():
+        needed = {f"Q{parameter}" for parameter in CYCLE_PARAMETERS[number]}
+        whole = {name: value for name, value in values.items() if name in needed}
+        assert run(BEFORE + define(number, **whole) + "CYCL CALL").errors == (), number
+        for missing in needed:
+            less = {name: value for name, value in whole.items() if name != missing}
+            faults = run(BEFORE + define(number, **less) + "CYCL CALL").errors
+            assert any(f"has no {missing}:" in fault.text for fault in faults), (number, missing)
+    preset = run("CYCL DEF 247 DATUM SETTING\nL X+1 R0 FMAX")
+    assert any("has no Q339" in fault.text for fault in preset.errors)
+
+
+def test_older_cycles_need_each_of_their_lines(run: Runner) -> None:
+    for number, lines in CYCLE_LINES.items():
+        text = [f"CYCL DEF {number}.0 NAME", *(f"CYCL DEF {number}.{k} {name}-5" for k, name in lines.items())]
+        text = [line.replace("DWELL-5", "DWELL0").replace("F-5", "F100").replace("DIST-5", "DIST2") for line in text]
+        assert run(BEFORE + "\n".join(text) + "\nCYCL CALL").errors == ()
+        assert run(BEFORE + "\n".join(text[:-1]) + "\nCYCL CALL").errors
+
+
+def test_back_boring_without_a_shift_does_not_go_into_the_hole(run: Runner) -> None:
+    assert run(BEFORE + define(204, **SOUND[204] | {"Q214": 0}) + "CYCL CALL").errors
 
 
 @pytest.mark.parametrize("word", ["MAX", "FMAX"])
@@ -131,7 +175,7 @@ def test_parameters_of_cycles_are_parameters(run: Runner) -> None:
     text = (
         "Q1 = 4\n"
         + define(200, **{**DRILL, "Q202": 15})
-        + "Q2 = Q201 + Q1\nCYCL DEF 200 Q201=Q2 Q203=-Q1 Q200=1 Q206=9 Q202=50\n"
+        + "Q2 = Q201 + Q1\nCYCL DEF 200 Q201=Q2 Q203=-Q1 Q200=1 Q206=9 Q202=50 Q210=0 Q204=50 Q211=0\n"
     )
     found = run(BEFORE + text + "CYCL CALL")
     assert found.diagnostics == ()

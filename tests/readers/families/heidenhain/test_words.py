@@ -40,6 +40,9 @@ def test_a_block_goes_on_over_several_lines(line_end: str, run: Runner) -> None:
         "Q201=-8 ~",
         "Q206=150 ;F ~",
         "Q202=8 ~",
+        "Q210=0 ~",
+        "Q204=50 ~",
+        "Q211=0 ~",
         "Q203=0",
         "8 CYCL CALL",
     ]

@@ -72,9 +72,9 @@ def test_tapping_goes_at_the_pitch(run: Runner) -> None:
     assert heights(result) == [50, 3, -15, 3, 20]
     assert result.feed[2:4].tolist() == [750.0, 1000.0]
     assert result.kind[3] == Kind.LINEAR
-    assert run(HEAD + "CYCLE84(20,0,3,-15,,,3,8)").feed[2] == 1250.0
+    assert run(HEAD + "CYCLE84(20,0,3,-15,,,3,8,,,1000)").feed[2] == 1250.0
     assert run(HEAD + "CYCLE840(20,0,3,-15,,,0,3,0,,1.5)").feed[2] == 1500.0
-    assert "no pitch" in run(HEAD + "CYCLE84(20,0,3,-15)").errors[0].text
+    assert "no pitch" in run(HEAD + "CYCLE84(20,0,3,-15,,,3,,,,600)").errors[0].text
 
 
 def test_reaming_and_boring(run: Runner) -> None:
@@ -113,6 +113,26 @@ def test_cycles_that_make_no_sense_are_named(run: Runner, cycle: str) -> None:
     result = run(HEAD + cycle)
     assert len(result) == 1
     assert "not executed" in result.errors[0].text
+
+
+@pytest.mark.parametrize(
+    ("call", "missing"),
+    [
+        ("CYCLE83(10,0,3,-15)", "FDEP or FDPR"),
+        ("CYCLE84(10,0,3,-6,,,,,1.25,0,600,600)", "SDAC"),
+        ("CYCLE84(10,0,3,-6,,,3,,1.25)", "SST"),
+        ("CYCLE85(10,0,3,-6)", "FFR"),
+        ("CYCLE85(10,0,3,-6,,,100)", "RFF"),
+        ("CYCLE86(10,0,3,-6)", "SDIR"),
+        ("CYCLE87(10,0,3,-6)", "SDIR"),
+        ("CYCLE88(10,0,3,-6,,0.5)", "SDIR"),
+    ],
+)
+def test_values_that_are_not_0_when_they_are_left_out(call: str, missing: str, run: Runner) -> None:
+    """The language takes values that a call leaves out as 0, which is no depth, feed, speed or sense."""
+    found = run(HEAD + call)
+    assert len(found) == 1
+    assert missing in found.errors[0].text
 
 
 #: Call -> motions at a hole as (R or F, height), and dwells; the tool stands at Z50 and the spindle turns with 1000.

@@ -364,3 +364,13 @@ def test_what_is_added_to_the_tool_is_named(run: Runner) -> None:
 
 def test_a_limit_of_the_spindle_is_no_programmed_speed(run: Runner) -> None:
     assert run("S500 M3\nG26 S4000\nG25 S20\nG1 X1 F100").rpm.tolist() == [500.0]
+
+
+@pytest.mark.parametrize(("before", "within"), [("CDON", ""), ("", "CDON")])
+def test_a_look_ahead_for_bottlenecks_warns_and_leaves_the_path(before: str, within: str, run: Runner) -> None:
+    text = "{}\nG0 X0 Y0 Z5 D1\nG1 Z0 F100\nG41 X10 Y0\nX20\n{}\nX30\nG40 X40 Y9"
+    found, plain = run(text.format(before, within)), run(text.format("CDOF", ""))
+    assert found.errors == plain.errors == ()
+    assert any("CDON" in each.text for each in found.diagnostics)
+    assert not any("CDO" in each.text for each in plain.diagnostics)
+    close(found.tip, plain.tip)

@@ -123,6 +123,8 @@ def _back_bore(hole: Hole) -> list[HoleMotion]:
     if not hole.to_initial:
         raise CycleExecutionError(Wording("NC380", "g87_needs_g98"))
     lateral = hole.lateral
+    if lateral == (0.0, 0.0):
+        raise CycleExecutionError(Wording("NC380", "not_beside_the_wall"))
     return [
         HoleMotion(True, hole.initial, lateral=lateral),
         HoleMotion(True, hole.retract, lateral=lateral),

@@ -39,7 +39,7 @@ class FanucInterpreter(CycleInterpreter):
     """Runs one Fanuc program on one machine."""
 
     table = words.TABLE
-    corner_letters = ("R", "C")
+    corner_letters, program_letter = ("R", "C"), "O"
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)

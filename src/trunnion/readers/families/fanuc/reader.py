@@ -3,7 +3,7 @@
 from typing import Final
 
 from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
-from trunnion.readers.families.fanuc.settings import settings_of
+from trunnion.readers.families.fanuc.settings import VARIABLE, settings_of
 from trunnion.readers.families.fanuc.words import TABLE, is_own_word
 from trunnion.readers.families.fanuc.work_offsets import WORK_OFFSETS, offsets_of
 from trunnion.readers.program.family_reader import FamilyReader
@@ -37,4 +37,5 @@ READER: Final = FamilyReader(
     words_of=lambda machine: TABLE.without_path_by(settings_of(machine).words),
     compensation_style=lambda machine: settings_of(machine).compensation_style,
     check_reading=settings_of,
+    variables=VARIABLE,
 )

@@ -12,7 +12,8 @@ from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.readers.control.start_modes import MOTION, check_start_modes
 from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
-from trunnion.readers.program.settings import reading_of, unit_of
+from trunnion.readers.program.forms import read_form
+from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
@@ -43,7 +44,7 @@ _SECONDS: Final = 0.001
 _STYLES: Final = {"A": TYPE_A, "B": UNKNOWN_STYLE}
 
 #: Common variables.
-_VARIABLE: Final = re.compile(r"#[1-9][0-9]{2}")
+VARIABLE: Final = re.compile(r"#[1-9][0-9]{2}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +158,7 @@ def settings_of(machine: Machine) -> Settings:
     numbers = table.text("whole_numbers", "increments", one_of=("increments", "calculator"))
     increment = table.number("least_increment_mm", 0.001, above=0.0)
     unit = unit_of(table)
+    read_form(table, family_of(machine))
     check_start_modes(table, START_MODES)
     settings = Settings(
         numbers == "calculator",
@@ -175,7 +177,7 @@ def settings_of(machine: Machine) -> Settings:
         length_along_z=table.flag("length_along_z", False),
         compensation_style=_STYLES[table.text("compensation_start", "A", one_of=tuple(_STYLES))],
         kept_by=table.text("kept_by", KEPT_BY),
-        variables=read_variables(table, _VARIABLE, "#500"),
+        variables=read_variables(table, VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
     )
     table.report_unread_keys()

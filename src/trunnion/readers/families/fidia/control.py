@@ -19,7 +19,8 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.start_modes import check_start_modes, with_tcp_off
 from trunnion.readers.families.fidia.words import TABLE
-from trunnion.readers.program.settings import reading_of, unit_of
+from trunnion.readers.program.forms import read_form
+from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
@@ -46,6 +47,7 @@ def settings_of(machine: Machine) -> Settings:
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     unit = unit_of(table)
     words = read_word_meanings(table, TABLE.is_own)
+    read_form(table, family_of(machine))
     check_start_modes(table, _start_modes_of(machine))
     table.report_unread_keys()
     table.raise_problems()

@@ -17,6 +17,7 @@ from trunnion.readers.families.heidenhain.cycles import (
     CYCLES,
     LEGACY_CYCLES,
     MAY_BE_RAPID,
+    check_given,
     cycle_motions,
     legacy_cycle_motions,
     legacy_spindle_work,
@@ -31,6 +32,7 @@ from trunnion.readers.families.heidenhain.words import (
     ACT_WHEN_DEFINED,
     AXIS_SCALING,
     BORE_MILLING,
+    CYCLE_LINES,
     CYCLES_NOT_SIMULATED,
     DATUM,
     DWELL,
@@ -50,13 +52,6 @@ _ASSIGNED = re.compile(
     r"[ \t]*(Q[0-9]{1,4})[ \t]*=[ \t]*(?:([+-]?)[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+))|([A-Z]+))"
 )
 _LAST = re.compile(r"([+-]?)[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+))[ \t]*$")
-
-#: The values in the lines of cycles 1, 2 and 17, by the number after the point.
-_FIELDS: Final = {
-    1: {1: "DIST", 2: "DEPTH", 3: "PLNGNG", 4: "DWELL", 5: "F"},
-    2: {1: "DIST", 2: "DEPTH", 3: "DWELL", 4: "F"},
-    17: {1: "DIST", 2: "DEPTH", 3: "PITCH"},
-}
 
 #: Rapid as a feed of a cycle.
 _RAPID: Final = ("MAX", "FMAX")
@@ -132,7 +127,7 @@ class Definitions:
         if number in CYCLES_NOT_SIMULATED:
             return
         if number in LEGACY_CYCLES:
-            name = _FIELDS[number].get(line)
+            name = CYCLE_LINES[number].get(line)
             if self.defined_cycle is None or self.defined_cycle.number != number or name is None:
                 raise KlartextError(Wording("NC210", "stray_line", number=number))
             self.defined_cycle.values[name] = _last(rest, parameters)
@@ -301,7 +296,11 @@ class Definitions:
         return q_values
 
     def _preset(self, q_values: dict[int, float]) -> None:
-        preset = q_values.get(339, 0.0)
+        try:
+            check_given(PRESET, q_values)
+        except CycleExecutionError as error:
+            raise KlartextError(error.wording.within("of_cycle")) from None
+        preset = q_values[339]
         if preset != int(preset) or not 0 <= preset < 65535:
             raise KlartextError(Wording("NC215", "preset_does_not_exist", preset=preset))
         self._control.note_preset(int(preset))

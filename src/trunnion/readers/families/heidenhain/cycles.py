@@ -21,6 +21,7 @@ from trunnion.readers.control.hole_motion import (
     full_retract,
     peck_depths,
 )
+from trunnion.readers.families.heidenhain.words import CYCLE_LINES, CYCLE_PARAMETERS
 from trunnion.readers.program.word_values import one_of
 
 #: How far the tool moves off the wall of a bored hole, mm: a fixed value of the control.
@@ -32,6 +33,9 @@ MAY_BE_RAPID: Final = frozenset({208})
 #: Values of Q parameters: the depth counts from the tip of the tool (Q395), and the sense of bore milling (Q351).
 Q_VALUES: Final = {395: one_of(0), 351: one_of(-1, 0, 1)}
 
+#: Bores from below: its depth Q249 counts upwards, and it has no Q201.
+_BACK_BORING: Final = 204
+
 #: Directions of Q214 in the first and second axis of the plane.
 _LIFT_DIRECTIONS: Final = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
 
@@ -39,18 +43,22 @@ _LIFT_DIRECTIONS: Final = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.
 class Hole:
     """The values of a cycle: Q parameters by number, and heights that all cycles have.
 
-    Heights are coordinates along the tool axis, mm; depths count from the surface, mm, with the sign of Q201.
+    values   Q parameters by number
+    rpm      spindle speed
+    depth    of the hole below the surface, mm, negative where drilling goes to lower values
+
+    Heights are coordinates along the tool axis, mm; depths count from the surface, mm, with the sign of the depth.
 
     sign     -1 if drilling goes to lower values
     start    height of the set-up clearance
     back     height of the second set-up clearance if it is higher, else of the first
     """
 
-    def __init__(self, values: Mapping[int, float], rpm: float) -> None:
+    def __init__(self, values: Mapping[int, float], rpm: float, depth: float) -> None:
         self._values = values
         self.rpm = rpm
         self.surface = self.need(203)
-        self.depth = self.need(201)
+        self.depth = depth
         if self.depth == 0.0:
             raise CycleExecutionError(Wording("NC380", "depth_0"))
         self.sign = -1.0 if self.depth < 0.0 else 1.0
@@ -70,7 +78,7 @@ class Hole:
     def need(self, number: int) -> float:
         """Return a value that the cycle must have."""
         if number not in self._values:
-            raise CycleExecutionError(Wording("NC380", "has_no_parameter", number=number))
+            raise CycleExecutionError(Wording("NC380", "has_no_parameter", missing=(f"Q{number}",)))
         return self.get(number)
 
     def at(self, depth: float) -> float:
@@ -88,6 +96,13 @@ class Hole:
         return self.get(208) or self.feed
 
 
+def check_given(number: int, values: Mapping[int, float]) -> None:
+    """Refuse a definition without one of the Q parameters that its cycle must have."""
+    if missing := [parameter for parameter in CYCLE_PARAMETERS[number] if parameter not in values]:
+        names = tuple(f"Q{parameter}" for parameter in missing)
+        raise CycleExecutionError(Wording("NC380", "has_no_parameter", missing=names))
+
+
 def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[HoleMotion]:
     """Return the motions of a cycle of the 200 series at one hole.
 
@@ -95,12 +110,13 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
     values  Q parameters by number
     rpm     spindle speed, for rigid taps
     """
+    check_given(number, values)
     for parameter, known in Q_VALUES.items():
         if parameter in values and values[parameter] not in known:
             raise CycleExecutionError(
                 Wording("NC215", "parameter_out_of_range", parameter=parameter, value=values[parameter], known=known)
             )
-    hole = Hole(values, rpm)
+    hole = Hole(values, rpm, -abs(values[249]) if number == _BACK_BORING else values[201])
     motions = [
         replace(motion, rapid=True, feed=None) if motion.feed == math.inf else motion for motion in CYCLES[number](hole)
     ]
@@ -168,6 +184,8 @@ def _back_bore(hole: Hole) -> list[HoleMotion]:
     Q250 is the thickness of the material, Q251 the distance from the tip to the cutting edge.
     """
     lateral = _lift_off(hole, hole.need(252))
+    if lateral == (0.0, 0.0):
+        raise CycleExecutionError(Wording("NC380", "not_beside_the_wall"))
     free = hole.at(hole.need(250) + hole.get(251) + hole.need(200))
     deep = hole.at(hole.need(250) + hole.get(251) - hole.need(249))
     slow, cut = hole.get(253), hole.need(254)
@@ -330,9 +348,11 @@ def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, h
     values  DIST, DEPTH, PLNGNG, DWELL, F and PITCH
     """
 
-    def need(name: str) -> float:
+    for name in CYCLE_LINES[number].values():
         if name not in values:
             raise CycleExecutionError(Wording("NC380", "has_no", word=name))
+
+    def need(name: str) -> float:
         value = finite(values[name])
         assert value is not None
         return value
@@ -347,7 +367,7 @@ def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, h
         feed = abs(need("PITCH")) * rpm if number == 17 else need("F")
         if not 0.0 < feed <= MAX_FEED:
             raise CycleExecutionError(Wording("NC380", "no_feed_machine"))
-        bottom = HoleMotion(False, surface + sign * total, feed, dwell=values.get("DWELL", 0.0))
+        bottom = HoleMotion(False, surface + sign * total, feed, dwell=need("DWELL") if number != 17 else 0.0)
         return [bottom, HoleMotion(False, here, feed)]
     feed = need("F")
     if not 0.0 <= feed <= MAX_FEED:
@@ -359,7 +379,7 @@ def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, h
         return surface + sign * depth
 
     out, depths = full_retract(here, height, gap), peck_depths(total, abs(need("PLNGNG")))
-    return [*descent(depths, height, out, feed, (0.0, values.get("DWELL", 0.0))), HoleMotion(True, here)]
+    return [*descent(depths, height, out, feed, (0.0, need("DWELL"))), HoleMotion(True, here)]
 
 
 #: Cycles whose heights count from the present position.

@@ -47,6 +47,9 @@ _PATH = re.compile(rf"({'|'.join(sorted(PATHS, key=len, reverse=True))})(?=[ \t]
 class HeidenhainInterpreter(PathInterpreter):
     """Runs one Klartext program on one machine."""
 
+    comment_signs = (";", "")
+    text_sign = '"'
+
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
         # The lines so far of a block that continues over several lines, and its first line and number.

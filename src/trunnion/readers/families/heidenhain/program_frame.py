@@ -14,6 +14,8 @@ _UNITS: Final = ("MM", "INCH")
 _LABEL: Final = re.compile(r"[ \t]*(?:/[ \t]*)?(?:[0-9]+[ \t]*)?LBL(?![A-Z])", re.IGNORECASE)
 _SKIPPED: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?/")
 _PROGRAM_END: Final = re.compile(r"(?<![A-Z])M0*(?:2|30)(?![0-9])", re.IGNORECASE)
+_SECOND_END: Final = re.compile(rb"^[^;\n]*?(?<![A-Z])M0*(?:2|30)(?![0-9])", re.IGNORECASE | re.MULTILINE)
+_BEGIN: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?BEGIN[ \t]+PGM(?![A-Z])", re.IGNORECASE)
 _END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+(PGM(?![A-Z]).*)", re.IGNORECASE)
 
 
@@ -62,9 +64,15 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note, last: str)
                 continue
             reachable = True
             if not _LABEL.match(raw):
-                note(Wording("NC161", "behind_end"), Severity.ERROR)
+                source.load()
+                again = source.search(_SECOND_END, source.line - 1) is not None
+                variant = "another_program" if again else "behind_end"
+                note(Wording("NC161", variant), Severity.ERROR if again else Severity.WARNING)
         elif active.ended and split_line(raw).statement:
-            note(Wording("NC161", "stands_behind_end_pgm_another"), Severity.ERROR)
+            if _BEGIN.match(split_line(raw).statement):
+                note(Wording("NC161", "stands_behind_end_pgm_another"), Severity.ERROR)
+            else:
+                note(Wording("NC161", "behind_end"), Severity.WARNING)
             return
 
 

@@ -6,7 +6,7 @@ from typing import Final
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.interpreter import HeidenhainInterpreter
 from trunnion.readers.families.heidenhain.own_words import is_own_word
-from trunnion.readers.families.heidenhain.settings import variables_of
+from trunnion.readers.families.heidenhain.settings import VARIABLE, variables_of
 from trunnion.readers.families.heidenhain.words import (
     M_CALL,
     M_CALL_MODAL,
@@ -58,4 +58,5 @@ READER: Final = FamilyReader(
     lost_smoothing={"cycle32": ("cycle 32", "see the setting tolerance=…")},
     compensation_style=lambda _: HeidenhainControl.compensation_style,
     check_reading=variables_of,
+    variables=VARIABLE,
 )

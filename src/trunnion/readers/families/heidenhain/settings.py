@@ -6,19 +6,21 @@ from typing import Final
 from trunnion.machines import Machine
 from trunnion.readers.control.start_modes import check_start_modes
 from trunnion.readers.program.declared_variables import read_variables
-from trunnion.readers.program.settings import reading_of
+from trunnion.readers.program.forms import read_form
+from trunnion.readers.program.settings import family_of, reading_of
 
 #: How the reader takes the control to start.
 START_MODES: Final = {"tilted plane": "PLANE RESET", "TCP": "M129"}
 
 #: Parameters that all programs share.
-_VARIABLE: Final = re.compile(r"QR?(?:0|[1-9][0-9]{0,3})")
+VARIABLE: Final = re.compile(r"QR?(?:0|[1-9][0-9]{0,3})")
 
 
 def variables_of(machine: Machine) -> dict[str, float]:
     """Return the values of parameters that a machine's control has when a program starts; InputError if wrong."""
     table = reading_of(machine)
-    variables = read_variables(table, _VARIABLE, "Q1600")
+    variables = read_variables(table, VARIABLE, "Q1600")
+    read_form(table, family_of(machine))
     check_start_modes(table, START_MODES)
     table.flag("approach_without_side", False)  # asked for by approaches
     table.report_unread_keys()

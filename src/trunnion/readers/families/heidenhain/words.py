@@ -157,6 +157,31 @@ M_VALUES: Final = {(120, "LA"): whole(0, 99)}
 #: Its path is simulated without the tool radius.
 BORE_MILLING: Final = 208
 
+#: Q parameters without which the motions of a cycle are not known, by its number. A control asks for each of them, and
+#: a definition without one leaves an older value in force. Those that newer software has added are not among them.
+CYCLE_PARAMETERS: Final = {
+    200: (200, 201, 206, 202, 210, 203, 204, 211),
+    201: (200, 201, 206, 211, 208, 203, 204),
+    202: (200, 201, 206, 211, 208, 203, 204, 214),
+    203: (200, 201, 206, 202, 210, 203, 204, 212, 213, 205, 211, 208, 256),
+    204: (200, 249, 250, 251, 252, 253, 254, 255, 203, 204, 214),
+    205: (200, 201, 206, 202, 203, 204, 212, 205, 258, 259, 257, 256, 211),
+    206: (200, 201, 206, 211, 203, 204),
+    207: (200, 201, 239, 203, 204),
+    208: (200, 201, 206, 334, 203, 204, 335),
+    209: (200, 201, 239, 203, 204, 257, 256),
+    240: (200, 343, 201, 206, 211, 203, 204),
+    241: (200, 201, 206, 211, 203, 204, 379, 253, 208),
+    PRESET: (339,),
+}
+
+#: Lines of the older cycles that blocks call, by number: the value of each.
+CYCLE_LINES: Final = {
+    1: {1: "DIST", 2: "DEPTH", 3: "PLNGNG", 4: "DWELL", 5: "F"},
+    2: {1: "DIST", 2: "DEPTH", 3: "DWELL", 4: "F"},
+    17: {1: "DIST", 2: "DEPTH", 3: "PITCH"},
+}
+
 #: Cycles that are not simulated: their names.
 CYCLES_NOT_SIMULATED: Final = {
     3: "slot milling", 4: "pocket milling", 5: "circular pocket", 6: "rough-out", 12: "program call", 14: "contour",

@@ -21,7 +21,8 @@ from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.start_modes import CENTRES, KINEMATICS, check_start_modes, with_tcp_off
 from trunnion.readers.families.linuxcnc.words import is_own_word
 from trunnion.readers.program.declared_variables import read_variables
-from trunnion.readers.program.settings import reading_of, unit_of
+from trunnion.readers.program.forms import read_form
+from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
@@ -47,7 +48,7 @@ _START_MODES: Final = {
 }  # fmt: skip
 
 #: Parameters that keep their values from one program to the next.
-_PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
+PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
 
 
 def _start_modes_of(machine: Machine) -> Mapping[str, str]:
@@ -58,7 +59,8 @@ def settings_of(machine: Machine) -> tuple[str, WordMeanings, dict[str, float]]:
     """Read the unit, own words and declared parameters of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
     unit, words = unit_of(table), read_word_meanings(table, is_own_word)
-    variables = read_variables(table, _PARAMETER, "#100")
+    variables = read_variables(table, PARAMETER, "#100")
+    read_form(table, family_of(machine))
     check_start_modes(table, _start_modes_of(machine))
     table.report_unread_keys()
     table.raise_problems()

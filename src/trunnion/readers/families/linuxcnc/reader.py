@@ -3,7 +3,7 @@
 import re
 from typing import Final
 
-from trunnion.readers.families.linuxcnc.control import LinuxcncControl, settings_of
+from trunnion.readers.families.linuxcnc.control import PARAMETER, LinuxcncControl, settings_of
 from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.readers.families.linuxcnc.words import TABLE, is_own_word
 from trunnion.readers.program.family_reader import FamilyReader
@@ -44,4 +44,5 @@ READER: Final = FamilyReader(
     words_of=lambda machine: TABLE.without_path_by(settings_of(machine)[1]),
     compensation_style=lambda _: LinuxcncControl.compensation_style,
     check_reading=settings_of,
+    variables=PARAMETER,
 )

@@ -28,7 +28,7 @@ from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.start_modes import ANGLES, VECTOR_FRAME, VECTORS
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 from trunnion.readers.families.sinumerik.settings import START_MODES, WITH_LENGTH, Settings, settings_of
-from trunnion.readers.families.sinumerik.words import WITHIN_COMPENSATION
+from trunnion.readers.families.sinumerik.words import BOTTLENECKS, WITHIN_COMPENSATION
 from trunnion.readers.scan.letter_blocks import letter_table
 
 #: Motions in force besides rapid and lines: G2, G3, CIP.
@@ -138,6 +138,8 @@ class SinumerikControl(VirtualControl):
             self.note(
                 Wording("NC220", "within_radius_compensation_not_simulated", word=word, effect=effect), Severity.ERROR
             )
+        elif word == BOTTLENECKS:
+            self.note(Wording("NC221", "bottlenecks", word=word), Severity.WARNING)
 
     def set_working_plane(self, plane: int) -> None:
         """Select the working plane (G17, G18, G19) by its normal axis."""

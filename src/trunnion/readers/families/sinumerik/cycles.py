@@ -20,7 +20,7 @@ from trunnion.readers.control.hole_motion import (
     descent,
     full_retract,
 )
-from trunnion.readers.families.sinumerik.words import CYCLE_VALUES
+from trunnion.readers.families.sinumerik.words import CYCLE_NEEDS, CYCLE_VALUES
 
 #: How far a chip-breaking peck backs off by default, mm.
 CHIP_BREAK: Final = 1.0
@@ -157,6 +157,9 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
         raise CycleExecutionError(Wording("NC380", "too_many_values", most=most, given=len(arguments)))
     if name in _SENSE_PLACES and _get(arguments, _SENSE_PLACES[name]) == 0.0:
         raise CycleExecutionError(Wording("NC380", "bad_spindle_sense", code=0.0))
+    for place, word in CYCLE_NEEDS.get(name, {}).items():
+        if not _or(arguments, place):
+            raise CycleExecutionError(Wording("NC380", "has_no_value", value=place, word=word))
     if name == "CYCLE84":
         _check_tap(arguments)
     for place, known in CYCLE_VALUES.get(name, {}).items():
@@ -243,7 +246,7 @@ def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
     elif first is not None:
         peck = sign * (first - heights.reference)
     else:
-        peck = total
+        raise CycleExecutionError(Wording("NC380", "no_first_depth"))
     dwell, again = _or(arguments, 9), _or(arguments, 10)
     full = _or(arguments, 12) == 1.0
     back = _or(arguments, 15) or CHIP_BREAK
@@ -320,8 +323,8 @@ def _pitch(size: float | None, pitch: float | None, unit: float) -> float:
 def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
     """CYCLE84: rigid tapping, in pecks if VARI and DAM ask for them."""
     pitch = _pitch(_get(arguments, 8), _get(arguments, 9), _or(arguments, 14))
-    down = (_or(arguments, 11) or rpm) * pitch
-    up = (_or(arguments, 12) or _or(arguments, 11) or rpm) * pitch
+    down = _or(arguments, 11) * pitch
+    up = (_or(arguments, 12) or _or(arguments, 11)) * pitch
     variant, peck = _or(arguments, 16), abs(_or(arguments, 17))
     total = abs(heights.depth - heights.reference)
     depths = peck_depths(total, peck, 0.0, 0.0) if variant and peck else [total]
@@ -348,8 +351,8 @@ def _ream(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
     """CYCLE85: reaming, in at FFR, out at RFF."""
     down, up = _get(arguments, 7), _get(arguments, 8)
     return [
-        HoleMotion(False, heights.depth, feed=down or None, dwell=_or(arguments, 6)),
-        HoleMotion(False, heights.start, feed=up or None),
+        HoleMotion(False, heights.depth, feed=down, dwell=_or(arguments, 6)),
+        HoleMotion(False, heights.start, feed=up),
     ]
 
 

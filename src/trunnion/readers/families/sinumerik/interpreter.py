@@ -60,6 +60,9 @@ _PREFIX_LENGTH: Final = 48
 class SinumerikInterpreter(WordInterpreter):
     """Runs one Sinumerik program on one machine."""
 
+    comment_signs = (";", "")
+    text_sign = '"'
+
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
         # Whether F counts for rotary axes at another radius than that of a degree as a millimetre.

@@ -6,7 +6,7 @@ from typing import Final
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.readers.families.sinumerik.own_words import is_own_word
-from trunnion.readers.families.sinumerik.settings import settings_of
+from trunnion.readers.families.sinumerik.settings import VARIABLE, settings_of
 from trunnion.readers.families.sinumerik.words import (
     FEED_GROUP,
     G_WITHOUT_PATH_EFFECT,
@@ -57,4 +57,5 @@ READER: Final = FamilyReader(
     lost_smoothing={"cycle832": ("CYCLE832", "see setting cycle832=… and tolerance=…")},
     compensation_style=lambda _: SinumerikControl.compensation_style,
     check_reading=settings_of,
+    variables=VARIABLE,
 )

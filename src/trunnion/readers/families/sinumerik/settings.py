@@ -9,7 +9,8 @@ from trunnion.machines import Machine
 from trunnion.readers.control.contour_control import FEED_BEFORE, FEED_BEHIND
 from trunnion.readers.control.start_modes import ANGLES, VECTOR_FRAME, VECTORS, check_start_modes
 from trunnion.readers.program.declared_variables import read_variables
-from trunnion.readers.program.settings import reading_of
+from trunnion.readers.program.forms import read_form
+from trunnion.readers.program.settings import family_of, reading_of
 
 #: Whether the length of the edge in force counts in positions of the machine (G53, G153, SUPA).
 WITH_LENGTH: Final = "with_length"
@@ -22,7 +23,7 @@ START_MODES: Final = {
 }  # fmt: skip
 
 #: R parameters, variables of the control (GUD) and system variables, in capitals, with their index.
-_VARIABLE: Final = re.compile(r"R(?:0|[1-9][0-9]{0,4})|\$?[A-Z_][A-Z0-9_]+(?:\[[0-9]{1,5}(?:,[0-9]{1,5})*\])?")
+VARIABLE: Final = re.compile(r"R(?:0|[1-9][0-9]{0,4})|\$?[A-Z_][A-Z0-9_]+(?:\[[0-9]{1,5}(?:,[0-9]{1,5})*\])?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +56,9 @@ def settings_of(machine: Machine) -> Settings:
         length_along_z=table.flag("length_along_z", False),
         swivel_axes=table.texts("swivel_axes", ()),
         corner_feed=table.text("corner_feed", "", one_of=("", FEED_BEFORE, FEED_BEHIND)),
-        variables=read_variables(table, _VARIABLE, "R100"),
+        variables=read_variables(table, VARIABLE, "R100"),
     )
+    read_form(table, family_of(machine))
     check_start_modes(table, START_MODES)
     table.report_unread_keys()
     table.raise_problems()

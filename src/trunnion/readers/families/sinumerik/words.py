@@ -165,10 +165,14 @@ WITHIN_COMPENSATION: Final = {
     "CUTCONOF": ("constant", ""),
     "G62": ("corners", "the feed is lowered at inside corners"),
     "FENDNORM": ("corners", ""),
-    "CDON": ("bottlenecks", "blocks that would damage the contour are left out"),
+    "CDON": ("bottlenecks", ""),
     "CDOF": ("bottlenecks", ""),
     "CDOF2": ("bottlenecks", ""),
 }
+#: With it the control leaves out blocks between which the contour is too narrow for the tool. Where the tool fits, the
+#: path is the same; without it such a place is an alarm, or a damaged contour.
+BOTTLENECKS: Final = "CDON"
+
 #: Words without a value that the path does not depend on.
 WITHOUT_PATH_EFFECT: Final = _words("""
     NORM KONT KONTC KONTT FNORM FENDNORM
@@ -229,6 +233,15 @@ CYCLE_VALUES: Final[dict[str, dict[int, Values]]] = {
     "CYCLE83": {12: one_of(0, 1)},
     "CYCLE84": {14: whole(0, 4), 16: whole(0, 2)},
     "CYCLE840": {13: whole(0, 4)},
+}
+
+#: Values that a call cannot do without, by their places: omitted ones count as 0, which is no speed, feed or sense.
+CYCLE_NEEDS: Final[dict[str, dict[int, str]]] = {
+    "CYCLE84": {7: "SDAC", 11: "SST"},
+    "CYCLE85": {7: "FFR", 8: "RFF"},
+    "CYCLE86": {7: "SDIR"},
+    "CYCLE87": {6: "SDIR"},
+    "CYCLE88": {7: "SDIR"},
 }
 
 #: Words with arguments that the path does not depend on.

@@ -1,8 +1,10 @@
 """Mutants of the sources: one small change of one place of one module."""
 
 import ast
+import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Final
 
@@ -111,3 +113,15 @@ KINDS: Final[dict[str, Callable[[ast.AST], str | None]]] = {
     "return": _return,
     "deleted statement": _deleted,
 }
+
+
+def draw_mutants(folder: Path, count: int, rng: random.Random) -> list[Mutant]:
+    """Mutants of the modules in a folder, or of one module, as many of each kind."""
+    places = dict[str, list[Mutant]]()
+    for file in sorted(folder.rglob("*.py")) or [folder]:
+        for mutant in mutants_of(file):
+            places.setdefault(mutant.kind, []).append(mutant)
+    for each in places.values():
+        rng.shuffle(each)
+    turns = [mutant for turn in zip_longest(*(places.get(kind, []) for kind in KINDS)) for mutant in turn if mutant]
+    return turns[:count]

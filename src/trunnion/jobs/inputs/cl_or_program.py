@@ -1,0 +1,38 @@
+"""CL files, and programs that somebody has taken for one.
+
+In:     a file, and how it is read.
+Out:    its toolpaths; or all that is wrong with it, and first of all that it is an NC program, where it is one.
+"""
+
+from pathlib import Path
+from typing import BinaryIO, Final
+
+from trunnion.cl.read import ClReading
+from trunnion.cl.watched import Watch, read_watched
+from trunnion.errors import InputError
+from trunnion.model.toolpath import Toolpath
+
+#: Fewer errors do not say that a file is no CL file.
+_FEW_ERRORS: Final = 5
+
+#: The code of errors that say so, however few they are.
+_NO_CL_FILE: Final = "CL110"
+
+
+def read_cl_file(file: Path | BinaryIO, watch: Watch, how: ClReading) -> list[Toolpath]:
+    """Return the toolpaths of a file, as ``read_watched`` does.
+
+    Raises ``InputError`` with every problem of it; the first says what program it is, where it is one.
+    """
+    try:
+        return read_watched(file, watch, how)
+    except InputError as error:
+        is_doubtful = len(error.problems) >= _FEW_ERRORS or any(each.code == _NO_CL_FILE for each in error.problems)
+        if not (is_doubtful and isinstance(file, Path)):
+            raise
+        from trunnion.readers import program_for_cl_file  # a CL file has no need of it
+
+        program = program_for_cl_file(file)
+        if program is None:
+            raise
+        raise InputError((program, *error.problems)) from None

@@ -1,0 +1,78 @@
+"""What is stated for one run besides the definition: values of variables, and what unknown words do.
+
+In:     settings, among which variables have their values, and words with their effects.
+Out:    the machine whose definition says so too, and the settings that are none of its variables.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+
+from trunnion import readers
+from trunnion.errors import InputError, Problem, argument_problem, setting_problem
+from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
+from trunnion.machines import Machine
+from trunnion.messages import Wording
+
+
+def with_stated(
+    machine: Machine, settings: Settings | None, assume: Mapping[str, str] | None
+) -> tuple[Machine, Mapping[str, SettingValue]]:
+    """Return the machine with what is stated besides, and the settings that are no variables of its control.
+
+    Raises ``InputError`` of the setting or the argument, if a variable has no number or a word cannot be declared.
+    """
+    settings, words = settings or {}, assumed_words(assume)
+    pattern = readers.reader_of(machine).variables if readers.can_read(machine) else None
+    names = [] if pattern is None else [each for each in settings if isinstance(each, str) and pattern.fullmatch(each)]
+    texts = as_texts({name: settings[name] for name in names})
+    if not (texts or words):
+        return machine, settings
+    stated = readers.with_stated(machine, words, {name: _number(name, text) for name, text in texts.items()})
+    try:
+        readers.check_reading(stated)
+    except InputError as error:
+        raise InputError([_of_argument(each) for each in error.problems]) from None
+    return stated, {key: value for key, value in settings.items() if key not in names}
+
+
+def refuse_settings(left: Iterable[str], *machines: Machine) -> None:
+    """Refuse settings that are variables of none of the controls, where there is nothing else to set.
+
+    Raises ``InputError`` of the settings.
+    """
+    names = tuple(dict.fromkeys(machine.key for machine in machines))
+    if problems := [setting_problem(key, Wording("ARG210", "no_variable", machines=names)) for key in left]:
+        raise InputError(problems)
+
+
+def assumed_words(assume: object) -> dict[str, str]:
+    """Return words and effects; the command line has them as pairs.
+
+    Raises ``InputError`` of the argument.
+    """
+    if assume is None:
+        return {}
+    pairs = dict(assume) if isinstance(assume, Mapping | list) else None
+    if pairs is None or not all(isinstance(text, str) for pair in pairs.items() for text in pair):
+        raise InputError(argument_problem("assume", Wording("ARG140", "no_mapping", type=type(assume).__name__)))
+    return pairs
+
+
+def _number(name: str, text: str) -> float:
+    """Return the value of a variable."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(
+            setting_problem(name, Wording("ARG220", "no_number_of_variable", value=repr(text), variable=name))
+        )
+    return value
+
+
+def _of_argument(problem: Problem) -> Problem:
+    """Return a problem with what was given as one with the argument; one of the definition as it is."""
+    if problem.file != readers.GIVEN:
+        return problem
+    return argument_problem("assume", problem.wording)

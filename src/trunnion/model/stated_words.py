@@ -1,0 +1,24 @@
+"""Words and variables whose meaning a program does not say: somebody has stated it, and nobody checks it."""
+
+from dataclasses import dataclass
+
+from trunnion.messages import Wording, phrase
+
+
+@dataclass(frozen=True, slots=True)
+class StatedWord:
+    """A word that a run met, or a variable that it read.
+
+    word      as it was stated: ``G65 P9810``, ``Q13``
+    says      what it does or holds, as it was stated
+    is_given  it was stated for this run only; else the definition states it
+    """
+
+    word: str
+    says: str
+    is_given: bool
+
+    @property
+    def wording(self) -> Wording:
+        """What a verdict says of it."""
+        return phrase("stated_word", word=self.word, says=self.says)

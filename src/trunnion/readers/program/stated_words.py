@@ -1,0 +1,64 @@
+"""What is stated of a program besides the definition of its machine, for one run.
+
+In:     a machine, words with what they do, and variables with their values.
+Out:    the machine, whose definition says so too; and what of it a run has relied on.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from trunnion.definitions import LocatedValue, Table
+from trunnion.machines import Machine
+from trunnion.model.run import Diagnostic
+from trunnion.model.stated_words import StatedWord
+from trunnion.readers.program.declared_variables import OF_VARIABLES
+from trunnion.readers.program.known_words import KnownWord
+from trunnion.readers.program.settings import GIVEN, control_of
+
+
+def with_stated(machine: Machine, words: Mapping[str, str], variables: Mapping[str, float]) -> Machine:
+    """Return the machine with ``[control.known]`` and ``[control.reading.variables]`` as they are stated besides.
+
+    The family judges names and effects when the definition is checked.
+    """
+    known = {word: _located(effects) for word, effects in words.items()}
+    values = {name: _located(value) for name, value in variables.items()}
+    added = {"known": _located(known), "reading": _located({"variables": _located(values)})}
+    return replace(machine, control=_merged(machine.control, added))
+
+
+def stated_words(known: Iterable[KnownWord], noted: Iterable[Diagnostic], machine: Machine) -> tuple[StatedWord, ...]:
+    """Return what a run relied on: words that have whole blocks, or were given for the run, and variables.
+
+    known  the declared words that the run met
+    noted  its diagnostics, which name the variables that it read
+    """
+    words = [StatedWord(each.word, each.says, each.is_given) for each in known if each.code is None or each.is_given]
+    values = control_of(machine).table("reading").table("variables")
+    for each in noted:
+        if each.code == OF_VARIABLES:
+            name, value = str(each.wording.parameter("name")), each.wording.parameter("value")
+            words.append(StatedWord(name, f"= {value:g}", values.location(name)[0] == GIVEN))
+    return tuple(dict.fromkeys(words))
+
+
+def _located(value: object) -> LocatedValue:
+    return LocatedValue(value, GIVEN, 0)
+
+
+def _merged(table: Table, added: Mapping[str, LocatedValue]) -> Table:
+    """Return a table with further keys, those of tables within it merged."""
+    content = table.content
+    assert isinstance(content.value, dict)
+    merged = LocatedValue(_merged_values(content.value, added), content.file, content.line)
+    return table.other(merged, [])
+
+
+def _merged_values(own: Mapping[str, LocatedValue], added: Mapping[str, LocatedValue]) -> dict[str, LocatedValue]:
+    found = dict(own)
+    for key, each in added.items():
+        before = found.get(key)
+        if before is not None and isinstance(before.value, dict) and isinstance(each.value, dict):
+            each = LocatedValue(_merged_values(before.value, each.value), before.file, before.line)
+        found[key] = each
+    return found

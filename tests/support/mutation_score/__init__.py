@@ -1,0 +1,1 @@
+"""How many changes of the sources the tests notice."""
