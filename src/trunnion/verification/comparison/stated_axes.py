@@ -64,7 +64,7 @@ def _state(name: str, runs: tuple[Run, Run], columns: tuple[StepColumn, StepColu
     def counts(a: Ints, b: Ints) -> Flags:
         # Another offset is a difference of its own.
         same = np.asarray(offsets[0].at(a) == offsets[1].at(b))
-        return same & (first.at(a) != _UNSELECTED) & (second.at(b) != _UNSELECTED)
+        return np.asarray(same & (first.at(a) != _UNSELECTED) & (second.at(b) != _UNSELECTED))
 
     return ComparedState(counts, lambda a, b: np.equal(*values(a, b)), values, said)
 
