@@ -35,10 +35,13 @@ ANY_VALUE: Final = {
     "tool_length": ("100",),
 }  # fmt: skip
 
+#: Settings that a message has filled in for each operation.
+OF_OPERATIONS: Final = {"tool": "A:1,B:2", "spindle": "A:100,B:200"}
+
 #: Words behind "setting" and "=" of other things: keys of definitions, results of hooks, values of tools.
 NO_SETTINGS: Final = {
-    "another", "differs", "for", "in", "of", "or", "out", "that", "to", "limits_mm", "output", "namespace", "number",
-    "row", "moves", "length", "flutes", "shank", "holder",
+    "and", "another", "differs", "for", "in", "of", "or", "out", "that", "to", "limits_mm", "output", "namespace",
+    "number", "row", "moves", "length", "flutes", "shank", "holder",
 }  # fmt: skip
 
 #: Arguments of ``trunnion.verify`` that the command does not have.
@@ -97,6 +100,8 @@ def test_settings_take_the_values_that_cures_name() -> None:
     wrong = []
     for message, name, value in sorted(set(named("setting"))):
         values = ANY_VALUE.get(name, ()) if value == "…" or is_filled_in(value) else (SAMPLES.get(value, value),)
+        if is_filled_in(value) and name in OF_OPERATIONS:
+            values = (OF_OPERATIONS[name],)
         if is_filled_in(value) and not values:
             values = tuple(RUN_SETTINGS[name].choices or [RUN_SETTINGS[name].example]) if name in RUN_SETTINGS else ()
         if not any(takes(machine, name, each) for machine in MACHINES for each in values):

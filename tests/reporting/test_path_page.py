@@ -71,6 +71,13 @@ def page(name: str) -> Iterator[bytes]:
     return render_path_page(name, [PathSeries(name, name, points, np.array([1, 0], np.int32))], 0.0)
 
 
+def test_rapids_are_told_by_dashes_and_the_page_has_a_layout_for_paper() -> None:
+    text = b"".join(page("OP")).decode()
+    assert "rapids, dashed</label>" in text
+    assert "mod(along, 2.0 * dash) > dash" in text
+    assert "@media print" in text
+
+
 def test_the_page_holds_the_points_and_no_text_becomes_code() -> None:
     hostile, plain = (Page(b"".join(page(name)).decode()) for name in (HOSTILE, "OP"))
     assert hostile.running == plain.running

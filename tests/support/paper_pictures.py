@@ -11,8 +11,10 @@ from tests.support.browser import BROWSER
 from tests.support.locations import YL569
 from tests.support.pictures import PICTURES
 
-#: Of a report only the checks and the first plots are shown.
-_EXCERPT = "document.querySelectorAll('main > section:not(:first-of-type):not(.plots)').forEach(it => it.remove())"
+#: Of a report only the first checks and plots are shown.
+_EXCERPT = """for (const left of [
+  "main > section:first-of-type tbody tr:nth-of-type(n+6)", "main > section:not(:first-of-type):not(.plots)",
+]) document.querySelectorAll(left).forEach(it => it.remove())"""
 
 
 def report(folder: Path, page: Page) -> None:
@@ -21,11 +23,11 @@ def report(folder: Path, page: Page) -> None:
         YL569 / "3_blade_finish.cls", machine="yl569", output="3_blade_finish.mpf",
         report="report.html", settings={"zero": (0, 0, -100), "tool_length": 120},
     )  # fmt: skip
-    page.set_viewport_size({"width": 1200, "height": 900})
+    page.set_viewport_size({"width": 1100, "height": 900})
     page.goto((folder / "report.html").as_uri())
     page.locator("#point:not(:has-text('Loading'))").wait_for()
     page.evaluate(_EXCERPT)
-    page.screenshot(path=PICTURES / "report.png", full_page=True, clip={"x": 0, "y": 0, "width": 1200, "height": 2100})
+    page.screenshot(path=PICTURES / "report.png", full_page=True, clip={"x": 0, "y": 0, "width": 1100, "height": 1200})
 
 
 def sheet(folder: Path, page: Page) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -212,6 +213,29 @@ def test_programs_find_the_subprograms_beside_them(tmp_path: Path, monkeypatch: 
     became = {each.file: (str(each.became), *each.tries[0].codes) for each in found if each.tries}
     assert became["parts/main.h"] == ("read",)
     assert became["lost/main.h"] == ("refused", "NC132")
+
+
+def test_what_only_the_machine_cannot_do_is_no_fault_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    cl = (YL569 / "2_hub_rough.cls").read_bytes()
+    (tmp_path / "far.cls").write_bytes(re.sub(rb"GOTO/[-0-9.]+", b"GOTO/9000.0", cl, count=1))
+    (tmp_path / "fast.cls").write_bytes(re.sub(rb"SPINDL/RPM,[0-9.]+", b"SPINDL/RPM,20000", cl))
+    (tmp_path / "far.h").write_bytes(KLARTEXT.replace(b"L Z+10 F100", b"L X+9000 F100"))
+    (tmp_path / "far_and_wrong.h").write_bytes(KLARTEXT.replace(b"L Z+10 F100", b"L X+9000 F100\n4 L Z+1 UNHEARD"))
+    found = take_survey(tmp_path, machine=["yl569", "dmu65"])
+    became = {each.file: str(each.tries[0].became) for each in found.files}
+    beyond = "beyond the machine"
+    assert became == {"far.cls": beyond, "fast.cls": beyond, "far.h": beyond, "far_and_wrong.h": "refused"}
+    assert {each.code for each in found.blockers} >= {"PLN430", "travel"}
+
+
+def test_a_program_of_ones_own_that_leaves_the_travel_is_a_failed_proof() -> None:
+    figures = {"failed_checks": ["travel"], "step": "post"}
+    outcome = Outcome(Status.FAILED, (Problem("a.cls", 0, foreign("x", "y", "travel")),), figures=figures)
+    tried = trying(SurveyedMachine("m", "c"), FileKind.CL, outcome)
+    assert tried.became is Became.PROOF_FAILED
 
 
 def test_what_only_follows_from_other_errors_blocks_nothing() -> None:

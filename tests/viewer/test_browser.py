@@ -482,3 +482,24 @@ def test_the_path_has_the_colours_that_the_legend_tells(tmp_path: Path, browser:
         )
         assert nearest <= 4
         assert errors == []
+
+
+def test_rapids_are_drawn_in_dashes_and_cuts_in_one_line(view: Page) -> None:
+    """Whoever does not see colours tells them by that; each row is drawn, however short."""
+    rapids, cuts, missing = view.evaluate(
+        """() => {
+        const { program, space } = page, many = new Map(), rows = new Set();
+        for (const piece of space.segments) {
+            many.set(piece, (many.get(piece) ?? 0) + 1);
+            rows.add(program.row[piece]);
+        }
+        const isRapid = (piece) => program.kind[program.row[piece]] === 0;
+        const counts = (rapid) => [...many].filter(([it]) => isRapid(it) === rapid).map(([, count]) => count);
+        const most = (rapid) => Math.max(...counts(rapid));
+        const drawn = [...Array(program.pieces).keys()].filter((piece) => program.known[piece]);
+        const known = new Set(drawn.map((piece) => program.row[piece]));
+        return [most(true), most(false), [...known].filter((row) => !rows.has(row)).length];
+        }"""
+    )
+    assert rapids > 3
+    assert (cuts, missing) == (1, 0)

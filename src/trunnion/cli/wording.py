@@ -41,7 +41,10 @@ class CommandWords(Words):
         """Return a setting with a value."""
         options = JOBS[self.command].options if self.command else ()
         flag = next((option.flag for option in options if option.setting == name and option.flag), "")
-        return f"{flag} {value}" if flag else f"--set {name}={value}"
+        if flag:
+            return f"{flag} {value}"
+        text = f"{name}={value}"
+        return f'--set "{text}"' if " " in text else f"--set {text}"
 
     def argument(self, name: str, value: str) -> str:
         """Return an option with a value."""

@@ -106,6 +106,8 @@ class ConvertArguments(ReadingArguments, SetUpArguments, StatedArguments, total=
     to_machine: MachineLike | None
     to_cl: bool
     to_dialect: str | None
+    positions: Literal["tip", "gauge_line"] | None
+    registers: Mapping[str, str] | None
     output: OutputLike
     subprograms: Sequence[FilePath]
     force: bool

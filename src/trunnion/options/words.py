@@ -5,6 +5,9 @@ from typing import Final
 #: Values of the setting ``feed``.
 FEEDS: Final = ("programmed", "fastest")
 
+#: What positions of a program are while no tool length is in force.
+POSITIONS: Final = ("tip", "gauge_line")
+
 #: What becomes of a file that is not as a job has written it, where a new program takes its place.
 EDITED: Final = ("refuse", "keep", "replace")
 

@@ -142,19 +142,21 @@ def _worst_places(checks: Sequence[Check]) -> str:
 
 
 def _check_places(check: Check) -> str:
+    has_cl_lines = any(place.cl_line for place in check.places[:MAX_PLACES])
     rows = [
         f"<tr><td class=n>{_number(place.number)}</td><td class=n>{_nc_line(place)}</td>"
-        f"<td class=n>{_cl_line(place)}</td>"
-        f"<td>{prose(place.told)}</td>"
+        + (f"<td class=n>{_cl_line(place)}</td>" if has_cl_lines else "")
+        + f"<td>{prose(place.told)}</td>"
         f"<td class=go>{_plot_button(place)}</td></tr>"
         for place in check.places[:MAX_PLACES]
     ]
     more = len(check.places) - MAX_PLACES
-    note = "Only the worst are listed." if len(check.places) >= KEPT_PLACES else ""
+    is_full = len(check.places) >= KEPT_PLACES
+    note = f"The {KEPT_PLACES} worst are listed; the line of the check counts the others." if is_full else ""
     if more > 0:
         note = f"and {more} more, in the JSON report"
     note = note and f'<p class="note">{note}</p>'
-    headings = ("#Block", "#NC line", "#CL line", "What", "-")
+    headings = ("#Block", "#NC line", *(("#CL line",) if has_cl_lines else ()), "What", "-")
     state = _STATES[check.state][0]
     return f'<h3 class="{state}">{_result(check)} {capitalised(check.title)}</h3>{table(headings, rows, "tight")}{note}'
 

@@ -12,18 +12,21 @@
     [110, 110, 110], [150, 150, 20], [20, 160, 175],
   ];
   const RAPID = [150, 150, 150];
+  const DASH = 5; // pixels of a dash of a rapid, and of the gap behind it
   const MOST_PLAIN = 60000;
   const space = byId("space"), marks = byId("marks"), status = byId("status");
 
-  /* Segments of one kind: two points of three numbers each. */
+  /* Segments of one kind: two points of three numbers each, and for rapids how far along the path each is. */
   function segments(x, y, z, rapid, wanted) {
     let count = 0;
     for (let i = 1; i < x.length; i++) if (rapid[i] === wanted) count++;
-    const made = new Float32Array(count * 6);
-    for (let i = 1, at = 0; i < x.length; i++) {
-      if (rapid[i] !== wanted) continue;
-      made.set([x[i - 1], y[i - 1], z[i - 1], x[i], y[i], z[i]], at);
-      at += 6;
+    const made = new Float32Array(count * 8);
+    for (let i = 1, at = 0, along = 0; i < x.length; i++) {
+      if (rapid[i] !== wanted) { along = 0; continue; }
+      const further = wanted ? along + Math.hypot(x[i] - x[i - 1], y[i] - y[i - 1], z[i] - z[i - 1]) : 0;
+      made.set([x[i - 1], y[i - 1], z[i - 1], along, x[i], y[i], z[i], further], at);
+      along = further;
+      at += 8;
     }
     return made;
   }
@@ -115,7 +118,7 @@
   // ------------------------------------------------------------------------------------------------------------------
   // Drawing
 
-  const gl = space.getContext("webgl", { antialias: true });
+  const gl = space.getContext("webgl", { antialias: true, preserveDrawingBuffer: true });
   let program, uniforms, point;
   if (gl) {
     const shader = (type, source) => {
@@ -126,19 +129,22 @@
     };
     program = gl.createProgram();
     gl.attachShader(program, shader(gl.VERTEX_SHADER, `
-      attribute vec3 point; uniform vec3 centre, right, up, eye; uniform vec2 scale, shift; uniform float depth;
+      attribute vec4 point; varying float along; uniform vec3 centre, right, up, eye; uniform vec2 scale, shift; uniform float depth;
       void main() {
-        vec3 d = point - centre;
+        vec3 d = point.xyz - centre;
+        along = point.w;
         gl_Position = vec4((vec2(dot(d, right), dot(d, up)) + shift) * scale, -dot(d, eye) * depth, 1.0);
       }`));
-    gl.attachShader(program, shader(gl.FRAGMENT_SHADER, "precision mediump float; uniform vec4 colour; void main() { gl_FragColor = colour; }"));
+    gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `
+      precision highp float; varying float along; uniform vec4 colour; uniform float dash;
+      void main() { if (mod(along, 2.0 * dash) > dash) discard; gl_FragColor = colour; }`));
     gl.linkProgram(program);
     gl.useProgram(program);
     gl.enable(gl.DEPTH_TEST);
     point = gl.getAttribLocation(program, "point");
     gl.enableVertexAttribArray(point);
     uniforms = {};
-    for (const name of ["centre", "right", "up", "eye", "scale", "shift", "depth", "colour"]) {
+    for (const name of ["centre", "right", "up", "eye", "scale", "shift", "depth", "colour", "dash"]) {
       uniforms[name] = gl.getUniformLocation(program, name);
     }
     for (const operation of operations) {
@@ -146,7 +152,7 @@
         const buffer = gl.createBuffer();
         gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
         gl.bufferData(gl.ARRAY_BUFFER, operation[kind], gl.STATIC_DRAW);
-        operation[kind] = { buffer, count: operation[kind].length / 3 };
+        operation[kind] = { buffer, count: operation[kind].length / 4 };
       }
     }
   }
@@ -163,13 +169,14 @@
     gl.uniform2f(uniforms.scale, zoom * narrow / space.width, zoom * narrow / space.height);
     gl.uniform2f(uniforms.shift, shift[0] / zoom, shift[1] / zoom);
     gl.uniform1f(uniforms.depth, 0.9 / size);
+    gl.uniform1f(uniforms.dash, (2 * DASH * scale) / (zoom * narrow));
     for (const operation of operations) {
       if (!operation.shown) continue;
       for (const kind of byId("rapids").checked ? ["cut", "rapids"] : ["cut"]) {
         const colour = kind === "cut" ? operation.colour : RAPID;
         gl.uniform4f(uniforms.colour, colour[0] / 255, colour[1] / 255, colour[2] / 255, 1);
         gl.bindBuffer(gl.ARRAY_BUFFER, operation[kind].buffer);
-        gl.vertexAttribPointer(point, 3, gl.FLOAT, false, 0, 0);
+        gl.vertexAttribPointer(point, 4, gl.FLOAT, false, 0, 0);
         gl.drawArrays(gl.LINES, 0, operation[kind].count);
       }
     }
@@ -182,12 +189,13 @@
     for (const operation of operations) {
       if (!operation.shown) continue;
       for (const kind of byId("rapids").checked ? ["rapids", "cut"] : ["cut"]) {
+        pen.setLineDash(kind === "cut" ? [] : [DASH * scale, DASH * scale]);
         pen.strokeStyle = `rgb(${kind === "cut" ? operation.colour : RAPID})`;
         pen.beginPath();
         const list = operation[kind];
-        for (let i = 0; i < list.length; i += 6 * every) {
+        for (let i = 0; i < list.length; i += 8 * every) {
           pen.moveTo(...project(list[i], list[i + 1], list[i + 2]));
-          pen.lineTo(...project(list[i + 3], list[i + 4], list[i + 5]));
+          pen.lineTo(...project(list[i + 4], list[i + 5], list[i + 6]));
         }
         pen.stroke();
       }

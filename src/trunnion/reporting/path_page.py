@@ -40,10 +40,11 @@ def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) 
 <button type=button data-view="top">from above</button>
 <button type=button data-view="front">from the front</button>
 <button type=button data-view="right">from the right</button></div>
-<label><input type=checkbox id="rapids" checked> rapids</label>
+<label><input type=checkbox id="rapids" checked> <span id="rapid-line"></span> rapids, dashed</label>
 <ol id="operations"></ol>
 <p id="status">Loading …</p>
-<p>Drag turns, drag with Shift or the right button moves, the wheel zooms. Coordinates of the first operation, mm.</p>
+<p>Coordinates of the first operation, mm.</p>
+<p class=hint>Drag turns, drag with Shift or the right button moves, the wheel zooms.</p>
 <noscript><p>The path needs JavaScript, which this browser has switched off.</p></noscript>
 </aside>
 <script type="application/json" id="data">{script_json(data)}</script>

@@ -21,6 +21,7 @@ class Became(StrEnum):
     PROVEN_WARNED  the same, with warnings
     READ          a program: read and run, and no check of it alone fails
     READ_WARNED   the same, with warnings
+    BEYOND        understood, and nothing is wrong but that this machine cannot go so far, or turn its spindle so fast
     CHECK_FAILED  a program: read and run, and a check of it fails
     PROOF_FAILED  posted, and the program does not do what the CL file says: it is not written
     REFUSED       not understood, or it must not run
@@ -34,6 +35,7 @@ class Became(StrEnum):
     PROVEN_WARNED = "proven with warnings"
     READ = "read"
     READ_WARNED = "read with warnings"
+    BEYOND = "beyond the machine"
     CHECK_FAILED = "check failed"
     PROOF_FAILED = "proof failed"
     REFUSED = "refused"
@@ -54,13 +56,16 @@ class Became(StrEnum):
 
 
 _PASSED: Final = frozenset({Became.PROVEN, Became.PROVEN_WARNED, Became.READ, Became.READ_WARNED})
-_BLOCKED: Final = frozenset({Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN})
+_BLOCKED: Final = frozenset({Became.BEYOND, Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN})
 
 #: The check that fails where something is not understood.
 _WORDS: Final = "words"
 
 #: Codes that only say what follows from the errors before them.
 _SEQUELS: Final = frozenset({"CNV130", "CTL940", "PLN160"})
+
+#: Checks and codes of travel and of the spindle's speed.
+_OF_MACHINE: Final = frozenset({"travel", "rpm", "PLN120", "PLN125", "PLN430"})
 
 #: The code of a program of which more is not understood than understood.
 _OTHER_CONTROL: Final = "NC113"
@@ -243,6 +248,8 @@ def trying(machine: SurveyedMachine, kind: FileKind, outcome: Outcome) -> Trying
     errors = [each for each in outcome.problems if each.severity is Severity.ERROR]
     became = _BECAME[outcome.status](kind, outcome)
     codes = _codes(outcome, errors)
+    if became in (Became.REFUSED, Became.CHECK_FAILED) and codes and _OF_MACHINE.issuperset(codes):
+        became = Became.BEYOND
     firsts = {each.code: each for each in reversed(errors)}
     told = tuple(firsts[code] for code in codes if code in firsts)
     step = str(outcome.figures.get(STEP, ""))

@@ -26,6 +26,7 @@ MODULES: Final = (
     "data",
     "kinematics",
     "program",
+    "dashes",
     "space",
     "stock",
     "listing",

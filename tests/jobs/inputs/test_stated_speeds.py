@@ -1,5 +1,6 @@
 """The setting ``spindle``: speeds that the CL file does not have."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,16 @@ def test_an_operation_without_spindl_turns_at_the_stated_speed(silent: Path, val
     again = {"spindle": value}
     assert trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], settings=again).passed
     assert not trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], settings={"spindle": "6000"}).passed
+
+
+def test_a_speed_below_zero_is_counter_clockwise(silent: Path, tmp_path: Path) -> None:
+    settings = {"spindle": "NO_SPINDL:-700"}
+    found = trunnion.post(silent, machine="yl569", settings=settings, output=tmp_path / "a.mpf")
+    assert found.passed
+    assert re.search(r"\bS700\b.* M4\b", words(tmp_path / "a.mpf"))
+    assert trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], settings=settings).passed
+    clockwise = {"spindle": "NO_SPINDL:700"}
+    assert not trunnion.verify(tmp_path / "a.mpf", machine="yl569", cl=[silent], settings=clockwise).passed
 
 
 def test_without_the_setting_it_is_refused(silent: Path, tmp_path: Path) -> None:

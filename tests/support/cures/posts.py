@@ -40,7 +40,20 @@ def _holes(
 
 _COMPENSATED: Final = f"{HEAD}CUTCOM/LEFT\nGOTO/20,0,5\nGOTO/20,30,5\nCUTCOM/OFF\nGOTO/0,30,5\n{FOOT}"
 
+_BARE: Final = _UNNUMBERED.replace(_SPEED, "")
+_TWO_BARE: Final = _BARE + FOOT + _BARE.replace("OP1", "OP 2").replace("D10", "D12") + FOOT
+_TWO_UNNUMBERED: Final = _UNNUMBERED + FOOT + _UNNUMBERED.replace("OP1", "OP 2").replace("D10", "D12") + FOOT
+
 CURES: Final = (
+    _said(
+        "CTL570",
+        "tools_and_speeds",
+        _TWO_BARE,
+        {"tool": "OP1:7,OP 2:8", "spindle": "OP1:900,OP 2:800"},
+        on="matsuura_mx330",
+    ),
+    _said("CTL570", "tools", _TWO_UNNUMBERED, {"tool": "OP1:7,OP 2:8"}, on="matsuura_mx330"),
+    _said("CTL570", "speeds", _TWO_BARE, {"spindle": "OP1:900,OP 2:800"}),
     _said("SIM147", "difference_not_known", _COMPENSATED.replace(_TLDATA, ""), ("MSYS", f"{_TLDATA}MSYS")),
     _said("CTL310", "cutting_motion_without_feed", _CUT.replace(_FEED, ""), ("GOTO/10.0", _FEED + "GOTO/10.0")),
     _holes("CTL310", "cycle_without_feed", "CYCLE/DRILL,FEDTO,-10,RAPTO,3", _DRILL.strip()),

@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from typing import Final
 
-from tests.support.cures import cl_files, posts, programs, stated_words, stocks
+from tests.support.cures import cl_files, conversions, posts, programs, stated_words, stocks
 from tests.support.cures.cure import Cure
 
 TABLES: Final[Mapping[str, tuple[Cure, ...]]] = {
     "cl_files": cl_files.CURES,
+    "conversions": conversions.CURES,
     "posts": posts.CURES,
     "programs": programs.CURES,
     "stated_words": stated_words.CURES,

@@ -8,14 +8,15 @@ from typing import BinaryIO, Unpack
 from trunnion import conversion, readers
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control
-from trunnion.controls.vocabulary import INCH
-from trunnion.errors import InputError, argument_problem, setting_problem
+from trunnion.controls.vocabulary import INCH, RADIUS_NUMBER_WORD
+from trunnion.errors import InputError, RefusedError, argument_problem, setting_problem
 from trunnion.files import OutputGroup
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
 from trunnion.jobs.arguments import ConvertArguments, taken
 from trunnion.jobs.convert.cl_files import convert_cl, write_and_prove
 from trunnion.jobs.convert.program_converter import ProgramConverter, with_settings
+from trunnion.jobs.convert.registers import checked_registers
 from trunnion.jobs.convert.result import ConvertResult
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path, check_paths, is_stream
 from trunnion.jobs.inputs.input_files import machine_files
@@ -26,7 +27,9 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.result_output import open_target
+from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.options.words import POSITIONS
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
 
 
@@ -56,6 +59,11 @@ def convert(
         Workpiece zero on the program's own machine.
     tool_length
         Length of the tool there, gauge point to tip, mm.
+    positions
+        What positions are while no tool length is in force: those of the ``"tip"``, or of the ``"gauge_line"``, which
+        needs ``tool_length``. A program that cuts so is refused until it is stated.
+    registers
+        What registers of the program are on the other control: ``{"D21": "tool", "H11": "H1"}``.
     settings
         In place of what the program states; for the other machine as ``trunnion.post`` takes them. Between CL files:
         ``units`` of the one that is written. And values of variables that the program reads and does not set, such as
@@ -125,7 +133,19 @@ def _converted_cl(
 ) -> ConvertResult:
     """Return a CL file that was written in another dialect."""
     _refuse_for_cl(
-        **{name: given[name] for name in ("to_machine", "subprograms", "zero", "tool_length", "assume", "force")}
+        **{
+            name: given[name]
+            for name in (
+                "to_machine",
+                "subprograms",
+                "zero",
+                "tool_length",
+                "positions",
+                "registers",
+                "assume",
+                "force",
+            )
+        }
     )
     source = nc if is_stream(nc) else check_path("nc", nc)
     read = [source] if isinstance(source, Path) else []
@@ -155,7 +175,7 @@ def _converted_program(
         job = replace(job, notices=placed_notices(place.clamping), clamping=place.clamping)
     check_conversion_settings(job, to_cl)
     definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
-    source = set_up_machine(source, given["zero"], given["tool_length"])
+    source, registers = _with_positions(given, source), checked_registers(given["registers"])
     read, edited = [program, *others, *definitions], job.settings.get("edited", "")
     with open_target(given["output"], inputs=read, group=group, edited=edited) as target:
         compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
@@ -163,13 +183,18 @@ def _converted_program(
         converter = ProgramConverter(str(program), observer, given["force"])
         converter.report(damaged_notices(program, place))
         run = read_program(program, machine=source, subprograms=others)
+        converter.refuse(conversion.unsaid_positions(run, given["positions"]))
         converted = converter.read(run, control, None if to_cl else job)
+        converted = replace(converted, toolpath=conversion.with_registers(converted.toolpath, registers))
+        if not to_cl and RADIUS_NUMBER_WORD not in job.control.family.WORDS:
+            converter.refuse(conversion.unsaid_registers(converted.toolpath, job.control.name))
         if others and not (divided or to_cl):
             converter.warn_of_one_program(1 + len(others))
         carried = converter.carry(converted.settings, control, job, source)
         is_given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
         posted = None
         if to_cl:
+            converter.refuse_lost()
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
                 carried["units"] = INCH
             comments = [*job.notices, *(f"--set {key}={value}" for key, value in carried.items())]
@@ -182,9 +207,23 @@ def _converted_program(
             job = replace(with_settings(job, carried), notices=(*notices, *job.notices))
             if not is_given:
                 converter.warn_of_new_offset(run, job, to_cl=False)
-            posted = post_toolpaths([toolpath], job, target, observer)
+            try:
+                posted = post_toolpaths([toolpath], job, target, SILENT if converter.lost else observer)
+            except (InputError, RefusedError) as error:
+                converter.refuse_lost(error.problems)
+                raise
+            converter.refuse_lost()
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
+
+
+def _with_positions(given: ConvertArguments, source: Machine) -> Machine:
+    """Return the program's own machine, set up. Where positions are those of the tip, no tool length counts."""
+    machine = set_up_machine(source, given["zero"], given["tool_length"])
+    if given["positions"] is None:
+        return machine
+    check_choice("positions", given["positions"], POSITIONS)
+    return machine if given["positions"] != "tip" else replace(machine, tool_length=None, tool_lengths={})
 
 
 def _refuse_for_cl(**given: object) -> None:

@@ -18,6 +18,9 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 
+#: Problems of conversions, and those of posts that say the same.
+_SAID_FOR = {"CNV146": "CTL230"}
+
 #: The code of words of the machine's builder, of which a conversion says itself what becomes of them.
 _OF_BUILDER = "NC225"
 
@@ -27,6 +30,7 @@ class ProgramConverter:
 
     def __init__(self, file: str, observer: Observer, force: bool) -> None:
         self.problems: list[Problem] = []
+        self.lost: list[Problem] = []
         self._file, self._observer, self._force = file, observer, force
 
     def report(self, problems: Sequence[Problem]) -> None:
@@ -50,20 +54,28 @@ class ProgramConverter:
         toolpath, of_builder = conversion.carry_machine_words(converted.toolpath, run.machine, target)
         converted = replace(converted, toolpath=toolpath)
         lost = [*converted.errors, *(problem for problem in of_builder if problem.severity is Severity.ERROR)]
-        self._refuse(lost)
+        self.refuse(lost)
         self.report([problem for problem in of_builder if problem.severity is Severity.WARNING])
         if not converted.toolpath.operations:
+            self.refuse_lost()
             raise InputError(Problem(self._file, 0, Wording("CNV121", "no_motion_at_part")))
         self.report(converted.warnings)
         return converted
 
-    def _refuse(self, lost: Sequence[Problem]) -> None:
-        """Refuse what must not be lost, unless it is forced."""
-        if lost and not self._force:
-            raise RefusedError(
-                (*lost, Problem(self._file, 0, Wording("CNV130", "cannot_be_converted", count=len(lost))))
-            )
-        self.report(lost)
+    def refuse(self, lost: Sequence[Problem]) -> None:
+        """Keep what must not be lost, so that all of it is refused at once; only report it if it is forced."""
+        if self._force:
+            self.report(lost)
+        else:
+            self.lost += lost
+
+    def refuse_lost(self, more: Sequence[Problem] = ()) -> None:
+        """Raise ``RefusedError`` with all that was kept, and with what the new program is refused for."""
+        if self.lost:
+            said = {_SAID_FOR[each.code] for each in self.lost if each.code in _SAID_FOR}
+            every = [*self.lost, *(each for each in more if each.code not in said)]
+            count = Problem(self._file, 0, Wording("CNV130", "cannot_be_converted", count=len(every)))
+            raise RefusedError((*every, count))
 
     def warn_of_one_program(self, files: int) -> None:
         """Warn that a program with subprograms becomes one without."""
@@ -143,7 +155,7 @@ class ProgramConverter:
         if found is not None:
             return {} if found == default and "work_offset" not in stated else {"work_offset": found}
         if "work_offset" in stated:
-            self._refuse(
+            self.refuse(
                 [
                     Problem(
                         self._file,
@@ -159,7 +171,7 @@ class ProgramConverter:
     def _not_carried(self, key: str, text: str, target: str, remedy: Wording, is_given: bool) -> None:
         """Warn of a setting that is not carried over; refuse if it is work offsets that no given setting replaces."""
         if key == "work_offset" and ":" in text and not is_given:
-            self._refuse(
+            self.refuse(
                 [
                     Problem(
                         self._file,

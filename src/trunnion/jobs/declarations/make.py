@@ -28,9 +28,9 @@ from trunnion.options.groups import (
     TOOL_LENGTH,
     ZERO,
 )
-from trunnion.options.kinds import Choice, FileIn, FileOut, Switch, Text, angle
+from trunnion.options.kinds import Choice, FileIn, FileOut, Setting, Switch, Text, angle
 from trunnion.options.option import Level, Many, Option
-from trunnion.options.words import GOALS
+from trunnion.options.words import GOALS, POSITIONS
 
 _SIMULATING: Final = "with --simulate"
 
@@ -103,6 +103,15 @@ _CONVERT: Final = job(
     READING.but(units={"key": "units"}, dialect={"key": "dialect"}),
     ZERO.but(help="the workpiece zero on the program's own machine, mm"),
     TOOL_LENGTH.but(help="length of the tool there, gauge point to tip"),
+    Option(
+        "positions", "--positions", Choice(POSITIONS),
+        "what positions are while no tool length is in force (no G43, no D): those of the tip, or of the gauge line",
+    ),
+    Option(
+        "registers", "--register", Setting(metavar="D21=tool"),
+        "what a register of the program is on the other control: that of the tool, or another one (H11=H1)",
+        many=Many.REPEAT,
+    ),
     OUTPUT.but(help="result; without it a file of that name here"),
     SETTINGS.but(
         help="what templates print, in place of what the program says, and zero; or a variable that the program reads"

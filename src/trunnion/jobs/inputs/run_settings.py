@@ -107,8 +107,8 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         default="what the CL files say; else centreline",
     ),
     "spindle": RunSetting(
-        "Speed of the spindle, rev/min and clockwise, of operations that cut while it stands because no SPINDL comes "
-        "before, or of one that has none of its own.",
+        "Speed of the spindle, rev/min, of operations that cut while it stands because no SPINDL comes before, or of "
+        "one that has none of its own. Clockwise; with a minus counter-clockwise.",
         form="RPM or OPERATION:RPM",
         example="8000,DRILL:1200",
     ),

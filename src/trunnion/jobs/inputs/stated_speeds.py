@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.errors import InputError, setting_problem
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.messages import Wording
-from trunnion.model.toolpath import Event, Kind, LoadTool, Operation, SpindleOff, SpindleOn, Toolpath
+from trunnion.model.toolpath import Event, Kind, LoadTool, Operation, Sense, SpindleOff, SpindleOn, Toolpath
 
 #: The setting, and the speeds that it takes, rev/min.
 _KEY: Final = "spindle"
@@ -19,7 +19,8 @@ _BOUNDS: Final = (1.0, 500_000.0)
 
 
 def stated_speeds(settings: Mapping[str, str]) -> dict[str, float]:
-    """Return the speeds that settings state, rev/min, by operation; that of all others has no name.
+    """Return the speeds that settings state, rev/min, by operation; below 0: counter-clockwise. That of all others has
+    no name.
 
     Raises ``InputError`` if the setting is none, or states two speeds of one operation.
     """
@@ -31,7 +32,7 @@ def stated_speeds(settings: Mapping[str, str]) -> dict[str, float]:
             speed = float(number)
         except ValueError:
             speed = math.nan
-        if not _BOUNDS[0] <= speed <= _BOUNDS[1]:
+        if not _BOUNDS[0] <= abs(speed) <= _BOUNDS[1]:
             raise InputError(setting_problem(_KEY, RUN_SETTINGS[_KEY].fault(_KEY, text)))
         if name in found:
             raise InputError(setting_problem(_KEY, Wording("ARG220", "speed_twice", value=repr(text))))
@@ -40,7 +41,7 @@ def stated_speeds(settings: Mapping[str, str]) -> dict[str, float]:
 
 
 def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> list[Toolpath]:
-    """Turn the spindle on, clockwise, in operations that cut while it stands, at the speeds that settings state.
+    """Turn the spindle on in operations that cut while it stands, at the speeds that settings state.
 
     Raises ``InputError`` for the speed of an operation that is not there, or has a SPINDL of its own before its first
     cut.
@@ -99,5 +100,5 @@ def _turning(operation: Operation, speed: float) -> Operation:
     loads = [k for k, event in enumerate(events) if isinstance(event, LoadTool) and event.row <= first]
     at = loads[-1] + 1 if loads else 0
     row, line = (events[loads[-1]].row, events[loads[-1]].line) if loads else (0, operation.line)
-    on = SpindleOn(row, line, speed)
+    on = SpindleOn(row, line, abs(speed), Sense.CCLW if speed < 0.0 else Sense.CLW)
     return replace(operation, events=tuple(chain(events[:at], (on,), events[at:])))

@@ -21,6 +21,7 @@ from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.operation_setups import planned_machines, with_operation_setups
 from trunnion.jobs.post.post_job import PostJob, prepare
+from trunnion.jobs.post.settings_to_fill import settings_to_fill
 from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
 from trunnion.model.motion import Plan
@@ -264,7 +265,8 @@ def new_problems(program: Program, observer: Observer, known: Sequence[Problem] 
     found = [problem for problem in problems if problem not in errors]
     observer.problems(found)
     if errors:
-        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
+        ordered = sorted(errors, key=lambda problem: (problem.file, problem.line))
+        raise InputError((*ordered, *settings_to_fill(ordered, program)))
     return found
 
 

@@ -151,9 +151,14 @@ def read_block(
 
 
 def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> ExpressionReader:
-    """Return a reader at the start of a block."""
+    """Return a reader at the start of a block, whose comments are left out.
+
+    BlockError if it is too long, or the end of a comment stands alone, as behind one with parentheses of its own.
+    """
     if len(text) > MAX_LENGTH:
         raise BlockError(Wording("NC214", "long_block", most=MAX_LENGTH))
+    if ")" in text:
+        raise BlockError(Wording("NC210", "closes_no_comment"))
     return ExpressionReader(text, arithmetic, parameters)
 
 

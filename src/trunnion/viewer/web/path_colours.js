@@ -81,7 +81,8 @@ export class PathColours {
    */
   #legend(entries) {
     const shown = (/** @type {(string | number[])[]} */ [name, colour]) => {
-      const entry = Object.assign(document.createElement("span"), { className: "entry", textContent: String(name) });
+      const className = name === say("rapid") ? "entry dashed" : "entry";
+      const entry = Object.assign(document.createElement("span"), { className, textContent: String(name) });
       entry.style.borderColor = `rgb(${/** @type {number[]} */ (colour).join()})`;
       return entry;
     };

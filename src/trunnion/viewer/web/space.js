@@ -1,5 +1,6 @@
 // The machine, what is on it and the path, in space.
 
+import { pathSegments } from "./dashes.js";
 import { jointMatrix, toolAt } from "./kinematics.js";
 
 /** Segments that are drawn while the picture moves; the rest follows when it rests. */
@@ -94,16 +95,11 @@ export class Space {
     this.place = new THREE.Group();
     this.place.position.set(zero[0], zero[1], zero[2]);
     this.links.get("workpiece").add(this.place);
-    let count = 0;
-    for (let i = 0; i < program.pieces; i++) if (this.#isDrawn(i)) count++;
+    const isRapid = (/** @type {number} */ piece) => program.kind[program.row[piece]] === 0;
+    const { segments, points } = pathSegments(tips, program.row, program.pieces, (piece) => this.#isDrawn(piece), isRapid);
+    const count = segments.length;
     /** piece of each segment */
-    this.segments = new Int32Array(count);
-    const points = new Float32Array(6 * count);
-    for (let i = 0, n = 0; i < program.pieces; i++) {
-      if (!this.#isDrawn(i)) continue;
-      this.segments[n] = i;
-      points.set(tips.subarray(3 * i, 3 * i + 6), 6 * n++);
-    }
+    this.segments = segments;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
     this.colours = new Uint8Array(6 * count);

@@ -1,0 +1,46 @@
+"""Cures of messages about programs that are converted for another machine."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
+
+import trunnion
+from tests.support.cures.cure import Cure, Outcome
+from trunnion.errors import TrunnionError
+
+_HEAD: Final = "%\nO1\nG21 G17 G40 G49 G69 G80 G90 G94\nT1 M6\nG54 G0 X0. Y0. S900 M3\n"
+_BARE: Final = _HEAD + "Z9.\nG1 Z-1. F300.\nX9.\nG0 Z9.\nM30\n%\n"
+_REGISTER: Final = _HEAD + "G43 H1 Z9.\nG1 Z-1. F300.\nG41 D21 X9.\nY9.\nG40 X20.\nG0 Z9.\nG49\nM30\n%\n"
+_TIP: Final = {"positions": "tip"}
+
+
+def _converted(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Convert a program of a Fanuc for a TNC; settings are arguments."""
+    file, given = folder / "part.nc", dict(settings)
+    file.write_text(text, encoding="utf-8")
+    registers = dict([given.pop("registers").split("=")]) if "registers" in given else None
+    length = float(given.pop("tool_length")) if "tool_length" in given else None
+    try:
+        found = trunnion.convert(
+            file, machine="matsuura_mx330", to_machine="dmu65", registers=registers, tool_length=length,
+            **given,  # type: ignore[arg-type]
+        )  # fmt: skip
+    except TrunnionError as error:
+        return Outcome(tuple(error.problems), False)
+    return Outcome(found.problems, found.passed)
+
+
+CURES: Final = (
+    Cure("CNV112", "no_register", _converted, _BARE, ({"registers": "D21=tool"},), {**_TIP, "registers": "D21=G5"}),
+    Cure("CNV145", "no_length_word", _converted, _BARE, (_TIP,)),
+    Cure("CNV145", "no_length_word", _converted, _BARE, ({"positions": "gauge_line", "tool_length": "50"},)),
+    Cure(
+        "CNV145",
+        "gauge_line_without_length",
+        _converted,
+        _BARE,
+        ({"tool_length": "50"},),
+        {"positions": "gauge_line"},
+    ),
+    Cure("CNV146", "registers_not_said", _converted, _REGISTER, ({"registers": "D21=tool"},)),
+)
