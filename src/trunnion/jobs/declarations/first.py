@@ -25,10 +25,15 @@ _CHECK: Final = job(
         "file", "", FileIn("NAME_OR_FILE", leads="definition"),
         "file to validate, or a shipped definition",
     ),
+    Option(
+        "program", "--program", FileIn("NC"),
+        "NC program of the machine: the keys of [control.reading] under which it reads best, to copy",
+    ),
     JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
     run="definitions:check",
     examples=[
         ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
+        ("trunnion check our_mill.toml --program part.nc", "how the programs of this machine are written"),
         ("trunnion check part.toml", "a project, a tool library, an impeller or a file of jobs"),
     ],
 )  # fmt: skip
