@@ -122,6 +122,26 @@ def test_a_macro_may_come_back_at_home_and_with_tcp_off(tmp_path: Path) -> None:
     assert not run.tcp[-1]
 
 
+@pytest.mark.parametrize(
+    ("line", "understood"),
+    [
+        ("G90 G64 G150 G17", True),
+        ("G90 G0150 M9 (G150 P1)", True),
+        ("N7 G90 (a) G150", True),
+        ("G90 G150 X90.", False),  # X may be meant for the word
+        ("G90 G150 P2", False),
+        ("G90 G150.1", False),
+        ("G90 G1500", False),
+        ("G90 G151", False),
+    ],
+)
+def test_a_code_without_effect_may_stand_among_other_codes_alone(line: str, understood: bool, tmp_path: Path) -> None:
+    run = read(tmp_path, "xyzac_trt", line, 'G150 = "no effect"', 'G151 = "comes back"')
+    assert (run.errors == ()) is understood
+    if understood:
+        assert [str(event.value) for event in run.events if event.kind == "known"] == ["G150"]
+
+
 def test_words_in_comments_and_longer_words_are_others(tmp_path: Path) -> None:
     run = read(tmp_path, "matsuura_mx330", "(M77)\nM770\nM7", 'M77 = "stop"')
     assert not [event for event in run.events if event.kind == "stop"]

@@ -66,6 +66,15 @@ def test_both_ends_of_a_travel_are_told(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("block", ["SUPA G0 X{:.3f} D0\n", "G0 X{:.3f}\n"])
+def test_a_thousandth_beyond_the_travel_is_beyond(block: str, tmp_path: Path) -> None:
+    file = tmp_path / "part.mpf"
+    for value, is_within in ((250.0, True), (250.001, False)):
+        file.write_text(HEAD + "G0 X0 Y0 Z50\n" + block.format(value) + FOOT)
+        found = trunnion.verify(file, machine="yl569", zero=(0, 0, 0), tool_length=50.0)
+        assert check(found, "travel").passed == is_within
+
+
 def test_with_a_zero_the_limits_are_the_same(tmp_path: Path) -> None:
     found = trunnion.verify(written(tmp_path, "yl569", 300.0), machine="yl569", zero=(0, 0, 0), tool_length=50.0)
     assert not check(found, "travel").passed

@@ -7,9 +7,8 @@ from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.jobs.job import Given
 from trunnion.jobs.simulate.report import write_simulation_report
-from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines
+from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines, travel_lines
 from trunnion.jobs.simulate.simulating import simulate
-from trunnion.messages import phrase
 from trunnion.model.clamping import Clamping, number
 from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
@@ -64,7 +63,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
     yield from not_measured_lines(found)
-    yield str(phrase("travel_not_judged"))
+    yield from travel_lines(found)
     yield found.told
 
 

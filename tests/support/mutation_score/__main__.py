@@ -22,7 +22,7 @@ from runpy import run_path
 from tests.support.locations import ROOT
 from tests.support.mutation_score.mutants import KINDS, Mutant, draw_mutants
 from tests.support.mutation_score.reach import Sources, rounds
-from tests.support.mutation_score.trial import Watch, first_failure, prepare
+from tests.support.mutation_score.trial import Watch, compile_kernels, first_failure, prepare
 
 #: What a mutant comes to.
 KILLED, SURVIVED, NOT_IN_TIME, NO_TESTS = "killed", "survived", "not killed in time", "no tests"
@@ -34,17 +34,17 @@ COMPILING = 20.0
 class Trial:
     """A copy of a tree, in which mutants are tried.
 
-    folder   has the copy, and the machine code of its kernels; it is made once
+    folder   has the copy, with the machine code of its kernels; it is made once
     seconds  of a processor, for each mutant; a test that takes half of them, and without it less than a third, hangs
     """
 
     def __init__(self, tree: Path, folder: Path, seconds: float) -> None:
         prepare()
         self.root, self.seconds = folder / "tree", seconds
-        os.environ["NUMBA_CACHE_DIR"] = str(folder / "kernels")
         if not self.root.exists():
             ignored = shutil.ignore_patterns(".*", "__pycache__", "build", "dist")
             shutil.copytree(tree, self.root, ignore=ignored, symlinks=True)
+            compile_kernels(self.root)
         self.root = self.root.resolve()
         self.sources = Sources(self.root, run_path(str(self.root / "tests" / "support" / "slow.py"))["SLOW"])
         self.fails_anyway, self.excluded = dict[str, bool](), set[str]()

@@ -4,6 +4,7 @@ import os
 import resource
 import select
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Sequence
@@ -22,6 +23,23 @@ def prepare() -> None:
     """Import and set up, once for all tries, what most tests want."""
     numba.njit("int64()")(lambda: 0)
     pytest.main(["--version"])
+
+
+_COMPILE = """
+import importlib, pkgutil, trunnion
+from trunnion.jit.kernels import Kernel
+for found in pkgutil.walk_packages(trunnion.__path__, "trunnion."):
+    if not found.name.endswith("__main__"):
+        for each in vars(importlib.import_module(found.name)).values():
+            if isinstance(each, Kernel):
+                each.prepare()
+"""
+
+
+def compile_kernels(tree: Path) -> None:
+    """Compile all kernels of a tree, so that no mutant has to wait for it."""
+    environment = {**os.environ, "PYTHONPATH": str(tree / "src"), "PYTHONDONTWRITEBYTECODE": ""}
+    subprocess.run([sys.executable, "-c", _COMPILE], check=True, env=environment)
 
 
 class Watch:

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Final
 import numpy as np
 
 from trunnion.errors import Problem, Severity
+from trunnion.jobs.simulate.travel import ProgramTravel, judged_travel, travel_data
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
 from trunnion.messages import phrase
 from trunnion.model.run_samples import joint_samples
@@ -64,6 +65,7 @@ class SimulationResult:
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     meanings   which blocks were skipped (``/``) in further runs, in words: what these found is among the findings; none
                where no block may be skipped. All other figures but ``gouge``, the worst, are those with none skipped
+    travel     of each program, as ``trunnion verify`` judges it
     setup      its name, where this is one of several
     setups     the results of each, where there are several
     tools      their bodies by the words of the program; of several set-ups those of the last
@@ -98,6 +100,7 @@ class SimulationResult:
     cuts_not_checked: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     meanings: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
+    travel: Annotated[tuple[ProgramTravel, ...], Figure(take=travel_data, after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
 
     @property
@@ -127,7 +130,12 @@ class SimulationResult:
             found = "nothing found"
         else:
             errors = sum(remark.severity is Severity.ERROR for remark in self.remarks)
-            parts = [counted(len(self.findings), "finding"), *([counted(errors, "error")] if errors else [])]
+            beyond = sum(not each.check.passed for each in self.travel)
+            parts = [
+                counted(len(self.findings), "finding"),
+                *([counted(errors, "error")] if errors else []),
+                *([f"{counted(beyond, 'program')} beyond the travel"] if beyond else []),
+            ]
             found = f"{' and '.join(parts)}: the program must not run"
         return "; ".join(filter(None, (found, self.meanings_line, self.not_checked_line)))
 
@@ -170,7 +178,8 @@ class SimulationResult:
             return all(each.passed for each in self.setups)
         broken = any(remark.severity is Severity.ERROR for remark in self.remarks)
         gouged = self.gouge is not None and self.gouge.largest > self.limit
-        return not self.findings and not gouged and not broken
+        beyond = not all(each.check.passed for each in self.travel)
+        return not self.findings and not gouged and not broken and not beyond
 
 
 def make_result(cut: CutSetup) -> SimulationResult:
@@ -199,6 +208,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
         setup=cut.setup.name,
         not_measured=_not_measured(cut),
         cuts_not_checked=tuple(map(str, cut.setup.missing())),
+        travel=tuple(judged_travel(cut.setup.runs, cut.setup.register_holds)),
         tools=cut.setup.tools,
     )
 
@@ -216,6 +226,12 @@ def not_measured_lines(found: SimulationResult) -> Iterator[str]:
     """Yield what distances of bodies stand on though nobody has measured it; nothing where there is none."""
     if found.not_measured:
         yield f"distances of bodies: {phrase('stands_on', values=found.not_measured)}"
+
+
+def travel_lines(found: SimulationResult) -> Iterator[str]:
+    """Yield what was found of the travel of the axes in each program."""
+    for each in found.travel:
+        yield from each.lines()
 
 
 def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
@@ -241,6 +257,7 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         setups=tuple(results),
         pairs=sum(each.pairs for each in results),
         not_measured=tuple(dict.fromkeys(value for each in results for value in each.not_measured)),
+        travel=tuple(one for each in results for one in each.travel),
         cuts_not_checked=tuple(dict.fromkeys(why for each in results for why in each.cuts_not_checked)),
     )
 

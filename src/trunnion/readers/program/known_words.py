@@ -1,7 +1,8 @@
 """Words that a definition declares: what codes of the machine builder, macros and probing calls do to a program.
 
 ``[control.known]`` maps a word to its effects, separated by commas, and after a colon to what it means. A word that is
-an M code acts wherever it stands in a block. Any other word begins a block, and the whole block belongs to it.
+an M code acts wherever it stands in a block, and a G code without effect may stand between other codes. Any other word
+begins a block, and the whole block belongs to it.
 """
 
 import re
@@ -48,6 +49,9 @@ _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
 _CODE: Final = re.compile(r"^[GM](?=[0-9])")
 #: A G code without tenths: one with them is another word.
 _G_CODE: Final = re.compile(r"G[0-9]+")
+#: A block of G and M codes alone: no letter in it can be meant for one of them.
+_ONLY_CODES: Final = re.compile(r"/?[0-9]?(?:N[0-9]+)?/?(?:[GM][0-9]+(?:\.[0-9])?)+")
+_COMMENT: Final = re.compile(r"\([^)]*\)|;.*")
 _BLOCK_BEGIN: Final = re.compile(r"[ \t]*/?[0-9]?[ \t]*(?:N[0-9]+|[0-9]+(?=[ \t]))?[ \t]*/?[ \t]*")
 _TOOL: Final = re.compile(r"(?<![A-Z0-9])T=?[ \t]*([0-9]{1,9})")
 
@@ -172,6 +176,10 @@ class KnownWords:
         self._begin = re.compile(rf"(?:{begins})(?![A-Z0-9_])", re.IGNORECASE) if blocks else None
         codes = "|".join(str(code) for code in self._codes)
         self._code = re.compile(rf"(?<![A-Z0-9_.$])M0*({codes})(?![0-9=])(?:\([^)]*\))?", re.I) if codes else None
+        beside = [word for word in self._blocks if _is_beside_others(word)]
+        self._beside = {plain_code(word.word): word for word in beside}
+        codes = "|".join(_pattern(word.word) for word in beside)
+        self._beside_others = re.compile(rf"(?<![A-Z0-9_.$])({codes})(?![0-9=])", re.I) if beside else None
         self._continues = False
         self.any = bool(words)
         #: Those that the program has met.
@@ -189,28 +197,32 @@ class KnownWords:
                 self._continues = raw.rstrip().endswith("~")
                 self._execute_block(self._blocks[match.lastindex - 1], raw[match.start() :].split(";")[0].strip())
                 return None, ()
-        if self._code is None:
-            return raw, ()
         found: list[KnownWord] = []
 
         def remove(match: re.Match[str]) -> str:
-            before = raw[: match.start()]
+            before = match.string[: match.start()]
             if ";" in before or before.count("(") > before.count(")") or before.count('"') % 2:
                 return match[0]
-            found.append(word := self._codes[int(match[1])])
+            is_m = match[1].isdigit()
+            found.append(word := self._codes[int(match[1])] if is_m else self._beside[plain_code(match[1].upper())])
             self.met[word] = None
             return " " * len(match[0])
 
-        return self._code.sub(remove, raw), tuple(found)
+        if self._code is not None:
+            raw = self._code.sub(remove, raw)
+        if self._beside_others is not None and _ONLY_CODES.fullmatch("".join(_COMMENT.sub("", raw).upper().split())):
+            raw = self._beside_others.sub(remove, raw)
+        return raw, tuple(found)
 
     def execute(self, words: tuple[KnownWord, ...], *, before_motion: bool) -> None:
-        """Execute the effects of M codes that act before the motion of their block, or those that act after it."""
+        """Execute the effects of codes that act before the motion of their block, or those that act after it."""
         for word in words:
             for effect in word.effects:
                 if (effect in _BEFORE_MOTION) is before_motion:
                     self._execute(effect, word)
-            if word.is_silent and before_motion and word.code is not None:
-                self._control.add_event("m", float(word.code))
+            if word.is_silent and before_motion:
+                event = ("known", word.word) if word.code is None else ("m", float(word.code))
+                self._control.add_event(*event)
 
     def _execute_block(self, word: KnownWord, text: str) -> None:
         self.met[word] = None
@@ -244,6 +256,11 @@ class KnownWords:
                 control.add_event("spindle", value)
             case _ if kind == "coolant":
                 control.add_event("coolant", value)
+
+
+def _is_beside_others(word: KnownWord) -> bool:
+    """Whether a word is a G code without any effect, which then may stand between other codes of a block."""
+    return set(word.effects) == {"no effect"} and re.fullmatch(r"G[0-9]+(\.[0-9])?", word.word) is not None
 
 
 def _pattern(word: str) -> str:

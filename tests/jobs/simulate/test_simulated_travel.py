@@ -1,0 +1,33 @@
+"""A simulation judges the travel of its programs, where zero and tool length are known."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from trunnion.cli import main
+
+#: Z of the workpiece zero -> whether the program keeps Z within its travel.
+_ZEROS = {"0,0,-100": True, "0,0,-400": False}
+
+_PROGRAM = "G17 G90 G71 G94 G40 G54\nT1\nM6\nG0 X0 Y0 Z50 D1 S900 M3\nZ5\nG1 Z-1 F100\nX10\nG0 Z50\nM30\n"
+
+
+@pytest.mark.parametrize("zero", [None, *_ZEROS])
+def test_travel_is_judged_in_text_and_data(
+    zero: str | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program, report = tmp_path / "a.mpf", tmp_path / "a.json"
+    program.write_text(_PROGRAM, encoding="utf-8")
+    known = [] if zero is None else ["--zero", zero, "--tool-length", "110"]
+    stock = ["--stock", "box:40,40,10,-20,-20,-9.5", "--cell", "2", "--tool", "1=flat:10,length=60,flutes=30"]
+    code = main(["simulate", str(program), "--machine", "yl569", *stock, *known, "--report", str(report)])
+    found = json.loads(report.read_text(encoding="utf-8"))
+    (travel,) = found["travel"]
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith(f"{program}: travel")]
+    assert [travel["state"] in line and travel["summary"] in line for line in lines] == [True]
+    within = zero is None or _ZEROS[zero]
+    if not within:  # the table may be in the way elsewhere
+        assert (code, found["passed"]) == (1, False)
+        assert not found["collisions"]
+    assert travel["state"] == ("not checked" if zero is None else "ok" if within else "FAIL")
