@@ -33,7 +33,6 @@ _CHECK: Final = job(
     run="definitions:check",
     examples=[
         ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
-        ("trunnion check our_mill.toml --program part.nc", "how the programs of this machine are written"),
         ("trunnion check part.toml", "a project, a tool library, an impeller or a file of jobs"),
     ],
 )  # fmt: skip
