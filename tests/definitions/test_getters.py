@@ -85,6 +85,7 @@ def test_every_getter_notes_what_is_missing_and_reading_goes_on(tmp_path: Path) 
         ("nan", "number", "write a number in millimetres"),
         ("inf", "number", "write a number in millimetres"),
         ('"12.5mm"', "number", "write a number in millimetres, without quotes and unit: k_mm = 12.5"),
+        ('"12,5 mm"', "number", "write a number in millimetres, without quotes and unit: k_mm = 12.5"),
         ("1.0", "integer", "write a whole number"),
         ("true", "integer", "write a whole number"),
         ("1", "flag", "write true or false, without quotes"),

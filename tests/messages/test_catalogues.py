@@ -217,6 +217,13 @@ def test_parameters_are_those_of_the_text() -> None:
     assert not wrong, "\n".join(wrong)
 
 
+def test_parameters_have_names_of_their_own() -> None:
+    numbered = {
+        name for _, _, entry in texts() for text in entry.values() for name in fields(text) if name[-1:].isdigit()
+    }
+    assert numbered == set()
+
+
 def test_sentences_around_are_used_and_hold_what_they_are_around() -> None:
     source = "\n".join(path.read_text(encoding="utf-8") for path in trees())
     for name, template in catalogue("en", AROUND).items():

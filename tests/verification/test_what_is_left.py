@@ -77,6 +77,16 @@ CONDITIONS = [
     (YL569 / "1_contour_rough.cls", "yl569", "N310 M6", "N305 M3 S500\nN310 M6", "tool change while the spindle"),
     (YL569 / "3_blade_finish.cls", "yl569", "D1 M3\n", "D1 M4 M3\n", "one block turns the spindle"),
     (CASES / "contour.cls", "matsuura_mx330", "N280 M3\nN290 M8\n", "N280 M3\n", "coolant flood after a stop"),
+    (CASES / "contour.cls", "yl569", "N710 Z5. M3 M8\n", "N710 Z5. M8\n", "spindle clockwise after a stop"),
+    (CASES / "contour.cls", "hs664rt", "M9\nN", "M8\nN", "tool change while coolant flows (flood)"),
+    (CASES / "contour.cls", "yl569", " G710", "", "relies on G71, which it does not say"),
+    (CASES / "contour.cls", "dmu65", "L Z+560 R0 FMAX M91", "L Z+560 R0 FMAX M92", "the builder has set M92"),
+    (CASES / "contour.cls", "yl569", "N280 SUPA G0 Z=_Z_HOME D0\n", "", "not stated yet against"),
+    (CASES / "contour.cls", "dmu65", "L Z+560 R0 FMAX M91", "M5", "not stated yet against"),
+    (CASES / "contour.cls", "matsuura_mx330", "G49 G53 G0 Z0.", "G49", "not stated yet against"),
+    (CASES / "contour.cls", "haas_umc750", "G49 G53 G0 Z0.", "G49", "not stated yet against"),
+    (CASES / "contour.cls", "xyzac_trt", "G53 G0 Z0.", "G0", "not stated yet against"),
+    (CASES / "contour.cls", "xyzac_trt", "G0 A0. C0.\n", "G0 A0.\n", "axis C: stated in G54 against stated"),
     (CASES / "tilted.cls", "generic_head_table_bc", "N620 CYCLE800()\n", "", "while a tilted plane is on"),
 ]  # fmt: skip
 
@@ -113,4 +123,4 @@ def test_a_tool_that_is_put_away_at_the_end_is_compared(tmp_path: Path) -> None:
     for last in ([lines[-1]], [lines[-3], f"/{lines[-2]}", lines[-1]]):
         found = trunnion.diff(program, another(tmp_path, [*lines[:-3], *last]), machine="yl569")
         assert found.first is not None
-        assert found.first.text.startswith("change to tool 0 behind the last motion against nothing")
+        assert found.first.text.startswith("change to tool 0 behind the last motion")

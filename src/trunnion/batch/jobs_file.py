@@ -273,7 +273,7 @@ def _refuse_keys(table: Table, action: Action, stated: Collection[str]) -> None:
                     "BAT110",
                     "no_meaning_action",
                     action=action,
-                    action_2=tuple(f'"{each}"' for each in Action if each in _KEYS[key].options),
+                    actions=tuple(f'"{each}"' for each in Action if each in _KEYS[key].options),
                 ),
             )
 

@@ -193,7 +193,7 @@ class ReaderState:
         """Report an operation that states the number of its tool and cuts with another one."""
         line, number = builder.stated.get(TOOL_NUMBER, (0, 0))
         if line and self.tool is not None and self.tool.number != number and not self.dialect.in_sections:
-            self.diagnostics.error(line, Wording("CL780", "tool_stated_not", number=number, number_2=self.tool.number))
+            self.diagnostics.error(line, Wording("CL780", "tool_stated_not", number=number, loaded=self.tool.number))
 
     def _leave_out_tools(self, number: int) -> None:
         """Leave out tool changes before this one that belong to no operation, or to one without motion."""
@@ -202,7 +202,7 @@ class ReaderState:
             events.remove(event)
             if event.number != number:
                 self.diagnostics.remark(
-                    event.line, Wording("CL780", "tool_loaded_does", number=event.number, number_2=number)
+                    event.line, Wording("CL780", "tool_loaded_does", number=event.number, next_number=number)
                 )
 
     def set_axis(self, axis: tuple[float, float, float] | None, no_axis: NoAxis) -> None:

@@ -65,7 +65,7 @@ class Statement(NamedTuple):
             both = [word for word in given if word in choice]
             if len(both) > 1:
                 raise StatementError(
-                    Wording("CL320", "contradict_each_other", major=self.major, both=both[0], both_2=both[1])
+                    Wording("CL320", "contradict_each_other", major=self.major, both=both[0], other=both[1])
                 )
 
 

@@ -21,6 +21,7 @@ from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.describe.controls import describe_control
 from trunnion.jobs.describe.definition_checks import all_problems, machine_problems, stand_in
 from trunnion.jobs.describe.machines import describe_machine
+from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.job import Given
 from trunnion.machines import load_machine, shipped_machines
@@ -68,6 +69,8 @@ def check(given: Given) -> int:
 
     Every mistake comes at once.
     """
+    if given.program is not None:
+        load_machine(given.file)  # which refuses a file of another kind
     other = checked_file(given.file)
     if other is not None:
         _tell(other.remarks)
@@ -86,7 +89,13 @@ def check(given: Given) -> int:
     found = describe_machine(given.file)
     _tell(found.remarks)
     good = f"{given.file}: good"
-    show(given, lambda: machine_data(found), [good, "", *machine_lines(found)])
+    if given.program is None:
+        show(given, lambda: machine_data(found), [good, "", *machine_lines(found)])
+        return 0
+    from trunnion.jobs.describe.reading_keys import proposed_reading  # few definitions are checked with a program
+
+    proposal = proposed_reading(check_path("program", given.program), load_machine(given.file))
+    show(given, lambda: machine_data(found) | {"reading": proposal.keys}, [good, "", *proposal.lines()])
     return 0
 
 

@@ -110,7 +110,7 @@ def _format_problems(control: Control) -> Iterator[Problem]:
                 word=word.name,
                 format=word.format,
                 value=min(9, pair.five_axis.decimals + 2),
-                format_2=repr(word.format),
+                format_name=repr(word.format),
             )
             if pair.inch is None
             else Wording("DEF540", "word_no_length", word=word.name, format=repr(word.format)),
@@ -154,7 +154,7 @@ def _field_problems(
                     template=template.name,
                     name=name,
                     number_format=number_format,
-                    number_format_2=repr(number_format),
+                    format_name=repr(number_format),
                 ),
             )
 

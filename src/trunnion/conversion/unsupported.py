@@ -148,7 +148,7 @@ def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, 
                         "within_operation",
                         letter=letter,
                         column=column[others[0]],
-                        column_2=column[concerned[0]],
+                        own_column=column[concerned[0]],
                     ),
                     int(run.file[others[0]]),
                 )

@@ -11,7 +11,8 @@ from trunnion.wording import nearest_word
 
 _MAX_SHOWN = 60
 _NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
+#: A number and its unit. Three digits behind a comma may be thousands: then nobody knows the number.
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+|\d*,(?!\d{3}(?!\d))\d+))\s*[^\d.,]*")
 
 
 def as_written(value: object) -> str:
@@ -74,8 +75,8 @@ def _bounds(above: float | None, at_least: float | None, at_most: float | None) 
 
 def unquoted(key: str, value: object) -> str:
     """Return the line in which a number that is in quotes has none; empty if ``value`` is none."""
-    found = _NUMBER.match(value.strip()) if isinstance(value, str) else None
-    return f"{key} = {found.group()}" if found else ""
+    found = _NUMBER.fullmatch(value.strip()) if isinstance(value, str) else None
+    return f"{key} = {float(found[1].replace(',', '.')):.12g}" if found else ""
 
 
 def in_quotes(key: str, value: object) -> str:

@@ -242,7 +242,9 @@ class _Caller:
             for new in [] if returned is None else self.listed("on_block", returned, Event):
                 self._check_types("on_block", new)
                 if new.row not in (block.row, block.row + 1):
-                    raise self.refuse("on_block", Wording("HOK132", "event_row_block", row=new.row, row_2=block.row))
+                    raise self.refuse(
+                        "on_block", Wording("HOK132", "event_row_block", row=new.row, block_row=block.row)
+                    )
                 new = replace(new, line=block.line) if new.line < 1 else new
                 added.append(self._checked("on_block", new, len(operation.moves)))
         return tuple(sorted((*operation.events, *added), key=lambda event: event.row))
@@ -287,7 +289,7 @@ def _plain_operation(call: _Caller, before: Operation, given: Operation, operati
         part = getattr(operation, name)
         if not isinstance(part, kind):
             raise call.refuse(
-                "on_operation", Wording("HOK130", "operation_type", name=name, name_2=type(part).__name__)
+                "on_operation", Wording("HOK130", "operation_type", name=name, type_name=type(part).__name__)
             )
     keeps_events, keeps_moves = operation.events is given.events, operation.moves is given.moves
     own = {

@@ -164,7 +164,9 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool], stated: Se
     if tool in tools and tools[tool].sizes.kind not in _TOOLS[kind]:
         table.add_problem(
             "tool",
-            Wording("IMP312", "mill", tool=tool, kind=tools[tool].sizes.kind, kind_2=kind, tools=tuple(_TOOLS[kind])),
+            Wording(
+                "IMP312", "mill", tool=tool, kind=tools[tool].sizes.kind, step_kind=kind, tools=tuple(_TOOLS[kind])
+            ),
         )
     elif tool not in tools and tool not in stated:
         table.add_problem(

@@ -82,7 +82,7 @@ def _bore(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
         yield definition.problem(
             "stock.bore_mm",
             Wording(
-                "IMP215", "stock_bore_mm", bore=definition.stock.bore, place=2.0 * place[k, 0], place_2=place[k, 2]
+                "IMP215", "stock_bore_mm", bore=definition.stock.bore, diameter=2.0 * place[k, 0], height=place[k, 2]
             ),
         )
 

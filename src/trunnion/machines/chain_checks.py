@@ -36,11 +36,11 @@ def check_chain(
                 "DEF410",
                 "linear_rotary_axes",
                 count=len(slides),
-                count_2=len(rotary),
+                rotary_count=len(rotary),
                 slides=tuple(axes[k].name for k in (*slides, *rotary)),
             )
             if len(axes) > 5
-            else Wording("DEF410", "linear_rotary", count=len(slides), count_2=len(rotary)),
+            else Wording("DEF410", "linear_rotary", count=len(slides), rotary_count=len(rotary)),
         )
         sound = False
     for k in range(1, len(axes)):
@@ -76,7 +76,7 @@ def _check_rotary_directions(
         axis_tables[rotary[1]].add_problem("direction", Wording("DEF420", "parallel_machine_could", names=names[0]))
     elif _sine(second, np.array(spindle)) < PARALLEL_TOLERANCE:
         axis_tables[rotary[1]].add_problem(
-            "direction", Wording("DEF420", "parallel_spindle_turns", names=names[1], names_2=names[0])
+            "direction", Wording("DEF420", "parallel_spindle_turns", turning=names[1], tilting=names[0])
         )
 
 

@@ -271,7 +271,7 @@ def _check_displayed(entry: Table, home: float, rotary: _RotaryKeys) -> None:
                 "axis_output_never",
                 home=home,
                 output=rotary.output,
-                home_2=home % 360.0 if low == 0.0 else (home + 180.0) % 360.0 - 180.0,
+                shown_home=home % 360.0 if low == 0.0 else (home + 180.0) % 360.0 - 180.0,
             ),
         )
 
@@ -297,7 +297,7 @@ def _gear(table: Table) -> tuple[float, float]:
 def _facts(spindle: Table, facts: Table) -> MachineFacts:
     size, centre = facts.vector("table_size_mm", 2, None), facts.vector("table_centre_mm", 2, None)
     if size is not None and min(size) <= 0.0:
-        facts.add_problem("table_size_mm", Wording("DEF330", "no_two_lengths", size=size[0], size_2=size[1]))
+        facts.add_problem("table_size_mm", Wording("DEF330", "no_two_lengths", width=size[0], depth=size[1]))
     result = MachineFacts(
         spindle_min_rpm=spindle.number("min_rpm", None, at_least=0),
         spindle_gears_rpm=tuple(_gear(gear) for gear in spindle.tables("gear")),

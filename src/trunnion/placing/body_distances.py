@@ -58,8 +58,8 @@ def touch_warnings(found: Placement) -> list[Problem]:
             Wording(
                 "PLC300",
                 "touch_best_place",
-                between=touching.between[0],
-                between_2=touching.between[1],
+                one=touching.between[0],
+                other=touching.between[1],
                 goal=found.goal,
             ),
         )

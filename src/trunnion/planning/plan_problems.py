@@ -179,8 +179,8 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
             Wording(
                 "PLN130",
                 "rotary_axes_flip",
-                describe_pose=describe_pose(machine, poses.rotary[row - 1]),
-                describe_pose_2=describe_pose(machine, poses.rotary[row]),
+                pose_before=describe_pose(machine, poses.rotary[row - 1]),
+                pose=describe_pose(machine, poses.rotary[row]),
             ),
         )
     column, value = code - 1, float(poses.beyond_value[row])
@@ -225,9 +225,9 @@ def travel_problems(operations: Sequence[tuple[str, Moves, PlannedPoses]], machi
                 axis=axis.name,
                 low=low,
                 high=high,
-                high_2=high - low,
-                low_2=axis.low,
-                high_3=axis.high,
-                high_4=axis.high - axis.low,
+                length=high - low,
+                limit_low=axis.low,
+                limit_high=axis.high,
+                room=axis.high - axis.low,
             ),
         )

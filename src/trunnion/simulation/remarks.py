@@ -56,8 +56,8 @@ def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
                     axis=axis.name,
                     low=low,
                     high=high,
-                    low_2=axis.low,
-                    high_2=axis.high,
+                    limit_low=axis.low,
+                    limit_high=axis.high,
                 ),
             )
 

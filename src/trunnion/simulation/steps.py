@@ -93,7 +93,7 @@ class SetupSteps:
             if not pose.keeps_rays:
                 self._slack += cell
                 remarks.append(
-                    warning("stock", 0, Wording("SIM134", "turned_through_surface", cell=0.5 * cell, cell_2=cell))
+                    warning("stock", 0, Wording("SIM134", "turned_through_surface", off=0.5 * cell, cell=cell))
                 )
         self._part = own.part or self._part
         result = self._simulated(own, self._model(shape, self._part), self._part, remarks)

@@ -86,9 +86,9 @@ def _refused(run: Run, deltas: list[ToolAddition], unknown: Sequence[Stretch]) -
     for each in deltas:
         file = run.files[each.event.file]
         if each.name not in LENGTHS | _RADII:
-            yield Problem(file, each.event.line, Wording("SIM162", "moves_tool_mm", name=each.name, name_2=each.value))
+            yield Problem(file, each.event.line, Wording("SIM162", "moves_tool_mm", name=each.name, delta=each.value))
         elif each.name in _RADII and _radius_counts(run, each, unknown):
-            yield Problem(file, each.event.line, Wording("SIM162", "adds_mm_radius", name=each.name, name_2=each.value))
+            yield Problem(file, each.event.line, Wording("SIM162", "adds_mm_radius", name=each.name, delta=each.value))
 
 
 def _radius_counts(run: Run, each: ToolAddition, unknown: Sequence[Stretch]) -> bool:

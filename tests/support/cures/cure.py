@@ -29,11 +29,11 @@ class Outcome:
         return found | {(code, "") for code, _ in found}
 
     def cures(self, code: str, variant: str) -> list[str]:
-        """The cures of a message, as they were said, or as its explanation has them."""
+        """The cures of a message, as said or as its explanation has them; and the settings that it is with."""
         if not variant:
             return [explanations()[code].cure]
         return [
-            each.cure
+            f"{problem.setting}: {each.cure}"
             for problem in self.problems
             for each in _with_parts(problem.wording)
             if (each.code, each.variant) == (code, variant)
@@ -142,6 +142,17 @@ def verify(machine: str = "yl569") -> Trial:
         return Outcome((*heard.found, *noted, *failed), found.passed)
 
     return verified
+
+
+def define(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Load the definition of a machine; it has no settings."""
+    file = folder / "ours.toml"
+    file.write_text(text, encoding="utf-8")
+    try:
+        trunnion.describe_machine(file)
+    except TrunnionError as error:
+        return Outcome(tuple(error.problems), False)
+    return Outcome((), True)
 
 
 def messages(cures: Iterable[Cure]) -> set[tuple[str, str]]:

@@ -44,7 +44,51 @@ _BARE: Final = _UNNUMBERED.replace(_SPEED, "")
 _TWO_BARE: Final = _BARE + FOOT + _BARE.replace("OP1", "OP 2").replace("D10", "D12") + FOOT
 _TWO_UNNUMBERED: Final = _UNNUMBERED + FOOT + _UNNUMBERED.replace("OP1", "OP 2").replace("D10", "D12") + FOOT
 
+_SIDES: Final = (
+    HEAD.replace("50.0,0.0,0.0,1.0", "50.0,0.0,0.6,0.8").replace(_FEED, _FEED + "CUTCOM/LEFT,XYPLAN\n")
+    + "GOTO/20,0,5\nGOTO/30,0,5\nCUTCOM/OFF\nGOTO/40,0,5\n"
+    + FOOT
+)
+_WIDE: Final = HEAD + "GOTO/300,0,5\nGOTO/-300,0,5\n" + FOOT
+
 CURES: Final = (
+    _said("CTL220", "cutcom_where_tool", _SIDES, {"mode": "OP1:tilted"}, mode="tcp"),
+    _said("CTL220", "cutcom_where_tool", _SIDES, ("CUTCOM/LEFT,XYPLAN\n", ""), ("CUTCOM/OFF\n", ""), mode="tcp"),
+    Cure("PLN125", "axis_would_go", post("yl569"), _WIDE, (), cured_by=post("generic_head_head_ca")),
+    _within("CTL230", "cutcom_names_register", "CUTCOM/LEFT,XYPLAN,7", "CUTCOM/LEFT,XYPLAN", on="dmu65"),
+    _within("CTL430", "gohome_before_operation", "GOHOME", ""),
+    _within("CTL430", "tool_change_within", "LOAD/TOOL,2", f"{FOOT}{_SECOND}".strip()),
+    _said("CTL820", "insert_goes_into", HEAD + "INSERT/; Ж\n" + FOOT, ("Ж", "Z"), encoding="ascii"),
+    _said("CTL810", "only_encoding_lacks_letter", HEAD.replace("OP1", "凸") + FOOT, ("凸", "A"), on="matsuura_mx330"),
+    _said("CTL115", "line_brings_block", HEAD + "INSERT/N10 G4 F1\n" + FOOT, {"numbers": "off"}),
+    _said("PLN510", "without_tcp_program", LEANING + FOOT, {"zero": "0,0,100"}, tcp="off", on="dmu65"),
+    _said("ARG210", "unknown_but_near", _CUT, {"mdoe": None, "mode": "tcp"}, mdoe="tcp"),
+    _said("ARG220", "no_choice", _CUT, {"programs": "one"}, programs="several"),
+    _said("ARG220", "out_of_range", _CUT, {"axis_tolerance": "0.05"}, axis_tolerance="50"),
+    _said("ARG220", "only_with_fastest_feed", _CUT, {"feed": "fastest"}, feed_limit="5000"),
+    _said("ARG220", "lower_feed_with_fastest", _CUT, {"lower_feed": None}, feed="fastest", lower_feed="yes"),
+    _said("ARG220", "unknown_mode", _CUT, {"mode": "auto"}, mode="quick"),
+    _said("ARG220", "mode_twice", _CUT, {"mode": "auto,OP1:tcp"}, mode="OP1:tcp,OP1:tilted"),
+    _said("ARG220", "speed_twice", _CUT, {"spindle": "500"}, spindle="500,600"),
+    _said("ARG230", "states_own_speed", _CUT, {"spindle": None}, spindle="OP1:500"),
+    _said("ARG230", "no_operation_before_colon", _CUT, {"tool": "OP1:7"}, tool="OP9:7"),
+    _said("ARG230", "two_values_of_operation", _CUT, {"tool": "OP1:7"}, tool="OP1:7,OP1:8"),
+    _said("ARG240", "split_without_subprograms", _CUT, {"split": None}, split="100000"),
+    _said(
+        "ARG240",
+        "first_number_without_subprograms",
+        _CUT,
+        {"first_number": None},
+        first_number="7",
+        on="matsuura_mx330",
+    ),
+    _said("ARG240", "first_number_without_numbers", _CUT, {"first_number": None}, first_number="7"),
+    _said("ARG250", "no_numbers_of_operations", _CUT, {"numbers": None}, numbers="operations", on="mikron_600u"),
+    _said("ARG250", "units_inch_no", _CUT, {"units": None}, units="inch", on="hs664rt"),
+    _said("ARG250", "no_file_to_name", _CUT, {"program_from": None}, program_from="file", on="matsuura_mx330"),
+    _said(
+        "FIL210", "no_place_for_several_files", _CUT, {"programs": "one"}, programs="operations", on="matsuura_mx330"
+    ),
     _said(
         "CTL570",
         "tools_and_speeds",

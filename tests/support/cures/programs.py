@@ -21,6 +21,11 @@ _KLARTEXT: Final = HEADS["mikron_600u"].format(lines="L X+10 F100")
 _LINUXCNC: Final = HEADS["xyzac_trt"].format(lines="G1 X10 F100")
 
 CURES: Final = (
+    _line("NC222", "", "IF $A_IN[1]==1 GOTOF ON\nG1 X10 F100\nON:", "G1 X10 F100"),
+    _line("NC143", "", "IF R9==1\nENDIF", "R9=2\nIF R9==1\nENDIF"),
+    _line("NC215", "speed_below_zero", "S-500", "S500"),
+    _line("NC160", "endproc_without_proc", "ENDPROC", ""),
+    Cure("NC113", "is_kind_by_one", verify("yl569"), _KLARTEXT, (), cured_by=verify("mikron_600u")),
     _said("modal", "", _SINUMERIK.replace(" F100", ""), ("G1 X10", "G1 X10 F100")),
     _said("modal", "", _SINUMERIK.replace(" M3", ""), ("S500", "S500 M3")),
     _said("modal", "", _SINUMERIK.replace("M30\n", ""), ("G1 Z5 F100\n", "G1 Z5 F100\nM30\n")),

@@ -98,6 +98,8 @@ def blocks_of(text: str, language: Language) -> list[Block]:
                 at.pop(word[1], None)
             else:
                 at[word[1]] = float(word[2])
+        if re.search(r"\bCP\b", code):
+            at.clear()  # polar positions go elsewhere
         if (feeds := re.findall(r"\bF(\d+\.?\d*)", code)) and not re.search(r"\bG0?4\b", code):
             feed = feeds[-1]
         for word in re.findall(r"\bM0?([345789])(?!\d)", code):

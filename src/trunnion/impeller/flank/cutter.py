@@ -38,7 +38,7 @@ class FlankCutter:
                 Problem(
                     "flank milling",
                     0,
-                    Wording("IMP326", "cutter_radius_over", ends=ends[0], ends_2=ends[1], length=self.length),
+                    Wording("IMP326", "cutter_radius_over", tip_radius=ends[0], top_radius=ends[1], length=self.length),
                 )
             )
 

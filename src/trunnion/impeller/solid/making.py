@@ -108,7 +108,9 @@ def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:
             raise
         mesh = waiting.result().mesh
     if abs(made.volume - mesh.volume) > _VOLUME * mesh.volume:
-        raise InputError(Problem(file, 0, Wording("IMP420", "solid_mm_mesh", volume=made.volume, volume_2=mesh.volume)))
+        raise InputError(
+            Problem(file, 0, Wording("IMP420", "solid_mm_mesh", volume=made.volume, mesh_volume=mesh.volume))
+        )
     return ImpellerSolid(made.step, made.volume, made.faces, deviation, mesh)
 
 

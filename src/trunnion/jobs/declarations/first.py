@@ -25,6 +25,10 @@ _CHECK: Final = job(
         "file", "", FileIn("NAME_OR_FILE", leads="definition"),
         "file to validate, or a shipped definition",
     ),
+    Option(
+        "program", "--program", FileIn("NC"),
+        "NC program of the machine: the keys of [control.reading] under which it reads best, to copy",
+    ),
     JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
     run="definitions:check",
     examples=[

@@ -27,6 +27,12 @@ def with_stated(machine: Machine, words: Mapping[str, str], variables: Mapping[s
     return replace(machine, control=_merged(machine.control, added))
 
 
+def with_reading(machine: Machine, keys: Mapping[str, object]) -> Machine:
+    """Return the machine whose ``[control.reading]`` has some keys besides, as a trial."""
+    added = {"reading": _located({key: _located(value) for key, value in keys.items()})}
+    return replace(machine, control=_merged(machine.control, added))
+
+
 def stated_words(known: Iterable[KnownWord], noted: Iterable[Diagnostic], machine: Machine) -> tuple[StatedWord, ...]:
     """Return what a run relied on: words that have whole blocks, or were given for the run, and variables.
 

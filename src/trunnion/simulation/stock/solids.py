@@ -159,7 +159,7 @@ def check_narrow_tools(tools: Mapping[str, float], cell: float) -> None:
                     cell=cell,
                     name=name,
                     wide=wide,
-                    wide_2=math.floor(0.5 * wide / digit) * digit,
+                    widest=math.floor(0.5 * wide / digit) * digit,
                 ),
             )
         )

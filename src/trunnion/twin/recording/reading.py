@@ -175,7 +175,7 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
                         Problem(
                             str(path),
                             lines.line_num - len(group) + k + 1,
-                            Wording("TWN321", "cells_not", count=len(line), count_2=len(names)),
+                            Wording("TWN321", "cells_not", count=len(line), wanted=len(names)),
                         )
                     )
             if group or first:

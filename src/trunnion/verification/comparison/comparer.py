@@ -150,7 +150,8 @@ class Comparer:
         if count and self._together is not None:
             self._together.append((i, j, count))
         a, b = one.rows[i : i + count], two.rows[j : j + count]
-        self._points += int(np.count_nonzero(one.in_machine(a) == two.in_machine(b)))
+        moves = one.moves[i : i + count] | two.moves[j : j + count]
+        self._points += int(np.count_nonzero(moves & (one.in_machine(a) == two.in_machine(b))))
         self._compare_states(i, j, count)
         self._compare_ways(i, j, a, b)
         motions = {

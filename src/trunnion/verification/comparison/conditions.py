@@ -21,6 +21,12 @@ _STOPS: Final = ("stop", "optional_stop")
 _PLANES: Final = ("tilt", "plane", "cycle800")
 _SENSES: Final = {1: "clockwise", -1: "counter-clockwise"}
 
+#: Words of units; what else a program relies on is compared in its cuts.
+_UNITS: Final = frozenset({"G20", "G21", "G70", "G71"})
+
+#: Positions of M92 count from a place that the builder has set: they are read as those of M91.
+_SECOND_MACHINE: Final = "m92_counts_set_machine_taken"
+
 #: An axis that turns by no more stands, degrees.
 _STILL: Final = 1e-6
 
@@ -30,6 +36,11 @@ def conditions(run: Run) -> Iterator[tuple[int, Wording]]:
     row = run.first_without_units
     if row is not None:
         yield row, Wording("comparison", "no_units")
+    for word in _UNITS.intersection(run.assumed_modes) if row is None else ():
+        yield 0, Wording("comparison", "relies_on", word=word)
+    for each in run.diagnostics:
+        if each.wording.variant == _SECOND_MACHINE:
+            yield 0, Wording("comparison", "second_machine")
     yield from _of_spindle(run)
     yield from _after_stops(run)
     yield from _turns_in_planes(run)
@@ -37,26 +48,34 @@ def conditions(run: Run) -> Iterator[tuple[int, Wording]]:
 
 
 def _of_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
-    """Yield tool changes while the spindle turns, and blocks that start it in both senses."""
+    """Yield tool changes while the spindle turns or coolant flows, and blocks that start it in both senses."""
     for before, event in both_senses(run):
         senses = {"first": event_word(before.value), "second": event_word(event.value)}
         yield event.before_row, Wording("comparison", "both_senses", **senses)
     turns: EventValue = None
+    coolant: EventValue = None
     for event in run.events:
         if event.kind == "spindle":
             turns = event.value if event.value in TURNING else None
+        elif event.kind == "coolant":
+            coolant = event.value if event.value != "off" else None
         elif event.kind == "tool_change" and turns:
             yield event.before_row, Wording("comparison", "change_while_turning", sense=event_word(turns))
+        elif event.kind == "tool_change" and coolant:
+            yield event.before_row, Wording("comparison", "change_with_coolant", word=event_word(coolant))
 
 
 def _after_stops(run: Run) -> Iterator[tuple[int, Wording]]:
-    """Yield words of coolant after a stop: many machines turn it off there, and it is off without them."""
-    stopped = -1
+    """Yield words of coolant and spindle after a stop: many machines turn them off there, and they are off without."""
+    stopped = started = -1
     for event in run.events:
         if event.kind in _STOPS:
             stopped = event.before_row
         elif event.kind == "coolant" and event.before_row == stopped:
             yield stopped, Wording("comparison", "coolant_after_stop", word=event_word(event.value))
+        elif event.kind == "spindle" and event.value in TURNING and event.before_row == stopped != started:
+            started = stopped  # once: a program may say it again
+            yield stopped, Wording("comparison", "spindle_after_stop", word=event_word(event.value))
 
 
 def _turns_in_planes(run: Run) -> Iterator[tuple[int, Wording]]:

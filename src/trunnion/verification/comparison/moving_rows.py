@@ -8,6 +8,7 @@ from trunnion.messages import Wording
 from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.comparison.stated_axes import first_statements
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.matching.rows_to_match import workpiece_rows
 from trunnion.verification.row_ranges import CHUNK
@@ -17,6 +18,9 @@ _SENSES = {1: "clockwise_at", -1: "counterclockwise_at", 0: "off_at"}
 
 class MovingRows:
     """A program without blocks that move and change nothing; motions are counted from 0.
+
+    ``moves`` are those that go elsewhere than the one before. A block that states an axis for the first time counts
+    too, as it moves the axis from wherever it has been.
 
     ``coolants`` and ``tools`` give each coolant word and tool the same number in both programs; they are filled in.
     """
@@ -35,7 +39,10 @@ class MovingRows:
         self._machine_positions = MachinePositions.of(run) if with_machine_frame else None
         if self._machine_positions is not None:
             moving |= self._machine_positions.crossed(rows)
-        self.rows = rows[moving]
+        moves = moving.copy()
+        if with_machine_frame:
+            moving |= np.isin(rows, first_statements(run))
+        self.rows, self.moves = rows[moving], moves[moving]
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -13,6 +13,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.registers import compared_registers
 from trunnion.verification.comparison.said_modes import said_modes
+from trunnion.verification.comparison.stated_axes import stated_axes
 from trunnion.verification.comparison.states import ComparedState
 
 #: Feeds and speeds are the same within this, mm/min and rev/min: programs print no more digits.
@@ -45,7 +46,7 @@ def compared_states(one: MovingRows, two: MovingRows, *, path: bool) -> list[Com
         lambda a, b: (one.coolant[a], two.coolant[b]),
         lambda _a, _b: Wording("comparison", "coolants"),
     )
-    states += said_modes(one.run, two.run)
+    states += [*said_modes(one.run, two.run), *stated_axes(one.run, two.run)]
     return [*states, _feeds(one, two), _spindles(one, two), tools, coolants]
 
 

@@ -104,7 +104,7 @@ def _unpack(name: str, data: bytes) -> bytes:
             found = [info for info in infos if info.filename.casefold().endswith(".json")]
             if len(found) != 1:
                 raise InputError(
-                    Problem(name, 0, Wording("SIM170", "archive_file_them", count=len(infos), count_2=len(found)))
+                    Problem(name, 0, Wording("SIM170", "archive_file_them", count=len(infos), json_count=len(found)))
                 )
             if found[0].flag_bits & 1 or found[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
                 raise InputError(Problem(name, 0, Wording("SIM170", "archive_password_rare")))

@@ -1,0 +1,132 @@
+"""Under which keys of ``[control.reading]`` a program reads best: a proposal, which changes nothing by itself.
+
+In:     a program, and the machine that is to run it.
+Out:    the keys that the text can tell apart and with which it has fewer errors, or keeps within the travel, with why.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from trunnion import readers
+from trunnion.errors import InputError
+from trunnion.machines import Machine
+from trunnion.messages import Wording, phrase
+from trunnion.readers.program.forms import keys_of
+from trunnion.readers.program.settings import family_of, reading_of
+
+#: A word of a key, or a list of one.
+Value: TypeAlias = str | list[str]
+
+#: Texts that can tell a key from its default: key, value, what the program has, and what it must not have.
+_TELLS: Final[tuple[tuple[str, Value, str, str], ...]] = (
+    ("block_ends", ["*"], r"\*[ \t]*$", ""),
+    ("block_ends", [";"], r";[ \t]*$", ""),
+    ("block_ends", ["$"], r"\$[ \t]*$", ""),
+    ("block_ends", ["LF"], r"LF[ \t]*$", ""),
+    ("block_ends", ["EOB"], r"EOB[ \t]*$", ""),
+    ("more_comments", [";"], r";", ""),
+    ("more_comments", ["'"], r"'", ""),
+    ("more_comments", ["!"], r"!", ""),
+    ("more_comments", ["//"], r"//", ""),
+    ("more_comments", ["{"], r"\{", ""),
+    ("program_numbers", ["O"], r"^[ \t]*O[ \t]*[0-9]+[ \t]*(?:\(.*)?$", ""),
+    ("program_numbers", [":"], r"^[ \t]*:[ \t]*[0-9]+", ""),
+    ("program_numbers", ["%"], r"^[ \t]*%[ \t]*[0-9]+", ""),
+    ("tape_marks", "ignored", r"^[ \t]*%[ \t]*$", ""),
+    ("numbers_anywhere", "anywhere", r"[0-9.][ \t]*N[0-9]+", ""),
+    ("arc_centres", "absolute", r"[IJK][ \t]*[-+]?[.0-9]", r"G9[01]\.1"),
+    ("arc_centres", "incremental", r"[IJK][ \t]*[-+]?[.0-9]", r"G9[01]\.1"),
+    ("start_distances", "incremental", r"[XYZ][ \t]*[-+]?[.0-9]", r"G9[01](?![.0-9])"),
+    ("start_plane", "G18", r"G0?[23](?![0-9])", r"G1[789]"),
+    ("start_plane", "G19", r"G0?[23](?![0-9])", r"G1[789]"),
+    ("behind_circles", "line", r"G0?[23](?![0-9])", ""),
+    ("end_in_subprogram", "returns", r"M98", ""),
+    ("whole_numbers", "calculator", r"[XYZ][ \t]*[-+]?[0-9]+(?![.0-9])", ""),
+)
+
+#: Longer programs are judged by their beginning.
+_MOST_BYTES: Final = 200_000
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """Keys under which a program reads best; none: it reads best as it is.
+
+    keys    TOML values by their keys
+    before  errors, and axes beyond their travel, without the keys
+    after   with them
+    why     what each key changes
+    """
+
+    keys: dict[str, Value]
+    before: tuple[int, int]
+    after: tuple[int, int]
+    why: tuple[Wording, ...]
+
+    def lines(self) -> Iterator[str]:
+        """Yield the proposal as TOML to copy, with why as comments."""
+        if not self.keys:
+            yield str(phrase("reads_best_so", errors=self.before[0]))
+            return
+        yield str(phrase("reads_better", errors=self.before[0], left=self.after[0]))
+        yield "[control.reading]"
+        for (key, value), why in zip(self.keys.items(), self.why, strict=True):
+            written = f'"{value}"' if isinstance(value, str) else "[" + ", ".join(f'"{each}"' for each in value) + "]"
+            yield f"{key} = {written}  # {why}"
+
+
+def proposed_reading(program: Path, machine: Machine) -> Proposal:
+    """Return the keys under which a program reads best. Nothing is tried that its text cannot tell apart.
+
+    Raises ``InputError`` if the file cannot be read.
+    """
+    text = program.read_bytes()[:_MOST_BYTES].decode("latin-1")
+    keys: dict[str, Value] = {}
+    why: dict[str, Wording] = {}
+    first = best = _score(program, machine)
+    for key, value in _candidates(text, machine):
+        tried = {**keys, key: _joined(keys.get(key), value)}
+        score = _score(program, readers.with_reading(machine, tried))
+        if score < best:
+            variant = "fewer_errors" if score[0] < best[0] else "within_travel"
+            why[key] = phrase(variant, before=best[0], after=score[0], axes=best[1] - score[1])
+            keys, best = tried, score
+    return Proposal(keys, first, best, tuple(why[key] for key in keys))
+
+
+def _candidates(text: str, machine: Machine) -> Iterator[tuple[str, Value]]:
+    """Yield keys of the machine's family that it does not state, with values that the text can tell apart."""
+    known = {key.name: key.words for key in keys_of(family_of(machine))}
+    if "fanuc" in family_of(machine):
+        known["whole_numbers"] = ("calculator",)
+    stated = reading_of(machine).keys()
+    for key, value, has, has_not in _TELLS:
+        if key not in known or key in stated:
+            continue
+        flags = re.IGNORECASE | re.MULTILINE
+        if re.search(has, text, flags) and not (has_not and re.search(has_not, text, flags)):
+            yield key, value
+
+
+def _joined(before: Value | None, value: Value) -> Value:
+    return [*before, *value] if isinstance(before, list) and isinstance(value, list) else value
+
+
+def _score(program: Path, machine: Machine) -> tuple[int, int]:
+    """Return how many errors a program has, and how many linear axes need more than their travel."""
+    try:
+        run = readers.run_program(program, machine)
+    except InputError as error:
+        return len(error.problems) + _MOST_BYTES, 0
+    at_part = ~run.machine_frame
+    spans = np.ptp(run.joints[at_part], axis=0) if at_part.any() else np.zeros(len(machine.axes))
+    beyond = [
+        not axis.is_rotary and axis.has_limits and bool(span > axis.high - axis.low)
+        for axis, span in zip(machine.axes, spans.tolist(), strict=True)
+    ]
+    return len(run.errors), sum(beyond)

@@ -1,0 +1,48 @@
+"""``trunnion check --program``: the keys under which the programs of a machine read best."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from trunnion.cli import main
+from trunnion.jobs.describe.reading_keys import proposed_reading
+
+FANUC = "%\nO1\nG21 G17 G40 G80 G90 G94\nT1 M6\nG54 G0 X0. Y0. S900 M3\nG43 H1 Z9.\n"
+END = "G0 Z9.\nG49\nM30\n%\n"
+
+
+@pytest.mark.parametrize(
+    ("machine", "text", "keys"),
+    [
+        ("matsuura_mx330", FANUC + "G1 X5. F9.\n" + END, {}),
+        ("matsuura_mx330", FANUC + "G1 X5. F9. *\nX7.*\n" + END, {"block_ends": ["*"]}),
+        ("matsuura_mx330", FANUC + "G1 X5. F9. ; FIRST\nX7. 'LAST\n" + END, {"more_comments": [";", "'"]}),
+        ("matsuura_mx330", FANUC + "G1 X5. F9.\nG2 X7. Y2. I7. J0.\n" + END, {"arc_centres": "absolute"}),
+        ("matsuura_mx330", FANUC + "G1 N5 X5. F9.\n" + END, {"numbers_anywhere": "anywhere"}),
+        ("xyzac_trt", ":12\nG21 G90 G94\nG1 X5 F9\nM2\n", {"program_numbers": [":"]}),
+        ("yl569", "G71 G90\nG1 X5 F9 ! FIRST\nM30\n", {"more_comments": ["!"]}),
+    ],
+)
+def test_keys_are_proposed_that_the_text_can_tell(
+    machine: str, text: str, keys: dict[str, object], tmp_path: Path
+) -> None:
+    program = tmp_path / "a.nc"
+    program.write_text(text)
+    found = proposed_reading(program, trunnion.load_machine(machine))
+    assert found.keys == keys
+    assert found.after <= found.before
+    assert len(found.why) == len(keys)
+
+
+def test_the_proposal_is_toml_to_copy_and_changes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program, ours = tmp_path / "a.nc", tmp_path / "ours.toml"
+    program.write_text(FANUC + "G1 X5. F9. *\n" + END)
+    ours.write_text('extends = "matsuura_mx330"\nname = "Ours"\n')
+    before = ours.read_text()
+    assert main(["check", str(ours), "--program", str(program)]) == 0
+    said = capsys.readouterr().out
+    assert '[control.reading]\nblock_ends = ["*"]  # 1 error before, 0 with it' in said
+    assert ours.read_text() == before
+    ours.write_text(before + said[said.index("[control.reading]") :])
+    assert trunnion.read_program(program, machine=str(ours)).errors == ()
