@@ -92,4 +92,5 @@ def _skipped_rows(operation: Operation) -> Iterator[tuple[int, int]]:
         if isinstance(event, BlockSkip):
             skips[event.row :] = event.on
     skips[-1] = 0
-    yield from np.flatnonzero(np.diff(skips, prepend=np.int8(0))).reshape(-1, 2).tolist()
+    for first, end in np.flatnonzero(np.diff(skips, prepend=np.int8(0))).reshape(-1, 2).tolist():
+        yield first, end
