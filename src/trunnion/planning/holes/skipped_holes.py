@@ -92,5 +92,5 @@ def _skipped_rows(operation: Operation) -> Iterator[tuple[int, int]]:
         if isinstance(event, BlockSkip):
             skips[event.row :] = event.on
     skips[-1] = 0
-    for first, end in np.flatnonzero(np.diff(skips, prepend=np.int8(0))).reshape(-1, 2).tolist():
-        yield first, end
+    edges = np.flatnonzero(np.diff(skips, prepend=np.int8(0))).tolist()
+    yield from zip(edges[::2], edges[1::2], strict=True)
