@@ -61,9 +61,11 @@ def test_own_words_are_refused_with_key_and_line(
     words = not_own(machine, OWN[machine])
     file = definition(tmp_path, machine, *(f'"{word}" = "no effect"' for word in words))
     assert main(["check", str(file)]) == 2
-    err = capsys.readouterr().err
+    assert f"{file}:3: error: " in capsys.readouterr().err
+    with pytest.raises(InputError) as refused:
+        check_reading(trunnion.load_machine(file))
     for line, word in enumerate(words, 3):
-        found = next((text for text in err.splitlines() if f"machine.toml:{line}: error: " in text), "")
+        found = next((str(each) for each in refused.value.problems if each.line == line), "")
         assert "is a word of the control itself" in found, word
         assert word in found
 
