@@ -1,10 +1,11 @@
-"""What a program needs and does not say, or may leave out, is told where it is converted."""
+"""What a program needs and does not say, may leave out or loses with its cycles is told where it is converted."""
 
 from pathlib import Path
 
 import pytest
 
 import trunnion
+from tests.support.program_states import MACHINES, PROGRAMS
 
 HEADS = {
     "matsuura_mx330": ("%", "O0001", "G21 G17 G90 G94 G40 G80 G54", "T1 M6", "S1000 M3", "G0 G43 H1 X0. Y0. Z50."),
@@ -69,3 +70,28 @@ def test_what_no_opskip_holds_is_told(tmp_path: Path, machine: str, block: str, 
 
 def test_motion_that_may_be_skipped_is_carried_and_not_told(tmp_path: Path) -> None:
     assert told(tmp_path, "matsuura_mx330", ("G0 X20.", "/G0 X20.")) == []
+
+
+HOLES = {
+    "matsuura_mx330": ("G98 G81 X10. Y0. Z-5. R2. F100", "X20.", "X30.", "G80"),
+    "haas_umc750": ("G98 G81 X10. Y0. Z-5. R2. F100", "X20.", "X30.", "G80"),
+    "yl569": ("F100", "MCALL CYCLE81(5,0,2,-5)", "X10 Y0", "X20", "X30", "MCALL"),
+    "dmu65": (
+        "CYCL DEF 200 DRILLING ~", "Q200=2 ~", "Q201=-5 ~", "Q206=100 ~", "Q202=5 ~", "Q210=0 ~", "Q203=0 ~",
+        "Q204=50 ~", "Q211=0", "L X+10 Y+0 R0 FMAX M99", "L X+20 R0 FMAX M99", "L X+30 R0 FMAX M99",
+    ),
+    "hs664rt": ("G81 X10 Y0 Z50 R2 E-5 F100", "X20", "X30", "G80", "G1"),
+    "xyzac_trt": ("G98 G81 X10 Y0 Z-5 R2 F100", "X20", "X30", "G80", "G1"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("machine", HOLES)
+def test_cycles_that_become_motion_are_one_remark_at_the_first_hole(tmp_path: Path, machine: str) -> None:
+    family = next(family for family, name in MACHINES.items() if name == machine)
+    rooms = dict.fromkeys(("head", "above", "behind", "end"), "") | {"cut": "\n".join(HOLES[machine])}
+    program = tmp_path / ("part.h" if machine == "dmu65" else "part.nc")
+    program.write_text(PROGRAMS[family].format(**rooms), encoding="utf-8")
+    lines = program.read_text(encoding="utf-8").splitlines()
+    found = [each for each in trunnion.convert(program, machine=machine, to_cl=True).problems if each.code == "CNV163"]
+    assert [each.what.partition(", the first")[0] for each in found] == ["3 holes of drilling cycles become motion"]
+    assert "10" in lines[found[0].line - 1]

@@ -1,5 +1,6 @@
 """Blocks that may be skipped: whether they are or not, the others do the same."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -183,4 +184,54 @@ def test_a_hole_by_motion_that_may_be_skipped_passes_with_the_way_to_it(
     program.write_text("\n".join(blocks) + "\n", encoding="utf-8")
     capsys.readouterr()
     assert main(["verify", str(program), "--machine", machine, "--cl", str(cl)]) == 1
+    assert "may be skipped (/), and the CL file has no OPSKIP there" in capsys.readouterr().out
+
+
+#: The first of three holes may be skipped; the tool comes from a height.
+_FIRST_HOLE = """\
+TOOL PATH/DRILLS,TOOL,D8
+TLDATA/MILL,8,0,60,0,0
+LOADTL/1
+SPINDL/RPM,2000,CLW
+RAPID
+GOTO/-10,0,{height},0,{axis}
+CYCLE/{cycle},RAPTO,3,FEDTO,-10,RTRCTO,20,MMPM,150
+OPSKIP/ON
+GOTO/{skipped}
+OPSKIP/OFF
+GOTO/20,0,0
+GOTO/40,0,0
+CYCLE/OFF
+RAPID
+GOTO/60,0,80
+END-OF-PATH
+"""
+
+
+@pytest.mark.parametrize(("height", "skipped", "axis"), [
+    (50, "0,0,0", "0,1"), (50, "0,0,0", "-0.5,0.8660254"), (5, "-10,0,0", "0,1"), (50, "20,0,0", "0,1"),
+])  # fmt: skip
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "dmu65", "yl569", "hs664rt", "xyzac_trt"])
+def test_the_way_to_the_hole_behind_a_first_one_that_may_be_skipped_is_level_in_both_cases(
+    machine: str, height: int, skipped: str, axis: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cl, program = tmp_path / "skip.cls", tmp_path / "skip.nc"
+    cl.write_text(_FIRST_HOLE.format(axis=axis, height=height, skipped=skipped, cycle="DRILL"), encoding="utf-8")
+    code = main(["post", str(cl), "--machine", machine, "--set", "mode=tcp", "--output", str(program)])
+    assert code == 0, capsys.readouterr().out
+
+
+def test_the_rise_above_a_hole_is_skipped_with_the_hole_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cl, program = tmp_path / "skip.cls", tmp_path / "skip.nc"
+    text = _FIRST_HOLE.format(axis="0,1", height=50, skipped="0,0,0", cycle="BORE,DRAG")
+    cl.write_text(text, encoding="utf-8")
+    post = ["post", str(cl), "--machine", "yl569", "--set", "mode=tcp"]
+    assert main([*post, "--output", str(program)]) == 0
+    blocks = program.read_text(encoding="utf-8")
+    assert re.search(r"^/N\d+ (G0 )?Z50\.\n", blocks, re.MULTILINE)
+    cl.write_text(text.replace("OPSKIP/ON\nGOTO/0,0,0\n", "GOTO/0,0,0\nOPSKIP/ON\n"), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["verify", str(program), "--machine", "yl569", "--cl", str(cl)]) == 1
     assert "may be skipped (/), and the CL file has no OPSKIP there" in capsys.readouterr().out

@@ -285,7 +285,7 @@ SAMPLES: Final = {
     ),
     "register of the radius that is not the tool's": Sample(
         "Fanuc", rooms={"cut": "G41 D13 X2. Y2.\nY3.", "behind": "G40 X0. Y0."}, cl="CUTCOM/.*13",
-        probe=_column("radius", 13), says="CUTCOM names the register 13",
+        probe=_column("radius", 13), says="D13: registers of the radius",
     ),
     "dwell": Sample("Fanuc", rooms={"behind": "G4 P2000"}, cl=r"DELAY/2\.0", probe=_event("dwell", 2.0)),
     "stop": Sample("Fanuc", rooms={"behind": "M0"}, cl="STOP", probe=_event("stop")),
@@ -310,7 +310,7 @@ SAMPLES: Final = {
     ),
     "drilling cycle": Sample(
         "Sinumerik", rooms={"cut": "G0 Z50\nF100\nMCALL CYCLE81(5,0,2,-3)\nX12\nMCALL\nG1 Z-1"},
-        cl=r"GOTO/12\.0.*-3\.0",
+        says="1 hole of drilling cycles becomes motion",
     ),
     "variable": Sample("Fanuc", rooms={"cut": "#1=12.\nX#1"}, cl=r"GOTO/12\.0"),
     "end": Sample("Fanuc", rooms={"end": "M2"}, probe=_event("end")),

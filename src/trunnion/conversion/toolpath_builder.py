@@ -27,6 +27,7 @@ from trunnion.conversion.unsaid import warn_of_missing_words, warn_of_other_mean
 from trunnion.conversion.unsupported import (
     Warnings,
     refuse_unsimulated_motions,
+    warn_of_cycles,
     warn_of_interpolation,
     warn_of_machine_words,
     warn_of_normals,
@@ -200,6 +201,7 @@ class _ToolpathBuilder:
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)
         warn_of_splines(run, self._warn)
+        warn_of_cycles(run, self._warn)
         warn_of_register_changes(run, rows, "G" if self._headers.offset_is_word else "work offset ", self._warn)
         warn_of_interpolation(run, rows, by_vectors, self._warn)
         warn_of_poses(run, zip(rows, (operation.moves for operation in operations), strict=True), self._warn)

@@ -13,6 +13,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.planning.poses.selection import choose_poses
+from trunnion.verification.block_names import block_name_of
 
 #: Lines with lost words that get a warning each; the others are only counted.
 _MAX_WORD_WARNINGS = 5
@@ -190,6 +191,14 @@ def warn_of_splines(run: Run, warn: Warnings) -> None:
     """Warn of splines, of which only their points are carried over."""
     if len(run.splines):
         _warn_at_rows(run, run.splines.first, Wording("CNV163", "spline_program_lines", count=len(run.splines)), warn)
+
+
+def warn_of_cycles(run: Run, warn: Warnings) -> None:
+    """Warn of drilling cycles, of which only their motion is carried over; those of threads and bores stay cycles."""
+    rows = [event.before_row for event in run.events if event.kind == "hole" and event.before_row < len(run)]
+    if rows:
+        wording = Wording("CNV163", "cycles_become_motion", count=len(rows), first=block_name_of(run, rows[0]))
+        _warn_at_rows(run, np.array(rows), wording, warn)
 
 
 def _warn_at_rows(run: Run, rows: Ints, wording: Wording, warn: Warnings) -> None:

@@ -29,6 +29,7 @@ from trunnion.planning.holes.cycles import (
 )
 from trunnion.planning.holes.operations import cycle_row_ranges
 from trunnion.planning.holes.pecks import SAME_HEIGHT, HoleMotions, hole_motions
+from trunnion.planning.holes.skipped_holes import LevelWays, level_ways, with_lifts
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.options import CycleObjection
 from trunnion.wording import counted
@@ -141,16 +142,16 @@ def convert_holes_to_motion(operation: Operation, conditions: HoleConditions) ->
     before = _positions_before(operation, every)
     from_home = conditions.from_home.copy()
     from_home[0] = True
-    rows = [_rows_of(operation, holes, before, from_home) for holes in converted]
+    ways = level_ways(operation, before, from_home, _feed_heights(operation, converted))
+    rows = [_rows_of(operation, holes, ways, from_home) for holes in converted]
     copies = np.ones(len(operation.moves), np.int64)
     for holes, new in zip(converted, rows, strict=True):
         copies[holes.rows] = new.keep.sum(axis=1)
     if copies.sum() > _MOST_ROWS:
         raise HoleCycleError(Wording("PLN620", "holes_motions", sum=copies.sum()), converted[0].event.line)
     first_rows = np.concatenate(([0], np.cumsum(copies)))
-    return HolesAsMotion(
-        _with_rows(operation, converted, rows, copies, first_rows), first_rows, tuple(_summary(converted))
-    )
+    made = _with_rows(operation, converted, rows, copies, first_rows)
+    return HolesAsMotion(*with_lifts(made, first_rows, ways.lifts), tuple(_summary(converted)))
 
 
 def _holes(operation: Operation, conditions: HoleConditions) -> Iterator[_Holes]:
@@ -173,6 +174,14 @@ def _positions_before(operation: Operation, every: Sequence[_Holes]) -> Floats:
     for holes in every:
         lift[holes.rows] = holes.retract_height
     return np.roll(moves.tip + lift[:, None] * moves.axis, 1, axis=0)
+
+
+def _feed_heights(operation: Operation, converted: Sequence[_Holes]) -> Floats:
+    """(n,): how far above the point of each hole its feed begins, mm; NaN at rows that are no hole as motion."""
+    heights = np.full(len(operation.moves), np.nan)
+    for holes in converted:
+        heights[holes.rows] = holes.cycle.rapid_height
+    return heights
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -200,9 +209,9 @@ class _Rows:
         return _LEADING + self.motions.bottom
 
 
-def _rows_of(operation: Operation, holes: _Holes, before: Floats, from_home: Flags) -> _Rows:
-    """Return the rows of holes; ``before`` (n, 3): where the tip is before each row of the operation."""
-    cycle, moves, rows = holes.cycle, operation.moves, holes.rows
+def _rows_of(operation: Operation, holes: _Holes, ways: LevelWays, from_home: Flags) -> _Rows:
+    """Return the rows of holes; ``ways``: from where the tool comes to each row of the operation."""
+    cycle, moves, rows, before = holes.cycle, operation.moves, holes.rows, ways.before
     feed, per_rev = cycle_feed(cycle, holes.spindle, float(moves.feed[holes.first]), bool(moves.per_rev[holes.first]))
     motions = _checked_motions(holes, feed)
     point, axis = moves.tip[rows], moves.axis[rows]
@@ -215,7 +224,7 @@ def _rows_of(operation: Operation, holes: _Holes, before: Floats, from_home: Fla
     up = before[rows] + (cycle.rapid_height - height)[:, None] * axis
     comes_down = travel_height > cycle.rapid_height + SAME_HEIGHT
     distance = np.abs(above - np.where(is_low[:, None], up, before[rows])).max(axis=1)
-    is_there = ~from_home[rows] & (distance <= np.where(comes_down, _ABOVE_HOLE, SAME_HEIGHT))
+    is_there = ~from_home[rows] & ~ways.aside[rows] & (distance <= np.where(comes_down, _ABOVE_HOLE, SAME_HEIGHT))
     count = _LEADING + len(motions.heights)
     tip = np.empty((len(point), count, 3))
     tip[:, 0], tip[:, 1], tip[:, 2] = up, above, point + cycle.rapid_height * axis

@@ -322,6 +322,8 @@ class VirtualControl(ContourControl, ABC):
         self.preconditions.report_motion()
         hole = self.programmed_position.copy()
         feed, first_row = self.programmed_feed, self.row
+        if work is None and not all(motion.rapid for motion in motions):
+            self.add_event("hole")
         u, v = (self.plane_axis + 1) % 3, (self.plane_axis + 2) % 3
         for motion in motions:
             end = hole.copy()

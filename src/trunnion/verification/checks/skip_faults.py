@@ -9,8 +9,11 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from trunnion.messages import Wording
 from trunnion.model.run import RunEvent
+from trunnion.model.toolpath import Kind
 from trunnion.verification.context import ComparedContext
 from trunnion.verification.expected.skipped import SkippedStretch, skipped_stretches
 from trunnion.verification.matching.hole_matching import MatchedHole, match_holes
@@ -67,9 +70,10 @@ def _skipped_blocks(context: ComparedContext) -> Iterator[tuple[RunEvent, list[i
     regions, cl = _regions(context, of_sections), context.matching.cl
     holes = list(_holes(context))
     for event in events:
-        drilled = _hole_at(context, holes, event.before_row)
-        if drilled is not None and (found := _stretch_of_hole(context, of_sections, drilled.index)):
-            yield event, found
+        at = (_hole_below(context, holes, event.before_row), _hole_at(context, holes, event.before_row))
+        found = (_stretch_of_hole(context, of_sections, hole.index) for hole in at if hole is not None)
+        if own := next((stretches for stretches in found if stretches), None):
+            yield event, own
             continue
         pair = context.matching.nc.count_before(event.before_row)
         first = int(cl[pair - 1]) if pair else 0
@@ -112,6 +116,19 @@ def _hole_at(context: ComparedContext, holes: Sequence[MatchedHole], row: int) -
     hole = next((hole for hole in holes if row < hole.end), None)
     count = context.matching.nc.count_before
     return hole if hole is not None and (hole.first <= row or count(row) == count(hole.first)) else None
+
+
+def _hole_below(context: ComparedContext, holes: Sequence[MatchedHole], row: int) -> MatchedHole | None:
+    """Return the hole that the tool has left, and above which it goes on at rapid up to a row and in it."""
+    hole = next((hole for hole in reversed(holes) if hole.end <= row), None)
+    if hole is None or row >= len(context.run):
+        return None
+    expected, rows = context.expected.holes[hole.index], np.arange(hole.end, row + 1)
+    offset = context.run.tip[rows] - expected.tip
+    height = offset @ expected.axis
+    aside = float(np.abs(offset - height[:, None] * expected.axis).max())
+    rises = bool((np.diff(height, prepend=-np.inf) > 0.0).all() and (context.run.kind[rows] == Kind.RAPID).all())
+    return hole if rises and aside <= 2.0 * expected.tip_tolerance else None
 
 
 def _stretch_of_hole(
