@@ -158,7 +158,7 @@ def test_what_only_a_skipped_block_says_is_assumed(tmp_path: Path) -> None:
 
 def test_who_asks_for_start_modes_gets_an_error_and_a_definition_may_state_them(tmp_path: Path) -> None:
     program, machine = tmp_path / "part.nc", tmp_path / "mine.toml"
-    program.write_text(FANUC.format(said=" G40 G94 G69\nG28 A0. C0."), encoding="utf-8")
+    program.write_text(FANUC.format(said=" G40 G94 G69 G80\nG54\nG28 A0. C0."), encoding="utf-8")
     head = 'extends = "matsuura_mx330"\n[proof]\nrequire = ["start_modes"]\n'
     machine.write_text(head, encoding="utf-8")
     found = trunnion.verify(program, machine=machine)

@@ -10,6 +10,7 @@ import trunnion
 
 CUT = "G0 X0. Y0. Z50.\nN30 G1 Z5. F100.\nX10.\nG0 Z50."
 FANUC = f"%\nO0001\nG21 G90 G17 G40 G80 G94 G69\n{{home}}T1 M6\nG54 S500 M3\nG43 H1\n{CUT}\nG49\nM5\nM30\n%\n"
+LINUXCNC = FANUC.replace("%\nO0001\n", "").replace("%\n", "")
 OTHERS = f"G71 G90 G17 G40 G94\n{{home}}T1 M6\nG54 S500 M3\n{CUT}\nM5\nM30\n"
 KLARTEXT = (
     "BEGIN PGM P MM\nM129\nPLANE RESET STAY\nM137\n{home}TOOL CALL 1 Z S500\nM3\nL X+0 Y+0 Z+50 R0 FMAX\n"
@@ -20,7 +21,7 @@ KLARTEXT = (
 PROGRAMS = [
     ("matsuura_mx330", FANUC, "G28 A0. C0.\n", "G28 A0.\n", "A and C", "C", "N30"),
     ("haas_umc750", FANUC, "G28 G91 B0. C0.\nG90\n", "G53 G0 B0.\n", "B and C", "C", "N30"),
-    ("xyzac_trt", FANUC.replace("%\nO0001\n", "").replace("%\n", ""), "G53 G0 A0. C0.\n", "G53 G0 A0.\n", "A and C", "C", "N30"),
+    ("xyzac_trt", LINUXCNC, "G53 G0 A0. C0.\n", "G53 G0 A0.\n", "A and C", "C", "N30"),
     ("yl569", OTHERS, "G0 SUPA B0 C0\n", "G0 SUPA B0\n", "B and C", "C", "N30"),
     ("hs664rt", OTHERS.replace("G94", "G69"), "G1 A0. C0. F3000\n", "G1 A0. F3000\n", "A and C", "C", "N30"),
     ("dmu65", KLARTEXT, "L A+0 C+0 R0 FMAX M91\n", "L A+0 R0 FMAX M91\n", "A and C", "C", "line 8"),
