@@ -89,6 +89,11 @@ def stated_words(run: Run) -> tuple[StatedWord, ...]:
     return tuple(dict.fromkeys(word for each in runs for word in each.stated))
 
 
+def stated_texts(run: Run) -> tuple[str, ...]:
+    """Return what was stated of them, as every verdict names it."""
+    return tuple(str(each.wording) for each in stated_words(run))
+
+
 def _no_start_modes(run: Run) -> Wording | None:
     words = assumed_modes(run)
     return phrase("assumed_modes", words=words) if words else None

@@ -31,6 +31,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.options.words import POSITIONS
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
+from trunnion.verification import stated_texts
 
 
 def convert(
@@ -214,7 +215,7 @@ def _converted_program(
                 raise
             converter.refuse_lost()
     problems = (*converter.problems, *(posted.problems if posted else ()))
-    return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
+    return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory, stated_texts(run))
 
 
 def _with_positions(given: ConvertArguments, source: Machine) -> Machine:
