@@ -73,3 +73,34 @@ def test_two_work_offsets_never_become_one(target: str, tmp_path: Path) -> None:
     with pytest.raises(trunnion.TrunnionError, match=r"the work offset is G55 O1,.*G55 O2"):
         trunnion.convert(program, machine="hs664rt", to_machine=target, output=output)
     assert not output.exists()
+
+
+#: As posts for a Fidia begin: rotary axes turn, at the feed of rapids, before the work offset.
+FIDIA_LINES = """G17 Q1
+G90
+G71
+G197
+M242
+G01 A0. C0. F3000
+M306 T.2
+G69
+G55 O1
+G01 C281.034 A-59.186 F3000
+G196
+S2500 M3
+G1 X54.135 Y-0.313 Z-15.036 F3000
+X52.294 Y-0.657 Z-16.308 F250
+X51.412 Y-0.837 Z-16.996
+X54.135 Y-0.313 Z-15.036 F3000
+G197
+M242
+M2
+"""
+
+
+@pytest.mark.parametrize(("removed", "lines"), [("", []), ("M306 T.2\nG69\nG55 O1\n", [11])])
+def test_no_turn_of_rotary_axes_before_the_part_is_a_cut(tmp_path: Path, removed: str, lines: list[int]) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text(FIDIA_LINES.replace(removed, ""), encoding="utf-8")
+    result = trunnion.convert(program, machine="hs664rt", to_cl=True)
+    assert [problem.line for problem in result.problems if problem.code == "CNV144"] == lines

@@ -6,6 +6,7 @@ import pytest
 
 import trunnion
 from trunnion.errors import InputError
+from trunnion.jobs.simulate.report import write_simulation_report
 from trunnion.verification import Verification
 from trunnion.verification.standing import Verdict
 
@@ -105,7 +106,11 @@ def test_diff_convert_simulate_and_view_take_them(tmp_path: Path) -> None:
     on = {"machine": "matsuura_mx330", "settings": {variable: 2}, "assume": {word: "moves nothing"}}
     same = trunnion.diff(program, program, **on)  # type: ignore[arg-type]
     assert same.same
-    assert trunnion.convert(program, to_cl=True, **on).text  # type: ignore[arg-type]
+    stated = (f"{word} moves nothing (stated)", f"{variable} = 2 (stated)")
+    assert same.stated == stated
+    converted = trunnion.convert(program, to_cl=True, **on)  # type: ignore[arg-type]
+    assert converted.text
+    assert converted.stated == stated
     trunnion.write_view(program, output=tmp_path / "a.html", **on)  # type: ignore[arg-type]
     cut = trunnion.simulate(
         program,
@@ -115,6 +120,11 @@ def test_diff_convert_simulate_and_view_take_them(tmp_path: Path) -> None:
         **on,  # type: ignore[arg-type]
     )
     assert cut.operations
+    assert cut.stated == stated
+    told = f"stands on: {', '.join(stated)}"
+    assert cut.told.endswith(told)
+    write_simulation_report(cut, tmp_path / "cut.html")
+    assert all(told in (tmp_path / page).read_text(encoding="utf-8") for page in ("a.html", "cut.html"))
     with pytest.raises(InputError, match="no variable of the control of matsuura_mx330"):
         trunnion.diff(program, program, machine="matsuura_mx330", settings={"R5": 2})
 

@@ -187,7 +187,7 @@ def test_only_values_that_matter_to_a_program_are_counted(tmp_path: Path, verifi
 def test_what_another_machine_has_been_measured_for_is_not_measured_for_the_one_that_extends_it(
     tmp_path: Path, verified: Verifier
 ) -> None:
-    """It is that of the file which names it; a file without a name changes the machine that it extends."""
+    """It is that of the file which names it; one without a name is no shipped machine either."""
     (tmp_path / "named.toml").write_text('schema = 1\nextends = "matsuura_mx330"\nname = "Own"\n')
     (tmp_path / "changed.toml").write_text('schema = 1\nextends = "named.toml"\n[workpiece]\nzero_mm = [0, 0, 5]\n')
     (tmp_path / "same.toml").write_text('schema = 1\nextends = "matsuura_mx330"\n[control.settings]\nshop = ""\n')
@@ -195,7 +195,8 @@ def test_what_another_machine_has_been_measured_for_is_not_measured_for_the_one_
     assert names[:2] == ["spindle gauge_point_mm", "spindle max_rpm"]
     assert {"C point_mm", "X limits_mm", "X home_mm", "A limits_deg", "C endless", "rotary table shape"} <= set(names)
     assert [value.name for value in load_machine(tmp_path / "changed.toml").inherited] == names
-    assert not load_machine(tmp_path / "same.toml").inherited
+    assert [value.name for value in load_machine(tmp_path / "same.toml").inherited] == names
+    assert not load_machine("matsuura_mx330").inherited
     assert all(not load_machine(name).inherited for name in shipped_machines())
     turned = PROGRAM.replace("G1 X10 F500", "G1 X10 C30 F500")
     for own, counts in (("", True), ("[spindle]\ngauge_point_mm = [1, 2, 3]\n", False)):

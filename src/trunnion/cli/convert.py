@@ -17,7 +17,7 @@ from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.guard import files_read
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.wording import counted
 
 
@@ -41,6 +41,8 @@ def run(given: Given) -> int:
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
         tell(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}")
+    if converted.stated:
+        tell(str(phrase("stands_on_stated", words=converted.stated)))
     if given.json is not None:
         show(given, lambda: converted, ())
     return 0 if converted.passed else 1

@@ -23,7 +23,12 @@ from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection, assign_events, divide_sections, split_program
 from trunnion.conversion.settings import parse_number, settings_from_headers
 from trunnion.conversion.spindle_holes import read_spindle_holes
-from trunnion.conversion.unsaid import warn_of_missing_words, warn_of_other_meanings, warn_of_skipped_words
+from trunnion.conversion.unsaid import (
+    cut_without_offset,
+    warn_of_missing_words,
+    warn_of_other_meanings,
+    warn_of_skipped_words,
+)
 from trunnion.conversion.unsupported import (
     Warnings,
     refuse_unsimulated_motions,
@@ -49,15 +54,17 @@ from trunnion.verification import restore_rapids
 class Conversion:
     """A program as a toolpath.
 
-    settings  what does not fit into a toolpath, as ``--set`` takes it; without defaults
-    warnings  what could not be converted
-    errors    what must not be left out: such a program is refused unless it is forced
+    settings        what does not fit into a toolpath, as ``--set`` takes it; without defaults
+    warnings        what could not be converted
+    errors          what must not be left out: such a program is refused unless it is forced
+    without_offset  file and line of the first cut while no work offset is selected; None: there is none
     """
 
     toolpath: Toolpath
     settings: dict[str, str]
     warnings: tuple[Problem, ...]
     errors: tuple[Problem, ...] = ()
+    without_offset: tuple[str, int] | None = None
 
 
 def convert(run: Run, control: Control, target: Control | None = None) -> Conversion:
@@ -116,7 +123,8 @@ class _ToolpathBuilder:
         problems = self._warn.problems
         warnings = tuple(problem for problem in problems if problem.severity is Severity.WARNING)
         errors = tuple(problem for problem in problems if problem.severity is Severity.ERROR)
-        return Conversion(toolpath, settings, warnings, errors)
+        without_offset = cut_without_offset(self._run, [section.rows for section in sections])
+        return Conversion(toolpath, settings, warnings, errors, without_offset)
 
     def _sections(self, events: Sequence[ProgramEvent], starts: set[int]) -> list[ProgramSection]:
         """Return the sections that move the tool at the workpiece; ``starts`` are the lines where operations begin."""

@@ -1,8 +1,9 @@
 """What a program needs and does not say, or may leave out: a toolpath, and what is made of it, would hide that.
 
 In:     the run, the rows of its operations and its text.
-Out:    a warning for cuts with the spindle at rest or without a tool, and for each stretch of blocks with ``/`` that
-        hold what no OPSKIP can: tool changes, heads and ends, tool lengths, and moves of the machine.
+Out:    the first cut without a work offset; a warning for cuts with the spindle at rest or without a tool, and for each
+        stretch of blocks with ``/`` that hold what no OPSKIP can: tool changes, heads and ends, tool lengths, and moves
+        of the machine.
 """
 
 import re
@@ -43,6 +44,17 @@ def warn_of_missing_words(run: Run, operations: Sequence[Ints], warn: Warnings) 
         warn(int(run.line[-1]), Wording("CNV154", "no_end"), int(run.file[-1]))
     empty = np.array([not name.strip("0") for name in run.tools])
     _warn_at_first(run, cuts[empty[run.tool[cuts]]], "cuts_without_tool", warn)
+
+
+def cut_without_offset(run: Run, operations: Sequence[Ints]) -> tuple[str, int] | None:
+    """Return file and line of the first cut while no work offset is selected, None if there is none.
+
+    run         with lines at the feed of rapids as rapids
+    operations  the rows (n,) of each operation: what turns only rotary axes before its first position is no cut
+    """
+    rows = np.concatenate([np.zeros(0, np.int64), *operations])
+    cuts = rows[(run.work_offset[rows] == 0) & ~run.machine_frame[rows] & (run.kind[rows] != Kind.RAPID)]
+    return (run.files[int(run.file[cuts[0]])], int(run.line[cuts[0]])) if len(cuts) else None
 
 
 def warn_of_skipped_words(

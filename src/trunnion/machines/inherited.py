@@ -4,7 +4,9 @@ In:     the table of a definition, merged with those that it extends.
 Out:    such values, each with its place.
 
 A machine is that of the file that gives it its name. What files below say, that this one extends, is of another
-machine; a file without a name changes the machine that it extends. Shipped definitions that extend others are settled.
+machine; a file without a name changes the machine of the file that it extends. No file of one's own changes a shipped
+machine: with a name or without, what a shipped definition says was measured elsewhere. Shipped definitions that extend
+others are settled.
 """
 
 from collections.abc import Iterator
@@ -41,11 +43,14 @@ def inherited_values(table: Table, library: str) -> Iterator[MarkedValue]:
 
 
 def _others(table: Table, library: str) -> frozenset[str]:
-    """Return the files of other machines: those below the one that gives the machine its name."""
+    """Return the files of other machines: those below the one of one's own that gives the machine its name, and
+    shipped ones.
+    """
     named, _ = table.location("name")
-    if named.startswith(library) or named not in table.sources:
+    if named not in table.sources or table.sources[0].startswith(library):
         return frozenset()
-    return frozenset(table.sources[table.sources.index(named) + 1 :])
+    shipped = {file for file in table.sources if file.startswith(library)}
+    return frozenset(shipped.union(() if named in shipped else table.sources[table.sources.index(named) + 1 :]))
 
 
 def _inherited(part: Table, key: str, table: str, others: frozenset[str]) -> Iterator[MarkedValue]:

@@ -46,6 +46,7 @@ class SimulationContent:
     facts    names and values of what it is about
     remarks  what was taken for granted or broken off, each thing once with its count
     not_checked  what was not judged, and why; empty: all was
+    stated   what somebody has stated that it stands on; empty: nothing
     data     all of it, as the command prints it as data
     """
 
@@ -59,6 +60,7 @@ class SimulationContent:
     remarks: tuple[str, ...]
     data: Mapping[str, object]
     not_checked: str = ""
+    stated: str = ""
 
     @property
     def passed(self) -> bool:

@@ -82,7 +82,7 @@ def _said(content: SimulationContent) -> str:
     else:
         count = counted(len(content.findings), "finding") if content.findings else "see below"
         found = f"{count}; the program must not run as it is"
-    return "; ".join(filter(None, (found, content.not_checked)))
+    return "; ".join(filter(None, (found, content.not_checked, content.stated)))
 
 
 def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:

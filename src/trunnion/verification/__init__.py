@@ -2,6 +2,7 @@
 
 from trunnion import timing
 from trunnion.machines.forward import tool_axis_rows
+from trunnion.verification.basis import stated_texts
 from trunnion.verification.context import ExpectedValues
 from trunnion.verification.deviations.point_deviations import compare_rows
 from trunnion.verification.expected.path import OperationSettings
@@ -48,6 +49,7 @@ __all__ = [
     "restore_rapids",
     "rows_from_starts",
     "stand_lines",
+    "stated_texts",
     "time_lines",
     "tolerances_in_planes",
     "verify",

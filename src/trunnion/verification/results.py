@@ -17,7 +17,8 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
-from trunnion.verification.basis import assumed_modes, stated_words, turns_before_offset
+from trunnion.verification.axes_from_home import axes_from_home
+from trunnion.verification.basis import assumed_modes, stated_texts, turns_before_offset
 from trunnion.verification.block_names import block_name
 from trunnion.verification.standing import Standing
 
@@ -237,8 +238,9 @@ class Verification:
             warnings=severities.count(Severity.WARNING),
             not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
-            stated=tuple(str(each.wording) for each in stated_words(self.run)),
+            stated=stated_texts(self.run),
             turns_before_offset=str(turns_before_offset(self.run) or ""),
+            axes_from_home=str(axes_from_home(self.run) or ""),
             moves=len(self.run) > 0,
         )
 

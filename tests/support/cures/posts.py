@@ -54,6 +54,13 @@ _WIDE: Final = HEAD + "GOTO/300,0,5\nGOTO/-300,0,5\n" + FOOT
 CURES: Final = (
     _said("CTL220", "cutcom_where_tool", _SIDES, {"mode": "OP1:tilted"}, mode="tcp"),
     _said("CTL220", "cutcom_where_tool", _SIDES, ("CUTCOM/LEFT,XYPLAN\n", ""), ("CUTCOM/OFF\n", ""), mode="tcp"),
+    _said(
+        "CTL220",
+        "cutcom_begins_twice",
+        _COMPENSATED.replace("GOTO/20,30", "CUTCOM/RIGHT\nGOTO/20,30"),
+        ("CUTCOM/RIGHT\n", "CUTCOM/OFF\nGOTO/25,9,5\nCUTCOM/RIGHT\n"),
+        on="xyzac_trt",
+    ),
     Cure("PLN125", "axis_would_go", post("yl569"), _WIDE, (), cured_by=post("generic_head_head_ca")),
     _within("CTL230", "cutcom_names_register", "CUTCOM/LEFT,XYPLAN,7", "CUTCOM/LEFT,XYPLAN", on="dmu65"),
     _within("CTL430", "gohome_before_operation", "GOHOME", ""),

@@ -31,6 +31,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.options.words import POSITIONS
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
+from trunnion.verification import stated_texts
 
 
 def convert(
@@ -201,12 +202,12 @@ def _converted_program(
             whole = conversion.with_whole_notices(converted.toolpath, control.family)
             converter.report(write_and_prove(whole, target, str(given["to_dialect"]), comments=comments))
             if not is_given:
-                converter.warn_of_new_offset(run, job, to_cl=True)
+                converter.warn_of_new_offset(converted.without_offset, job, to_cl=True)
         else:
             toolpath, notices = conversion.take_notices(converted.toolpath, control.family)
             job = replace(with_settings(job, carried), notices=(*notices, *job.notices))
             if not is_given:
-                converter.warn_of_new_offset(run, job, to_cl=False)
+                converter.warn_of_new_offset(converted.without_offset, job, to_cl=False)
             try:
                 posted = post_toolpaths([toolpath], job, target, SILENT if converter.lost else observer)
             except (InputError, RefusedError) as error:
@@ -214,7 +215,7 @@ def _converted_program(
                 raise
             converter.refuse_lost()
     problems = (*converter.problems, *(posted.problems if posted else ()))
-    return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
+    return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory, stated_texts(run))
 
 
 def _with_positions(given: ConvertArguments, source: Machine) -> Machine:

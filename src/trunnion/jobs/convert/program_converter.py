@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from trunnion import conversion, readers
 from trunnion.controls import Control
 from trunnion.conversion import Conversion
@@ -16,7 +14,6 @@ from trunnion.jobs.post.post_job import PostJob
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind
 
 #: Problems of conversions, and those of posts that say the same.
 _SAID_FOR = {"CNV146": "CTL230"}
@@ -81,23 +78,22 @@ class ProgramConverter:
         """Warn that a program with subprograms becomes one without."""
         self.report([warning(self._file, 0, Wording("CNV162", "becomes_one_program", files=files))])
 
-    def warn_of_new_offset(self, run: Run, job: PostJob, *, to_cl: bool) -> None:
+    def warn_of_new_offset(self, place: tuple[str, int] | None, job: PostJob, *, to_cl: bool) -> None:
         """Warn where the old program cuts without a work offset of its own, and the new one selects one; a CL file
         leaves that to who posts it.
 
-        job   of the new program; with a CL file, of one for the old machine
+        place   file and line of the first such cut; None: there is none
+        job     of the new program; with a CL file, of one for the old machine
         """
         offset = {**job.control.settings, **job.settings}.get("work_offset", "")
-        rows = np.flatnonzero((run.work_offset == 0) & ~run.machine_frame & (run.kind != Kind.RAPID))
-        if not offset or not len(rows):
+        if not offset or place is None:
             return
-        row = int(rows[0])
         wording = (
             Wording("CNV144", "selects_none")
             if to_cl
             else Wording("CNV144", "selects_offset_of_its_own", offset=offset)
         )
-        self.report([warning(run.files[int(run.file[row])], int(run.line[row]), wording)])
+        self.report([warning(*place, wording)])
 
     def carry(self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine) -> dict[str, str]:
         """Return the settings of the new program: those that the old one states, as far as they mean the same, and the

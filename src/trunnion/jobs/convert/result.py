@@ -23,6 +23,7 @@ class ConvertResult:
     settings  what it states and a toolpath has no place for, as ``trunnion.post`` takes it
     problems  warnings: what is not carried over; errors: what was not understood and ``force`` overruled
     posted    the program for the other machine with its proof; None: the result is a CL file
+    stated    words and variables that the program relies on, with what somebody has stated of them
     output    file of the result; None: it was not written to a file
     """
 
@@ -38,6 +39,7 @@ class ConvertResult:
     posted: Annotated[PostResult | None, Figure(after="settings")]
     output: Path | None
     _memory: io.BytesIO | None
+    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=(), after="settings")] = ()
 
     def __repr__(self) -> str:
         """Return what matters in a notebook."""

@@ -35,4 +35,5 @@ def read_cl_file(file: Path | BinaryIO, watch: Watch, how: ClReading) -> list[To
         program = program_for_cl_file(file)
         if program is None:
             raise
-        raise InputError((program, *error.problems)) from None
+        others = [each for each in error.problems if each.code != _NO_CL_FILE]  # they would say it again
+        raise InputError((program, *others)) from None

@@ -84,6 +84,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         remarks=(*map(str, remark_groups(found.remarks)), *not_measured_lines(found), *travel_lines(found)),
         data=_cleaned(to_data(found)),
         not_checked=found.not_checked_line,
+        stated=clean(found.stated_line),
     )
 
 

@@ -19,7 +19,7 @@ from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.tools.profile import ToolShape
-from trunnion.verification import Verdict
+from trunnion.verification import Verdict, stated_texts
 from trunnion.wording import counted
 
 #: Air cuts that are told, the longest ones.
@@ -65,6 +65,7 @@ class SimulationResult:
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     meanings   which blocks were skipped (``/``) in further runs, in words: what these found is among the findings; none
                where no block may be skipped. All other figures but ``gouge``, the worst, are those with none skipped
+    stated     words and variables that the programs rely on, with what somebody has stated of them
     travel     of each program, as ``trunnion verify`` judges it
     setup      its name, where this is one of several
     setups     the results of each, where there are several
@@ -100,6 +101,7 @@ class SimulationResult:
     cuts_not_checked: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     meanings: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
+    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=(), after="remarks")] = ()
     travel: Annotated[tuple[ProgramTravel, ...], Figure(take=travel_data, after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
 
@@ -137,7 +139,7 @@ class SimulationResult:
                 *([f"{counted(beyond, 'program')} beyond the travel"] if beyond else []),
             ]
             found = f"{' and '.join(parts)}: the program must not run"
-        return "; ".join(filter(None, (found, self.meanings_line, self.not_checked_line)))
+        return "; ".join(filter(None, (found, self.meanings_line, self.not_checked_line, self.stated_line)))
 
     @property
     def cuts_line(self) -> str:
@@ -153,6 +155,11 @@ class SimulationResult:
     def collisions_line(self) -> str:
         """That collisions with the machine were not checked, and why; empty: they were."""
         return str(phrase("collisions_not_checked", why=self.not_checked)) if self.not_checked else ""
+
+    @property
+    def stated_line(self) -> str:
+        """What somebody has stated that it stands on; empty: nothing."""
+        return str(phrase("stands_on_stated", words=self.stated)) if self.stated else ""
 
     @property
     def not_checked_line(self) -> str:
@@ -208,6 +215,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
         setup=cut.setup.name,
         not_measured=_not_measured(cut),
         cuts_not_checked=tuple(map(str, cut.setup.missing())),
+        stated=tuple(dict.fromkeys(word for run in cut.setup.runs for word in stated_texts(run))),
         travel=tuple(judged_travel(cut.setup.runs, cut.setup.register_holds)),
         tools=cut.setup.tools,
     )
@@ -257,6 +265,7 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         setups=tuple(results),
         pairs=sum(each.pairs for each in results),
         not_measured=tuple(dict.fromkeys(value for each in results for value in each.not_measured)),
+        stated=tuple(dict.fromkeys(word for each in results for word in each.stated)),
         travel=tuple(one for each in results for one in each.travel),
         cuts_not_checked=tuple(dict.fromkeys(why for each in results for why in each.cuts_not_checked)),
     )

@@ -89,8 +89,8 @@ class MotionBlockWriter:
         self.first_leg: Floats | None = None
         self.max_file_bytes: int | None = None
         self.on_file_full: Callable[[], None] = lambda: None
-        self._file = program.file
-        self._tool = ""
+        self._file, self._tool = program.file, ""
+        self._compensated = False
         self._length_register = self._radius_offset = 0
         self._words_to_repeat: dict[str, int] = {}
         self._texts = LineTexts(program)
@@ -154,6 +154,7 @@ class MotionBlockWriter:
 
     def restore_modal_state(self) -> None:
         """Write again what the program start made active, where the operation has changed it."""
+        self._compensated = False
         if self.control.initial_modal_state:
             self.write_block(self.control.initial_modal_state)
 
@@ -202,7 +203,7 @@ class MotionBlockWriter:
         """Whether the words of an event make no block alone, as ``RL`` does not."""
         if not isinstance(event, CutterComp):
             return False
-        words = self.event_words(event)
+        words = self.family.event_words(event, self.control.codes, self.control.coolant)
         return bool(words) and all(self.writer.word(key).bare for key in words)
 
     def event_words(self, event: WordEvent) -> dict[str, int]:
@@ -211,8 +212,11 @@ class MotionBlockWriter:
             self.spindle = event
         elif isinstance(event, Coolant):
             self.coolant = event.kind
-        elif isinstance(event, CutterComp) and event.side != "OFF" and not event.register and self._names_radius:
-            event = replace(event, register=int(self._tool) + self._radius_offset)
+        elif isinstance(event, CutterComp):
+            # Where the block of CUTCOM/OFF may be skipped, it may stay on.
+            self._compensated = event.side != "OFF" or (self._compensated and self.writer.skips_blocks)
+            if event.side != "OFF" and not event.register and self._names_radius:
+                event = replace(event, register=int(self._tool) + self._radius_offset)
         words = self.family.event_words(event, self.control.codes, self.control.coolant)
         return {word: self.writer.to_count(word, value) for word, value in words.items()}
 
@@ -373,9 +377,7 @@ class MotionBlockWriter:
             return CHUNK
         widest = self.writer.widest_row + _ROW_LINES_BYTES
         fitting = min(CHUNK, (self.max_file_bytes - reserve - self.writer.size) // widest)
-        off = self.control.codes.get("comp_off", ABSENT)
-        compensated = self.writer.modal_state().get("cutter_comp", off) != off
-        return max(1, fitting) if compensated else fitting
+        return max(1, fitting) if self._compensated else fitting
 
     def _continue_in_next_file(self) -> None:
         """Continue in the next file, whose first block repeats what is active.

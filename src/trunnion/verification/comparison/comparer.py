@@ -10,6 +10,7 @@ from trunnion.errors import Problem, first_of_kinds
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.basis import stated_texts
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
 from trunnion.verification.comparison.path_events import PathEvents
@@ -126,7 +127,7 @@ class Comparer:
             worst=self._difference(self._worst or self._first),
             unknown_words=_unknown_words(one.run, two.run),
             first_unknown=_first_unknown(one.run, two.run),
-            stated=tuple(dict.fromkeys(str(word.wording) for each in (one, two) for word in each.run.stated)),
+            stated=tuple(dict.fromkeys(word for each in (one, two) for word in stated_texts(each.run))),
         )
 
     def _same(self, i: int, j: int, count: int) -> Flags:

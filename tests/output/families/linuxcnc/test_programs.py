@@ -110,6 +110,18 @@ def test_texts_for_the_operator_lose_their_brackets_and_long_ones_go_on(post: Po
 
 REFUSED = {
     "a compensation": ("CUTCOM/LEFT,YZPLAN\nGOTO/20,0,5\n", "cutter radius compensation in the plane YZ"),
+    "the other side": (
+        "CUTCOM/LEFT\nGOTO/20,0,5\nCUTCOM/RIGHT\nGOTO/30,0,5\n",
+        "CUTCOM/RIGHT before CUTCOM/OFF has ended CUTCOM/LEFT: the control refuses it",
+    ),
+    "a side before one motion": (
+        "CUTCOM/RIGHT\nCUTCOM/LEFT\nGOTO/20,0,5\n",
+        "CUTCOM/LEFT before CUTCOM/OFF has ended CUTCOM/RIGHT",
+    ),
+    "the same side if its end is skipped": (
+        "CUTCOM/LEFT\nGOTO/20,0,5\nOPSKIP/ON\nCUTCOM/OFF\nGOTO/30,0,5\nOPSKIP/OFF\nCUTCOM/LEFT\nGOTO/40,0,5\n",
+        "CUTCOM/LEFT before CUTCOM/OFF has ended CUTCOM/LEFT",
+    ),
     "a coolant": ("COOLNT/THRU\nGOTO/20,0,5\n", "LinuxCNC has no coolant THRU"),
 }
 
@@ -119,6 +131,19 @@ def test_what_it_has_no_words_for_is_refused(text: str, what: str, post: Post) -
     code, lines, err = post.all(HEAD + text + FOOT)
     assert (code, lines) == (2, [])
     assert what in err
+
+
+SIDES = {
+    "said twice": "CUTCOM/LEFT\nGOTO/20,0,5\nCUTCOM/LEFT\nGOTO/30,0,5\n",
+    "ended between": "CUTCOM/LEFT\nGOTO/20,0,5\nCUTCOM/OFF\nGOTO/30,0,5\nCUTCOM/RIGHT\nGOTO/40,0,5\n",
+    "begun after a skip": "OPSKIP/ON\nGOTO/20,0,5\nOPSKIP/OFF\nCUTCOM/LEFT\nGOTO/30,0,5\n",
+}
+
+
+@pytest.mark.parametrize("text", SIDES.values(), ids=SIDES.keys())
+def test_a_side_that_begins_once_is_taken(text: str, post: Post) -> None:
+    _, lines, err = post.all(HEAD + text + "CUTCOM/OFF\nGOTO/50,9,5\n" + FOOT)
+    assert lines, err
 
 
 def test_feed_per_revolution_wants_a_spindle_speed(post: Post) -> None:

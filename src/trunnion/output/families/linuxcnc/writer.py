@@ -15,7 +15,7 @@ from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
+from trunnion.model.toolpath import Arcs, BlockSkip, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.families.linuxcnc.cycles import cycle_lines
 from trunnion.output.shared import iso
 from trunnion.output.shared.iso import event_words as event_words
@@ -106,14 +106,31 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """Return G95 without a spindle speed, and G41 or G42 in the plane YZ."""
+    """Return G95 without a spindle speed, G41 or G42 in the plane YZ, and one of them while one is on."""
     why = UnsupportedFeatureError(Wording("CTL220", "cutter_radius_compensation_plane"))
     compensated = [
         (event.line, why)
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane == "YZPLAN" and event.side != "OFF"
     ]
-    return [*compensated, *iso.feed_per_rev_before_spindle(operation, spindle_known)]
+    return [*compensated, *_begun_twice(operation), *iso.feed_per_rev_before_spindle(operation, spindle_known)]
+
+
+def _begun_twice(operation: Operation) -> list[tuple[int, UnsupportedFeatureError]]:
+    """Return G41 and G42 while one of them may be on; the same side again has no word, unless blocks are skipped."""
+    found = []
+    sides, before_skip, is_known = {"OFF"}, {"OFF"}, True
+    for event in operation.events:
+        if isinstance(event, BlockSkip):
+            before_skip, sides = (sides, sides) if event.on else (before_skip, sides | before_skip)
+            is_known = event.on and is_known
+        elif isinstance(event, CutterComp):
+            on = sides - {"OFF"}
+            if event.side != "OFF" and on and (not is_known or on != {event.side}):
+                wording = Wording("CTL220", "cutcom_begins_twice", side=event.side, before=min(on))
+                found.append((event.line, UnsupportedFeatureError(wording)))
+            sides, is_known = {event.side}, True
+    return found
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
