@@ -151,6 +151,9 @@ def test_words_in_comments_and_longer_words_are_others(tmp_path: Path) -> None:
     ("line", "what"),
     [
         ('M60 = "explodes"', "has no effect 'explodes'"),
+        ('M60 = "spindle clockwise, spindle off"', "'spindle clockwise' and 'spindle off'"),
+        ('M60 = "no effect, stop"', "'no effect' and 'stop'"),
+        ('M60 = "coolant flood, coolant off"', "'coolant flood' and 'coolant off'"),
         ('"é" = "stop"', "is no word of a program"),
         ("M60 = 3", "text"),
     ],

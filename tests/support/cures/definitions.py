@@ -39,6 +39,12 @@ CURES: Final = (
     _head("DEF130", "something_behind_text", '"Ours"', '"Ours" mill'),
     _head("DEF130", "backslash_in_text", '"Ours"', '"C:\\mill"', "'C:\\mill'"),
     _head("DEF330", "not_in_quotes", '"Ours"', "55", '"55"'),
+    _line(
+        "NC190",
+        "excluding_effects",
+        '[control.known]\nM60 = "spindle clockwise, spindle off"',
+        '[control.known]\nM60 = "spindle off"',
+    ),
     _line("DEF130", "not_toml_already", 'name = "Twice"', ""),
     _line("DEF130", "comment_of_other_language", "// ours", "# ours"),
     _line("DEF130", "two_keys_in_line", 'description = "A" source = "B"', 'description = "A"'),

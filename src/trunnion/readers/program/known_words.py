@@ -147,12 +147,25 @@ def _known_word(table: Table, key: str) -> KnownWord:
     if unknown := [effect for effect in effects if effect not in EFFECTS]:
         known = (*EFFECTS, *_ALIKE)
         table.add_problem(key, Wording("NC190", "no_effect", unknown=repr(unknown[0]), effects=known))
+    elif fault := _contradiction(effects):
+        table.add_problem(key, fault)
     if not key.strip():
         table.add_problem("", Wording("NC190", "word_without_letters"))
     elif not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
         table.add_problem(key, Wording("NC190", "no_word_program"))
     is_given = table.location(key)[0] == GIVEN
     return KnownWord(_normal(key), effects, means.strip(), ", ".join(written), is_given)
+
+
+def _contradiction(effects: Sequence[str]) -> Wording | None:
+    """Return what is wrong with effects of which one excludes another; None: nothing."""
+    for k, one in enumerate(effects):
+        for other in effects[k + 1 :]:
+            kinds = one.partition(" ")[0], other.partition(" ")[0]
+            is_one_mode = kinds[0] == kinds[1] and (kinds[0] in ("spindle", "tcp") or "coolant off" in (one, other))
+            if one != other and (is_one_mode or "no effect" in (one, other)):
+                return Wording("NC190", "excluding_effects", one=repr(one), other=repr(other))
+    return None
 
 
 def _normal(key: str) -> str:
