@@ -22,7 +22,7 @@ PROGRAMS = [
     ("haas_umc750", FANUC, ("G90", "G17", "G40", "G94")),
     ("xyzac_trt", FANUC.replace("%\nO0001\n", "").replace("%\n", ""), ("G90", "G17", "G40", "G94", "M429")),
     ("hs664rt", OTHERS, ("G90", "G17", "G40", "G69", "G197")),
-    ("dmu65", KLARTEXT, ("PLANE RESET", "M129")),
+    ("dmu65", KLARTEXT, ("M137", "PLANE RESET", "M129")),
     ("yl569", OTHERS, ("G90", "G17", "G40", "G94", "G71", "TRAFOOF")),
 ]
 
@@ -40,8 +40,9 @@ def test_what_no_program_says_before_it_moves_is_assumed(
 ) -> None:
     assert assumed(machine, text.format(said=""), tmp_path) == words
     if machine == "dmu65":
-        assert assumed(machine, text.format(said="PLANE RESET STAY"), tmp_path) == ("M129",)
-        assert assumed(machine, text.format(said="PLANE RESET STAY\nM129"), tmp_path) == ()
+        assert assumed(machine, text.format(said="M137\nPLANE RESET STAY"), tmp_path) == ("M129",)
+        assert assumed(machine, text.format(said="PLANE RESET STAY\nM129"), tmp_path) == ("M137",)
+        assert assumed(machine, text.format(said="PLANE RESET STAY\nM129\nM137"), tmp_path) == ()
         return
     said = " " + " ".join(words)
     assert assumed(machine, text.format(said=said), tmp_path) == ()
@@ -157,7 +158,7 @@ def test_what_only_a_skipped_block_says_is_assumed(tmp_path: Path) -> None:
 
 def test_who_asks_for_start_modes_gets_an_error_and_a_definition_may_state_them(tmp_path: Path) -> None:
     program, machine = tmp_path / "part.nc", tmp_path / "mine.toml"
-    program.write_text(FANUC.format(said=" G40 G94 G69"), encoding="utf-8")
+    program.write_text(FANUC.format(said=" G40 G94 G69 G80\nG54\nG28 A0. C0."), encoding="utf-8")
     head = 'extends = "matsuura_mx330"\n[proof]\nrequire = ["start_modes"]\n'
     machine.write_text(head, encoding="utf-8")
     found = trunnion.verify(program, machine=machine)

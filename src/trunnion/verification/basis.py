@@ -23,6 +23,7 @@ from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
 from trunnion.model.stated_words import StatedWord
 from trunnion.model.unknown_setups import offsets_without_zero, tools_without_length
+from trunnion.verification.axes_from_home import axes_from_home
 from trunnion.verification.block_names import block_name_of
 
 
@@ -125,6 +126,11 @@ def _no_start_offset(run: Run) -> Wording | None:
     return phrase("assumed_offset", block=block) if block else None
 
 
+def _no_start_position(run: Run) -> Wording | None:
+    axes = axes_from_home(run)
+    return phrase("assumed_home", axes=axes) if axes else None
+
+
 ZERO: Final = Basis("zero", _no_zero)
 TOOL_LENGTH: Final = Basis("tool_length", _no_tool_length)
 TRAVEL: Final = Basis("travel", _no_travel)
@@ -133,13 +139,14 @@ ACCELERATION: Final = Basis("acceleration", _no_acceleration)
 SPINDLE: Final = Basis("spindle", _no_spindle_speeds)
 START_MODES: Final = Basis("start_modes", _no_start_modes)
 START_OFFSET: Final = Basis("start_offset", _no_start_offset)
+START_POSITION: Final = Basis("start_position", _no_start_position)
 
 #: What ``[proof] require`` and ``--strict`` may demand, with its bases; of the last three each program has its own.
 DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "zero": (ZERO,),
     "tool_length": (TOOL_LENGTH,),
     "dynamics": (RAPID, ACCELERATION),
-    "start_modes": (START_MODES, START_OFFSET),
+    "start_modes": (START_MODES, START_OFFSET, START_POSITION),
     "radius_register": (),
     "measured": (),
     "given_words": (),

@@ -17,6 +17,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
+from trunnion.verification.axes_from_home import axes_from_home
 from trunnion.verification.basis import assumed_modes, stated_texts, turns_before_offset
 from trunnion.verification.block_names import block_name
 from trunnion.verification.standing import Standing
@@ -239,6 +240,7 @@ class Verification:
             assumed=assumed_modes(self.run),
             stated=stated_texts(self.run),
             turns_before_offset=str(turns_before_offset(self.run) or ""),
+            axes_from_home=str(axes_from_home(self.run) or ""),
             moves=len(self.run) > 0,
         )
 

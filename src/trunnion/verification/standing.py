@@ -40,6 +40,7 @@ class Standing:
     assumed       modes that the control is taken to start with: neither the program nor the definition states them
     stated        words and variables that the program relies on, with what somebody has stated of them
     turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force
+    axes_from_home  the axes that the first cut takes to be at home: nothing states them before it
     moves         whether there is a motion: without one nothing of a path was checked
     """
 
@@ -52,6 +53,7 @@ class Standing:
     assumed: tuple[str, ...] = ()
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
     turns_before_offset: str = ""
+    axes_from_home: Annotated[str, Figure(is_optional=True, none="")] = ""
     moves: Annotated[bool, NOT_DATA] = True
 
     @property
@@ -91,6 +93,8 @@ class Standing:
             yield phrase("assumed_modes", words=self.assumed)
         if self.turns_before_offset:
             yield phrase("assumed_offset", block=self.turns_before_offset)
+        if self.axes_from_home:
+            yield phrase("assumed_home", axes=self.axes_from_home)
 
     def said(self, words: Words = LIBRARY, language: str = "en") -> str:
         """Return what is said behind the verdict."""

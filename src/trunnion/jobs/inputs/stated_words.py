@@ -6,7 +6,6 @@ Out:    the machine whose definition says so too, and the settings that are none
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import Final
 
 from trunnion import readers
@@ -81,5 +80,5 @@ def _of_argument(problem: Problem) -> Problem:
     if problem.file != readers.GIVEN:
         return problem
     if problem.subject is not None and problem.subject.name.startswith(_VARIABLES):
-        return setting_problem(problem.subject.name.removeprefix(_VARIABLES), replace(problem.wording, around=()))
+        return setting_problem(problem.subject.name.removeprefix(_VARIABLES), problem.wording.bare())
     return argument_problem("assume", problem.wording)

@@ -14,14 +14,9 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run import Run
+from trunnion.verification.axes_from_home import AXIS_WORDS, axis_names
 from trunnion.verification.comparison.states import ComparedState, Values
-
-#: The words that state the linear axes X, Y and Z and the two rotary axes; a vector states both of these.
-_WORDS: Final = (
-    ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z, ProgrammedWord.FIRST | ProgrammedWord.VECTOR,
-    ProgrammedWord.SECOND | ProgrammedWord.VECTOR,
-)  # fmt: skip
 
 _PLANES: Final = ("tilt", "plane", "cycle800")
 
@@ -32,7 +27,7 @@ _NOWHERE, _IN_MACHINE, _UNSELECTED = -1, 0, -2
 
 def first_statements(run: Run) -> Ints:
     """Return the rows that state an axis for the first time: they move it from wherever it has been."""
-    stated = [np.flatnonzero(run.programmed & np.uint8(word))[:1] for word in _WORDS]
+    stated = [np.flatnonzero(run.programmed & np.uint8(word))[:1] for word in AXIS_WORDS]
     return np.unique(np.concatenate(stated)).astype(np.int64)
 
 
@@ -40,8 +35,7 @@ def stated_axes(one: Run, two: Run) -> Iterator[ComparedState]:
     """Yield for each axis where it has been stated last."""
     if one.language != two.language or one.machine.key != two.machine.key:
         return
-    names = ("X", "Y", "Z", *(one.machine.axes[column].name for column in one.machine.rotary))
-    for name, word in zip(names, _WORDS, strict=True):
+    for name, word in zip(axis_names(one), AXIS_WORDS, strict=True):
         yield _state(name, (one, two), (_column(one, word), _column(two, word)))
 
 

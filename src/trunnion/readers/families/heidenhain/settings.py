@@ -10,7 +10,7 @@ from trunnion.readers.program.forms import read_form
 from trunnion.readers.program.settings import family_of, reading_of
 
 #: How the reader takes the control to start.
-START_MODES: Final = {"tilted plane": "PLANE RESET", "TCP": "M129"}
+START_MODES: Final = {"feed": "M137", "tilted plane": "PLANE RESET", "TCP": "M129"}
 
 #: Parameters that all programs share.
 VARIABLE: Final = re.compile(r"QR?(?:0|[1-9][0-9]{0,3})")
