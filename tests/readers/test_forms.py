@@ -78,6 +78,44 @@ SAME_WITH_KEY = [
         "O1\nG21 G1 X0. Y0. F9.\nG2 X2. Y2. R2. F9.\nG1 X9.\nM30\n",
     ),
     (
+        'behind_circles = "line"',
+        LINUXCNC,
+        "G21 G90 G94\nG1 X0 Y0 F9\nG2 X10 Y0 I5 J0\nX20\nX30 F8\nM2\n",
+        "G21 G90 G94\nG1 X0 Y0 F9\nG2 X10 Y0 I5 J0\nG1 X20\nX30 F8\nM2\n",
+    ),
+    (
+        'behind_circles = "line"',
+        FIDIA,
+        "G71 G90\nG1 X5 F9\nG2 X7 Y2 I7 J0\nX9\nM2\n",
+        "G71 G90\nG1 X5 F9\nG2 X7 Y2 I7 J0\nG1 X9\nM2\n",
+    ),
+    ('start_plane = "G18"', LINUXCNC, "G21 G1 X0 F9\nG2 X5 Z5 R5\nM2\n", "G18 G21 G1 X0 F9\nG2 X5 Z5 R5\nM2\n"),
+    (
+        'start_plane = "G18"',
+        FIDIA,
+        "G71 G1 X5 Z0 F9\nG2 X7 Z2 I7 K0\nM2\n",
+        "G18 G71 G1 X5 Z0 F9\nG2 X7 Z2 I7 K0\nM2\n",
+    ),
+    ('numbers_anywhere = "anywhere"', LINUXCNC, "G21 G1 N5 X5 F9\nM2\n", "N5 G21 G1 X5 F9\nM2\n"),
+    ('numbers_anywhere = "anywhere"', FIDIA, "G71 G1 N5 X5 F9\nM2\n", "N5 G71 G1 X5 F9\nM2\n"),
+    ('tape_marks = "ignored"', FANUC, "O1\nG21 G1 X5. F9.\n%\nX7.\nM30\n", "O1\nG21 G1 X5. F9.\nX7.\nM30\n"),
+    ('tape_marks = "ignored"', FIDIA, "%\nG71 G1 X5 F9\n%\nX7\nM2\n", "G71 G1 X5 F9\nX7\nM2\n"),
+    ('program_numbers = ["O"]', FIDIA, "O1234\nG71 G1 X5 F9\nM2\n", "G71 G1 X5 F9\nM2\n"),
+    ('block_ends = ["*"]', LINUXCNC, "G21 G1 X5 F9*\nM2*\n", "G21 G1 X5 F9\nM2\n"),
+    ('block_ends = ["*"]', FIDIA, "G71 G1 X5 F9*\nM2*\n", "G71 G1 X5 F9\nM2\n"),
+    (
+        'block_ends = ["*"]',
+        KLARTEXT,
+        "0 BEGIN PGM A MM*\n1 L X+5 R0 F9*\n2 M30*\n3 END PGM A MM\n",
+        "0 BEGIN PGM A MM\n1 L X+5 R0 F9\n2 M30\n3 END PGM A MM\n",
+    ),
+    (
+        'end_in_subprogram = "returns"',
+        LINUXCNC,
+        "o100 sub\nG1 X7 F9\nM2\no100 endsub\nG21 G1 X5 F9\no100 call\nX9\nM2\n",
+        "o100 sub\nG1 X7 F9\no100 return\no100 endsub\nG21 G1 X5 F9\no100 call\nX9\nM2\n",
+    ),
+    (
         'end_in_subprogram = "returns"',
         FANUC,
         "O1\nG21 G1 X5. F9.\nM98 P2\nX9.\nM30\nO2\nX7.\nM30\n",
@@ -149,6 +187,12 @@ def test_each_family_has_its_keys_only(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="start_plane"):
         read(tmp_path, KLARTEXT, "M30\n", 'start_plane = "G17"')
     assert all(key.meaning and key.families for key in form_keys())
+
+
+def test_every_key_is_tried_in_every_family_that_has_it() -> None:
+    folders = {FANUC: "fanuc", LINUXCNC: "linuxcnc", FIDIA: "fidia", SINUMERIK: "sinumerik", KLARTEXT: "heidenhain"}
+    tried = {(key.split(" ")[0], folders[machine]) for key, machine, *_ in SAME_WITH_KEY}
+    assert {(key.name, family) for key in form_keys() for family in key.families} == tried
 
 
 def test_the_page_has_the_keys_as_the_readers_have_them() -> None:

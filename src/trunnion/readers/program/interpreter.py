@@ -6,7 +6,7 @@ loaded as soon as a jump, a loop or a subprogram needs it.
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Generic, TypeVar
@@ -23,7 +23,7 @@ from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.error_tally import ErrorTally
 from trunnion.readers.program.forms import form_of
-from trunnion.readers.program.known_words import KnownWords
+from trunnion.readers.program.known_words import KnownWords, WordsBesideError
 from trunnion.readers.program.limits import (
     CHARACTERS_PER_STEP,
     MAX_CALL_DEPTH,
@@ -95,6 +95,9 @@ class Interpreter(ABC, Generic[A]):
     text_sign = ""
     program_letter = ""
 
+    #: Whether words stand in any order in a block, so that a declared one may stand among others.
+    has_words_beside = True
+
     control: VirtualControl
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
@@ -120,7 +123,7 @@ class Interpreter(ABC, Generic[A]):
         self._unreached = UnreachedBlocks(self.jump_words, self._has_plain_words)
         self.control = self._make_control()
         self.control.start_with(self._form.start)
-        self._known = KnownWords(machine, self.control)
+        self._known = KnownWords(machine, self.control, self._takes_positions, among_others=self.has_words_beside)
 
     @abstractmethod
     def _make_control(self) -> VirtualControl:
@@ -245,12 +248,19 @@ class Interpreter(ABC, Generic[A]):
 
     def _execute_known(self, active: A, line: int, raw: str) -> None:
         """Execute a line with the words that the definition declares."""
-        rest, words = self._known.take(raw)
-        if rest is None:
+        try:
+            rest, words = self._known.take(raw)
+        except WordsBesideError as error:
+            self._note(error.wording.within("reason_not_executed"), Severity.ERROR)
             return
         self._known.execute(words, before_motion=True)
-        self._execute_line(active, line, rest)
+        if rest is not None:
+            self._execute_line(active, line, rest)
         self._known.execute(words, before_motion=False)
+
+    def _takes_positions(self, codes: Sequence[str]) -> bool:
+        """Whether one of the G and M codes and names of a block takes the positions in it."""
+        return bool(codes)
 
     def _scan(self, source: SourceText) -> int:
         """Execute plain blocks, as many as follow each other; returns how many."""

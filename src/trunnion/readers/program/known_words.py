@@ -1,12 +1,12 @@
 """Words that a definition declares: what codes of the machine builder, macros and probing calls do to a program.
 
 ``[control.known]`` maps a word to its effects, separated by commas, and after a colon to what it means. A word that is
-an M code acts wherever it stands in a block, and a G code without effect may stand between other codes. Any other word
-begins a block, and the whole block belongs to it.
+an M code acts wherever it stands in a block, and a G code or a name without effect takes only itself out of it. Any
+other word begins a block, and the whole block belongs to it.
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
@@ -17,6 +17,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.settings import GIVEN, control_of
+from trunnion.readers.program.words_beside import has_other_codes, is_other, without_words
 
 #: What a word may do.
 EFFECTS: Final = (
@@ -50,12 +51,19 @@ _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
 _GLUED: Final = re.compile(r"^([GM][0-9]+(?:\.[0-9])?)(?=[A-Z])")
 _CODE: Final = re.compile(r"^[GM](?=[0-9])")
 #: A G code without tenths: one with them is another word.
+_HAS_CODE: Final = re.compile(r"[GM][0-9]")
 _G_CODE: Final = re.compile(r"G[0-9]+")
-#: A block of G and M codes alone: no letter in it can be meant for one of them.
-_ONLY_CODES: Final = re.compile(r"/?[0-9]?(?:N[0-9]+)?/?(?:[GM][0-9]+(?:\.[0-9])?)+")
-_COMMENT: Final = re.compile(r"\([^)]*\)|;.*")
+#: Words that may stand among others: a G code, also with a value, or a name with its arguments.
+_BESIDE: Final = re.compile(r"G[0-9]+(?:\.[0-9])?(?: [ELPQ][0-9]+)?|[A-Z]{2}[A-Z0-9_]*|[A-Z][0-9]{2,}")
+#: Words that call a program: letters of their block are its arguments.
+_CALL: Final = re.compile(r"G6[56](?![0-9])|M9[78](?![0-9])|M198(?![0-9])")
+_OWN_ARGUMENTS: Final = r"(?:\((?:\"[^\"]*\"|[^()\"]|\([^()]*\))*\)|[ \t]*=[ \t]*(?:\"[^\"]*\"|[-+.0-9]+))?"
 _BLOCK_BEGIN: Final = re.compile(r"[ \t]*/?[0-9]?[ \t]*(?:N[0-9]+|[0-9]+(?=[ \t]))?[ \t]*/?[ \t]*")
 _TOOL: Final = re.compile(r"(?<![A-Z0-9])T=?[ \t]*([0-9]{1,9})")
+
+
+#: Whether one of some codes takes positions.
+Takes = Callable[[Sequence[str]], bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,30 +173,41 @@ def begins_with(words: Iterable[KnownWord], text: str) -> bool:
     return any(re.match(rf"[ \t]*{pattern}(?![A-Z0-9_])", text, re.IGNORECASE) for pattern in patterns)
 
 
+class WordsBesideError(Exception):
+    """A block in which nobody knows what belongs to a declared word; ``wording`` says what."""
+
+    def __init__(self, wording: Wording) -> None:
+        super().__init__(str(wording))
+        self.wording = wording
+
+
 class KnownWords:
     """Finds and executes declared words, line by line."""
 
-    def __init__(self, machine: Machine, control: VirtualControl) -> None:
-        self._control = control
+    def __init__(self, machine: Machine, control: VirtualControl, takes: Takes, *, among_others: bool) -> None:
+        self._control, self._takes, self._among_others = control, takes, among_others
         words = known_words(machine)
         self._codes = {word.code: word for word in words if word.code is not None}
         blocks = [word for word in words if word.code is None]
-        self._blocks = sorted(blocks, key=lambda word: -len(word.word))
+        beside = [word for word in blocks if among_others and _is_beside_others(word)]
+        self._blocks = sorted((word for word in blocks if word not in beside), key=lambda word: -len(word.word))
         begins = "|".join(f"({_pattern(word.word)})" for word in self._blocks)
-        self._begin = re.compile(rf"(?:{begins})(?![A-Z0-9_])", re.IGNORECASE) if blocks else None
+        self._begin = re.compile(rf"(?:{begins})(?![A-Z0-9_])", re.IGNORECASE) if self._blocks else None
         codes = "|".join(str(code) for code in self._codes)
         self._code = re.compile(rf"(?<![A-Z0-9_.$])M0*({codes})(?![0-9=])(?:\([^)]*\))?", re.I) if codes else None
-        beside = [word for word in self._blocks if _is_beside_others(word)]
-        self._beside = {plain_code(word.word): word for word in beside}
-        codes = "|".join(_pattern(word.word) for word in beside)
-        self._beside_others = re.compile(rf"(?<![A-Z0-9_.$])({codes})(?![0-9=])", re.I) if beside else None
+        self._beside = sorted(beside, key=lambda word: -len(word.word))
+        either = "|".join(f"({_pattern_beside(word.word)})" for word in self._beside)
+        self._beside_others = re.compile(either, re.IGNORECASE) if beside else None
         self._continues = False
         self.any = bool(words)
         #: Those that the program has met.
         self.met: dict[KnownWord, None] = {}
 
     def take(self, raw: str) -> tuple[str | None, tuple[KnownWord, ...]]:
-        """Return what is left of a line, None if a declared word has the whole block, and the declared words in it."""
+        """Return what is left of a line, None if declared words have the whole block, and the declared words in it.
+
+        ``WordsBesideError`` if nobody knows what of the block belongs to them.
+        """
         if self._continues:
             self._continues = raw.rstrip().endswith("~")
             return None, ()
@@ -196,25 +215,41 @@ class KnownWords:
             start = _BLOCK_BEGIN.match(raw)
             match = self._begin.match(raw, start.end() if start else 0)
             if match is not None and match.lastindex is not None:
-                self._continues = raw.rstrip().endswith("~")
-                self._execute_block(self._blocks[match.lastindex - 1], raw[match.start() :].split(";")[0].strip())
+                self._take_block(self._blocks[match.lastindex - 1], raw, match)
                 return None, ()
         found: list[KnownWord] = []
 
         def remove(match: re.Match[str]) -> str:
-            before = match.string[: match.start()]
-            if ";" in before or before.count("(") > before.count(")") or before.count('"') % 2:
+            if is_other(match.string, match.start(), match.end()):
                 return match[0]
-            is_m = match[1].isdigit()
-            found.append(word := self._codes[int(match[1])] if is_m else self._beside[plain_code(match[1].upper())])
+            found.append(word := self._codes[int(match[1])])
             self.met[word] = None
             return " " * len(match[0])
 
-        if self._code is not None:
-            raw = self._code.sub(remove, raw)
-        if self._beside_others is not None and _ONLY_CODES.fullmatch("".join(_COMMENT.sub("", raw).upper().split())):
-            raw = self._beside_others.sub(remove, raw)
-        return raw, tuple(found)
+        text = self._code.sub(remove, raw) if self._code is not None else raw
+        places = [] if self._beside_others is None else list(self._beside_others.finditer(text))
+        places = [match for match in places if not is_other(text, match.start(), match.end())]
+        if not places:
+            return text, tuple(found)
+        words = [self._beside[(match.lastindex or 1) - 1] for match in places]
+        block = without_words(text, places, self._takes)
+        if block.letters:
+            raise WordsBesideError(Wording("NC213", "letters_beside", word=words[0].word, letters=block.letters))
+        if not block.rest and len(words) == 1 and not found:
+            self._execute_block(words[0], raw[places[0].start() :].split(";")[0].strip())
+            return None, ()
+        self.met.update(dict.fromkeys(words))
+        return block.rest or None, (*found, *words)
+
+    def _take_block(self, word: KnownWord, raw: str, match: re.Match[str]) -> None:
+        """Execute a word that has the whole block, in which no other G code may stand."""
+        self.met[word] = None
+        is_alone = not self._among_others and _is_beside_others(word)
+        is_code = _HAS_CODE.match(word.word) is not None
+        if (is_alone or is_code) and has_other_codes(raw[match.end() :], of_klartext=is_alone):
+            raise WordsBesideError(Wording("NC213", "codes_beside", word=word.word))
+        self._continues = raw.rstrip().endswith("~")
+        self._execute_block(word, raw[match.start() :].split(";")[0].strip())
 
     def execute(self, words: tuple[KnownWord, ...], *, before_motion: bool) -> None:
         """Execute the effects of codes that act before the motion of their block, or those that act after it."""
@@ -261,8 +296,16 @@ class KnownWords:
 
 
 def _is_beside_others(word: KnownWord) -> bool:
-    """Whether a word is a G code without any effect, which then may stand between other codes of a block."""
-    return set(word.effects) == {"no effect"} and re.fullmatch(r"G[0-9]+(\.[0-9])?", word.word) is not None
+    """Whether a word is without any effect, and no call: then it may stand among the other words of a block."""
+    is_without = set(word.effects) == {"no effect"} and _CALL.match(word.word) is None
+    return is_without and _BESIDE.fullmatch(word.word) is not None
+
+
+def _pattern_beside(word: str) -> str:
+    """Return the regular expression of a word among others; a G code may follow a number without a blank."""
+    if _HAS_CODE.match(word) is not None:
+        return rf"(?<![A-Z_$<]){_pattern(word)}(?![0-9=])"
+    return rf"(?<![A-Z0-9_.$<]){_pattern(word)}(?![A-Z0-9_]){_OWN_ARGUMENTS}"
 
 
 def _pattern(word: str) -> str:

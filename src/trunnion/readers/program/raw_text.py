@@ -11,6 +11,7 @@ from typing import Final
 
 from trunnion.machines import Machine
 from trunnion.readers.program.known_words import begins_with, known_words
+from trunnion.readers.program.words_beside import has_other_codes
 
 #: Parts of words: a number, what a variable may become, and comments of languages of the RS274 kind. A comment that
 #: begins with a name and a comma may be a command, and some are one without a comma.
@@ -19,6 +20,7 @@ RS274_COMMENT: Final = r"\((?!\s*(?:[A-Z_]+\s*,|(?:LOG|PROBE)(?:OPEN|APPEND|CLOS
 RS274_VALUE: Final = rf"(?:{NUMBER}|[-+]?#[0-9]+|\[[^\[\]]*\])"
 
 _SHORT: Final = 40
+_FIRST_CODE: Final = re.compile(r"[ \t]*G[0-9.]+", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,7 +38,7 @@ class RawWords:
     def not_known(self, text: str, machine: Machine) -> str:
         """Return the first part of a text of which nobody knows what it changes; empty if there is none."""
         declared = known_words(machine)
-        if begins_with(declared, text):
+        if begins_with(declared, text) and not has_other_codes(_FIRST_CODE.sub("", text, 1), of_klartext=False):
             return ""
         codes = {word.code for word in declared}
         word = re.compile(self.word, re.IGNORECASE)

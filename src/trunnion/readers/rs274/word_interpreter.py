@@ -52,6 +52,13 @@ class WordInterpreter(Rs274Interpreter[A]):
 
     # Blocks
 
+    def _takes_positions(self, codes: Sequence[str]) -> bool:
+        meanings = self.control.own_words.g
+        numbers = [self.table.code(code) for code in codes if code[0] == "G" and code[1:2].isdigit()]
+        own = [meaning for code in numbers if (meaning := meanings.get(code, code)) is not None]
+        words = self.table.words("G", own)
+        return any(word.is_motion or not word.moves or word.when is When.BEHIND_MODES for word in words)
+
     def _read_block(self, reader: ExpressionReader) -> Block:
         """Read the words of a block as those of the family."""
         block = read_block(reader, self._report_repeated_word, self.corner_letters)

@@ -49,6 +49,7 @@ class HeidenhainInterpreter(PathInterpreter):
 
     comment_signs = (";", "")
     text_sign = '"'
+    has_words_beside = False
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)

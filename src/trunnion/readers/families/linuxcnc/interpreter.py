@@ -281,9 +281,11 @@ class LinuxcncInterpreter(CycleInterpreter):
             turns = block.take("P") if code in (20, 30) else None
             if turns is not None and not 1 <= turns == int(turns):
                 raise BlockError(Wording("NC210", "p_circle_number_turns"))
-            here, self.motion_code = self.motion_code, code if code in MOTIONS else 10
+            moved = code if code in MOTIONS else 10
+            here, self.motion_code = self.motion_code, moved
             self._move(block, self._with_rotary_offsets(axes), turns=int(turns) - 1 if turns else 0)
-            self.motion_code = here
+            if self.motion_code == moved:  # no other one holds behind it
+                self.motion_code = here
 
     def _check_machine_move(self, block: Block, code: int) -> None:
         if code in (20, 30):

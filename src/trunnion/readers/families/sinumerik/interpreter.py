@@ -1,6 +1,7 @@
 """Interpreter of Sinumerik programs."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -57,6 +58,12 @@ _PLAIN_START = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])
 _PREFIX_LENGTH: Final = 48
 
 
+#: G codes that take positions; names take their own.
+_TAKES_POSITIONS: Final = re.compile(
+    r"G(?:[0-3]|5|7|2[56]|3[345]|58|59|63|7[45]|11[0-2]|14[78]|[23]4[78]|33[12])|[A-Z_]{2}.*"
+)
+
+
 class SinumerikInterpreter(WordInterpreter):
     """Runs one Sinumerik program on one machine."""
 
@@ -78,6 +85,9 @@ class SinumerikInterpreter(WordInterpreter):
         assert isinstance(source, SinumerikText)
         declared = DeclaredVariables(settings_of(self._machine).variables, self._note)
         return ActiveProgram(source, 0, variables=Variables(declared))
+
+    def _takes_positions(self, codes: Sequence[str]) -> bool:
+        return any(_TAKES_POSITIONS.fullmatch(code) is not None for code in codes)
 
     def _may_scan(self, source: SourceText) -> bool:
         control = self.control
