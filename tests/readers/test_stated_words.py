@@ -139,14 +139,56 @@ def test_words_behind_the_end_are_a_remark_and_a_second_end_is_an_error(machine:
             text, behind = text.replace("7 END", f"{behind}8 END"), ""
         program = tmp_path / "a.nc"
         program.write_text(text + behind)
-        run = trunnion.verify(
+        found = trunnion.verify(
             program,
             machine=machine,
             settings={PROGRAMS[machine][1]: 2},
             assume={PROGRAMS[machine][2]: "moves nothing"},
-        ).run
-        return [str(each.severity) for each in run.diagnostics if each.code == "NC161"]
+        )
+        told = [str(each.severity) for each in found.run.diagnostics if each.code == "NC161"]
+        assert found.standing.warnings == told.count("warning")
+        return told
 
     assert noted("") == []
     assert noted(words) == ["warning"]
     assert noted(words + end) == ["error"]
+
+
+@pytest.mark.parametrize("machine", PROGRAMS)
+def test_what_a_call_states_for_nothing_is_warned_of(machine: str, tmp_path: Path) -> None:
+    text, variable, word = PROGRAMS[machine]
+    program, (other, unknown) = tmp_path / "a.nc", (variable[:-1] + "7", word[:-1] + "9")
+    program.write_text(text)
+    found = trunnion.verify(
+        program,
+        machine=machine,
+        settings={variable: 2, other: 3},
+        assume={word: "moves nothing", unknown: "moves nothing"},
+    )
+    told = [each.wording.parameter("word") for each in found.remarks if each.code == "NC228"]
+    assert told == [unknown, other]
+    assert found.standing.warnings == 2
+    assert found.standing.stated == (f"{word} moves nothing (stated)", f"{variable} = 2 (stated)")
+
+
+def test_a_call_may_be_stated_without_a_blank(tmp_path: Path) -> None:
+    text, variable, word = PROGRAMS["matsuura_mx330"]
+    program = tmp_path / "a.nc"
+    program.write_text(text)
+    for written in (word, word.replace(" ", "")):
+        found = trunnion.verify(
+            program, machine="matsuura_mx330", settings={variable: 2}, assume={written: "moves nothing"}
+        )
+        assert not found.run.errors
+        assert not found.remarks
+
+
+def test_a_value_beyond_its_limits_is_an_error_of_the_variable(tmp_path: Path) -> None:
+    program = tmp_path / "a.nc"
+    program.write_text(PROGRAMS["matsuura_mx330"][0])
+    with pytest.raises(InputError) as refused:
+        trunnion.verify(program, machine="matsuura_mx330", settings={"#100": 1e308})
+    (problem,) = refused.value.problems
+    assert problem.subject is not None
+    assert (problem.subject.kind, problem.subject.name) == ("setting", "#100")
+    assert "control.reading" not in str(problem)

@@ -17,6 +17,7 @@ from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.settings import UNKNOWN, encoding_of, family_of, reading_of
+from trunnion.readers.program.stated_words import unread_words
 
 
 def run_program(
@@ -66,7 +67,8 @@ def run_program(
     if meanings and write_progress is not None:
         write_progress.wait_until_finished()
     skipped = tuple(SkippedRun(levels, read(replace(options, skip=levels))) for levels in meanings)
-    return replace(run, skipped=skipped) if skipped else run
+    unread = unread_words((run, *(each.run for each in skipped)), machine)
+    return replace(run, skipped=skipped, diagnostics=(*run.diagnostics, *unread))
 
 
 def _skip_levels(run: Run) -> set[int]:

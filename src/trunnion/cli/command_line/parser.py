@@ -234,6 +234,9 @@ class _AddSetting(argparse.Action):
         (key, value), before = values, dict(settings)
         if before.get(key, value) != value:
             said = {"option": self.option_strings[0], "first": repr(before[key]), "second": repr(value)}
+            # Names of settings are in small letters; a variable has one value.
+            if not key.islower():
+                raise _WordedError(self, Wording("ARG120", "variable_twice", name=key, **said))
             raise _WordedError(self, Wording("ARG120", "setting_twice", name=key, value=before[key], **said))
         setattr(namespace, self.dest, [*settings, (key, value)])
 

@@ -6,12 +6,16 @@ Out:    the machine whose definition says so too, and the settings that are none
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import Final
 
 from trunnion import readers
 from trunnion.errors import InputError, Problem, argument_problem, setting_problem
 from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+
+#: Where the machine has the values that a call states.
+_VARIABLES: Final = "control.reading.variables."
 
 
 def with_stated(
@@ -75,4 +79,6 @@ def _of_argument(problem: Problem) -> Problem:
     """Return a problem with what was given as one with the argument; one of the definition as it is."""
     if problem.file != readers.GIVEN:
         return problem
+    if problem.subject is not None and problem.subject.name.startswith(_VARIABLES):
+        return setting_problem(problem.subject.name.removeprefix(_VARIABLES), problem.wording.bare())
     return argument_problem("assume", problem.wording)

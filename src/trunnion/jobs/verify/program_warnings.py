@@ -19,6 +19,9 @@ _WAITS: Final = "NC226"
 _END_OF_TURN: Final = "NC342"
 _LEFT_ON: Final = "NC351"
 
+#: Kinds of which a program has few, told as they were noted.
+_FEW: Final = ("NC161", "NC228")
+
 #: Warnings of a kind that are told one by one; a program with more words is hardly one for this machine.
 _MOST_TOLD: Final = 20
 
@@ -35,6 +38,7 @@ def program_warnings(run: Run, stated: frozenset[str] = frozenset()) -> list[Pro
     told: list[Problem] = []
     for code in _KINDS:
         told += _of_kind(run, code, [each for each in run.diagnostics if _is_told(each, code, stated)])
+    told += [_told(each, each.wording) for code in _FEW for each in run.diagnostics if _is_told(each, code, stated)]
     return told
 
 
@@ -46,11 +50,12 @@ def _is_told(noted: Diagnostic, code: str, stated: frozenset[str]) -> bool:
 
 def _of_kind(run: Run, code: str, noted: Sequence[Diagnostic]) -> list[Problem]:
     """Return the first warnings of a kind one by one, and the others together."""
-    told = [
-        warning(each.file or run.files[0], each.line, Wording(code, "noted", noted=each.wording))
-        for each in noted[:_MOST_TOLD]
-    ]
+    told = [_told(each, Wording(code, "noted", noted=each.wording)) for each in noted[:_MOST_TOLD]]
     if more := len(noted) - len(told):
         line = noted[_MOST_TOLD].line
         told.append(warning(run.files[0], line, Wording(code, "more_noted", count=more)))
     return told
+
+
+def _told(noted: Diagnostic, wording: Wording) -> Problem:
+    return warning(noted.file, noted.line, wording)

@@ -47,6 +47,8 @@ _SILENT: Final = frozenset({"no effect", "comes back", HOME, WAITS})
 _MOST_LETTERS: Final = 40
 _LEADING_ZEROS: Final = re.compile(r"^([GM])0+([0-9])")
 _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
+#: A code with a word right behind it: ``G65P9810``.
+_GLUED: Final = re.compile(r"^([GM][0-9]+(?:\.[0-9])?)(?=[A-Z])")
 _CODE: Final = re.compile(r"^[GM](?=[0-9])")
 #: A G code without tenths: one with them is another word.
 _HAS_CODE: Final = re.compile(r"[GM][0-9]")
@@ -124,7 +126,7 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
         elif normal != word.word and word.code is None:
             table.add_problem(key, Wording("NC190", "begins_code_leading_zeros", normal=normal))
         found[normal] = word
-    report_duplicates(table, lambda key: plain_code(_normal(key)))
+    report_duplicates(table, lambda key: plain_code(normal_word(key)))
     table.raise_problems()
     return tuple(found.values())
 
@@ -154,7 +156,7 @@ def _known_word(table: Table, key: str) -> KnownWord:
     elif not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
         table.add_problem(key, Wording("NC190", "no_word_program"))
     is_given = table.location(key)[0] == GIVEN
-    return KnownWord(_normal(key), effects, means.strip(), ", ".join(written), is_given)
+    return KnownWord(normal_word(key), effects, means.strip(), ", ".join(written), is_given)
 
 
 def _contradiction(effects: Sequence[str]) -> Wording | None:
@@ -168,9 +170,9 @@ def _contradiction(effects: Sequence[str]) -> Wording | None:
     return None
 
 
-def _normal(key: str) -> str:
-    """Return a word in capitals, with single blanks."""
-    return " ".join(key.upper().split())
+def normal_word(key: str) -> str:
+    """Return a word in capitals, with single blanks, one of them between a code and the word behind it."""
+    return _GLUED.sub(r"\1 ", " ".join(key.upper().split()))
 
 
 def plain_code(word: str) -> str:

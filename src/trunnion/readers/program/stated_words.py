@@ -4,15 +4,17 @@ In:     a machine, words with what they do, and variables with their values.
 Out:    the machine, whose definition says so too; and what of it a run has relied on.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from trunnion.definitions import LocatedValue, Table
+from trunnion.errors import Severity
 from trunnion.machines import Machine
-from trunnion.model.run import Diagnostic
+from trunnion.messages import Wording
+from trunnion.model.run import Diagnostic, Run
 from trunnion.model.stated_words import StatedWord
 from trunnion.readers.program.declared_variables import OF_VARIABLES
-from trunnion.readers.program.known_words import KnownWord
+from trunnion.readers.program.known_words import KnownWord, normal_word, plain_code
 from trunnion.readers.program.settings import GIVEN, control_of
 
 
@@ -46,6 +48,17 @@ def stated_words(known: Iterable[KnownWord], noted: Iterable[Diagnostic], machin
             name, value = str(each.wording.parameter("name")), each.wording.parameter("value")
             words.append(StatedWord(name, f"= {value:g}", values.location(name)[0] == GIVEN))
     return tuple(dict.fromkeys(words))
+
+
+def unread_words(runs: Sequence[Run], machine: Machine) -> Iterator[Diagnostic]:
+    """Yield a warning for each word and variable that was stated for the run alone, and that no meaning relied on."""
+    control = control_of(machine)
+    met = {plain_code(each.word) for run in runs for each in run.stated}
+    for table in (control.table("known"), control.table("reading").table("variables")):
+        for name in table.names():
+            if table.location(name)[0] == GIVEN and plain_code(normal_word(name)) not in met:
+                wording = Wording("NC228", "never_needed", word=name)
+                yield Diagnostic(0, wording, Severity.WARNING, runs[0].files[0])
 
 
 def _located(value: object) -> LocatedValue:
