@@ -18,6 +18,9 @@ def _line(code: str, variant: str, line: str, cured: str, on: str = "yl569") -> 
 _SINUMERIK: Final = HEADS["yl569"].format(lines="G1 X10 F100")
 _FANUC: Final = HEADS["matsuura_mx330"].format(lines="G1 X10. F100.")
 _KLARTEXT: Final = HEADS["mikron_600u"].format(lines="L X+10 F100")
+_DRILLING: Final = (
+    "CYCL DEF 200 DRILLING Q200=+2 Q201=-5 Q206=+100 Q202=+5 Q210=+0 Q203=+0 Q204=+20 Q211=+0\nL X+5 FMAX M99"
+)
 _LINUXCNC: Final = HEADS["xyzac_trt"].format(lines="G1 X10 F100")
 
 CURES: Final = (
@@ -53,6 +56,11 @@ CURES: Final = (
         on="matsuura_mx330",
     ),
     _line("NC210", "", "G1 X1..5 F100", "G1 X1.5 F100"),
+    _line("NC380", "depth_above_surface", _DRILLING.replace("Q201=-", "Q201=+"), _DRILLING, on="mikron_600u"),
+    _line("NC380", "clearance_below_zero", _DRILLING.replace("Q200=+", "Q200=-"), _DRILLING, on="mikron_600u"),
+    _line(
+        "NC210", "parameter_of_cycle_twice", _DRILLING.replace("+0\nL", "+0 Q201=-6\nL"), _DRILLING, on="mikron_600u"
+    ),
     _line("NC211", "unknown_g_word", "G777", ""),
     _line("NC212", "twice_in_block", "G1 X10 X20 F100", "G1 X20 F100"),
     _line("NC223", "", "G1 X=R7 F100", "R7=10\nG1 X=R7 F100"),

@@ -93,6 +93,25 @@ def test_a_definition_without_a_line_that_the_motions_depend_on_is_an_error(run:
     assert any("has no Q339" in fault.text for fault in preset.errors)
 
 
+@pytest.mark.parametrize("number", [number for number in SOUND if number != 204])
+def test_a_depth_above_the_surface_is_an_error(number: int, run: Runner) -> None:
+    found = run(BEFORE + define(number, **SOUND[number] | {"Q201": 5}) + "CYCL CALL")
+    assert any("has Q201=+5" in fault.text for fault in found.errors)
+
+
+@pytest.mark.parametrize("number", SOUND)
+def test_a_set_up_clearance_below_the_surface_is_an_error(number: int, run: Runner) -> None:
+    found = run(BEFORE + define(number, **SOUND[number] | {"Q200": -2}) + "CYCL CALL")
+    assert any("has Q200=-2" in fault.text for fault in found.errors)
+
+
+def test_a_value_that_a_definition_has_twice_is_an_error(run: Runner) -> None:
+    text = define(200, **SOUND[200]).rstrip("\n")
+    for again in ("Q201=-20", "Q201=-15", "Q208=+0"):
+        found = run(BEFORE + f"{text} ~\n{again}\nCYCL CALL")
+        assert any("stands twice in the definition of cycle 200" in fault.text for fault in found.errors)
+
+
 def test_older_cycles_need_each_of_their_lines(run: Runner) -> None:
     for number, lines in CYCLE_LINES.items():
         text = [f"CYCL DEF {number}.0 NAME", *(f"CYCL DEF {number}.{k} {name}-5" for k, name in lines.items())]

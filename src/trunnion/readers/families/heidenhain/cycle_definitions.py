@@ -279,6 +279,8 @@ class Definitions:
                 raise KlartextError(Wording("NC210", "not_parameter_cycle", rest=rest[at : at + 20].strip()))
             at = match.end()
             target, sign, parameter, figures, word = match.groups()
+            if int(target[1:]) in q_values:
+                raise KlartextError(Wording("NC210", "parameter_of_cycle_twice", parameter=target, number=number))
             if word in _RAPID and int(target[1:]) in MAY_BE_RAPID:
                 q_values[int(target[1:])] = math.inf
                 parameters.forget(canonical(target))

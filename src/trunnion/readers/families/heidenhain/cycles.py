@@ -116,6 +116,10 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
             raise CycleExecutionError(
                 Wording("NC215", "parameter_out_of_range", parameter=parameter, value=values[parameter], known=known)
             )
+    if values[200] < 0.0:
+        raise CycleExecutionError(Wording("NC380", "clearance_below_zero", value=values[200]))
+    if values.get(201, 0.0) > 0.0:
+        raise CycleExecutionError(Wording("NC380", "depth_above_surface", value=values[201]))
     hole = Hole(values, rpm, -abs(values[249]) if number == _BACK_BORING else values[201])
     motions = [
         replace(motion, rapid=True, feed=None) if motion.feed == math.inf else motion for motion in CYCLES[number](hole)
