@@ -68,3 +68,9 @@ def test_a_vector_or_a_plane_states_both_rotary_axes(tmp_path: Path) -> None:
     assert assumed("dmu65", plane, tmp_path) == ""
     vector = OTHERS.format(home="ORIVECT ORIWKS\n").replace("M3\n", "M3\nTRAORI\n").replace("Y0.", "Y0. A3=0 B3=0 C3=1")
     assert assumed("yl569", vector, tmp_path) == ""
+
+
+def test_a_cycle_cuts_too(tmp_path: Path) -> None:
+    drilled = FANUC.replace("G1 Z5. F100.\nX10.", "G81 X10. Y0. Z-2. R3. F100.\nG80")
+    assert assumed("matsuura_mx330", drilled.format(home=""), tmp_path) == "A and C at home at N30"
+    assert assumed("matsuura_mx330", drilled.format(home="G28 A0. C0.\n"), tmp_path) == ""

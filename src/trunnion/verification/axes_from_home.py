@@ -20,6 +20,7 @@ AXIS_WORDS: Final = (
 )  # fmt: skip
 
 _LINEAR: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
+_ROTARY: Final = ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR
 
 
 def axis_names(run: Run) -> tuple[str, ...]:
@@ -34,7 +35,8 @@ def axes_from_home(run: Run) -> Wording | None:
 
 
 def _first_cut(run: Run) -> Wording | None:
-    cuts = (run.kind != Kind.RAPID) & ((run.programmed & int(_LINEAR)) != 0)
+    turns_alone = ((run.programmed & int(_ROTARY)) != 0) & ((run.programmed & int(_LINEAR)) == 0)
+    cuts = (run.kind != Kind.RAPID) & ~turns_alone  # the rows of a cycle have no words of axes
     cuts &= ~run.state.machine_frame.part(0, len(run))
     found = np.flatnonzero(cuts)[:1].tolist()
     if not found:
