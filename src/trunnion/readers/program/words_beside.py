@@ -18,7 +18,12 @@ _CODE: Final = re.compile(r"(?<![A-Z_])([GM])[ \t]*0*([0-9]+(?:\.[0-9])?)|(?<![A
 _G_CODE: Final = re.compile(r"(?<![A-Z_<])G[ \t]*[0-9]", re.IGNORECASE)
 _VALUES: Final = re.compile(r"\[[^\]]*\]|<[^>]*>|\"[^\"]*\"")
 _COMMENT: Final = re.compile(r"\([^)]*\)|;.*")
-_NAMES: Final = re.compile(r"(?<![A-Z_])(?:GOTO[BFCS]?|PROC|EXTERN|DEF|REPEATB?|CALL)(?![A-Z_])", re.IGNORECASE)
+#: What stands before a name: that of a label or of a program, of which a Klartext block may have M functions behind it.
+_NAMES: Final = re.compile(
+    r"(?<![A-Z_])(?:(?:GOTO[BFCS]?|PROC|EXTERN|CALL(?:[ \t]+(?:PGM|LBL))?)[ \t]+$"
+    r"|REPEATB?[ \t]+(?:[A-Z0-9_]+[ \t]+)?$|DEF(?![A-Z_]))",
+    re.IGNORECASE,
+)
 _KLARTEXT: Final = re.compile(r"(?<![A-Z0-9_])(?:M[0-9]|I?[XYZABCUVW][-+0-9Q])")
 _BEGIN: Final = re.compile(r"[ \t]*/?[0-9]?[ \t]*(?:N[ \t]*[0-9]+(?:\.[0-9]*)?)?[ \t]*/?[ \t]*")
 

@@ -20,9 +20,7 @@ def test_block_numbers_comments_structure_and_both_separators(run: Runner) -> No
         "5 END PGM 11 MM\nL X+99"
     )
     found = run(text)
-    assert [each.text for each in found.diagnostics] == [
-        "stands behind END PGM: another program needs a file of its own"
-    ]
+    assert [each.text for each in found.diagnostics] == ["stands behind the end of the program: it never runs"]
     close(found.tip, [[1.5, -2.25, 0], [1.5, -2.25, 25], [2, -2.25, 25], [2, 3, 25]])
     assert found.block_number.tolist() == [1, -1, 4, -1]
     assert [(c.line, c.text, c.before_row) for c in found.comments] == [

@@ -10,7 +10,7 @@ from trunnion.model.toolpath import Kind
 def test_form(run: Runner) -> None:
     text = "%\n(all)\nN10 G 0 x 1.5 (there) Y-2 ;end\ng1z+.5f100\n/X9\nN20X[1+2*3]\n(MSG, look)\n%\nX99"
     found = run(text)
-    assert [error.line for error in found.errors] == [9]  # behind the end
+    assert [(each.line, each.wording.code) for each in found.diagnostics] == [(9, "NC161")]  # behind the end
     close(found.tip, [[1.5, -2, 0], [1.5, -2, 0.5], [9, -2, 0.5], [7, -2, 0.5]])
     assert found.block_number.tolist() == [10, -1, -1, 20]
     assert [c.text for c in found.comments] == ["all", "there", "end", "MSG, look"]
