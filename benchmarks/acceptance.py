@@ -16,7 +16,7 @@ from trunnion.survey.trying import Step
 
 #: All that is tried.
 STEPS = {
-    FileKind.CL: (Step.INFO, Step.POST, Step.VERIFY, Step.CONVERT),
+    FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS, Step.VERIFY, Step.CONVERT),
     FileKind.PROGRAM: (Step.VERIFY, Step.CONVERT),
 }
 

@@ -11,7 +11,7 @@ from trunnion.batch.worker_task import Outcome, Status
 from trunnion.errors import Problem, Severity
 from trunnion.results import Figure, OptionalText
 from trunnion.survey.found_files import FileKind, FoundFile
-from trunnion.survey.trying import STEP, Step
+from trunnion.survey.trying import SETTINGS, STEP, Step
 
 
 class Became(StrEnum):
@@ -19,6 +19,7 @@ class Became(StrEnum):
 
     PROVEN        posted, and the program proven
     PROVEN_WARNED  the same, with warnings
+    PROVEN_FILLED  refused as it is; proven with stand-ins for the settings that its errors ask for
     READ          a program: read and run, and no check of it alone fails
     READ_WARNED   the same, with warnings
     BEYOND        understood, and nothing is wrong but that this machine cannot go so far, or turn its spindle so fast
@@ -33,6 +34,7 @@ class Became(StrEnum):
 
     PROVEN = "proven"
     PROVEN_WARNED = "proven with warnings"
+    PROVEN_FILLED = "proven with settings"
     READ = "read"
     READ_WARNED = "read with warnings"
     BEYOND = "beyond the machine"
@@ -56,7 +58,9 @@ class Became(StrEnum):
 
 
 _PASSED: Final = frozenset({Became.PROVEN, Became.PROVEN_WARNED, Became.READ, Became.READ_WARNED})
-_BLOCKED: Final = frozenset({Became.BEYOND, Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN})
+_BLOCKED: Final = frozenset(
+    {Became.PROVEN_FILLED, Became.BEYOND, Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN}
+)
 
 #: The check that fails where something is not understood.
 _WORDS: Final = "words"
@@ -264,6 +268,8 @@ def _codes(outcome: Outcome, errors: Sequence[Problem]) -> tuple[str, ...]:
 
 
 def _passed(kind: FileKind, outcome: Outcome) -> Became:
+    if kind is FileKind.CL and SETTINGS in outcome.figures:
+        return Became.PROVEN_FILLED
     if kind is FileKind.CL:
         return Became.PROVEN_WARNED if outcome.warnings else Became.PROVEN
     return Became.READ_WARNED if outcome.warnings else Became.READ

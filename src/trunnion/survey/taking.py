@@ -30,7 +30,7 @@ TIMEOUT: Final = 60.0
 
 #: What is tried of CL files and programs.
 STEPS: Final[Mapping[FileKind, tuple[Step, ...]]] = {
-    FileKind.CL: (Step.INFO, Step.POST),
+    FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS),
     FileKind.PROGRAM: (Step.VERIFY,),
 }
 
