@@ -71,6 +71,9 @@ _SEQUELS: Final = frozenset({"CNV130", "CTL940", "PLN160"})
 #: Checks and codes of travel and of the spindle's speed.
 _OF_MACHINE: Final = frozenset({"travel", "rpm", "PLN120", "PLN125", "PLN430"})
 
+#: The code of a statement that belongs to turning.
+_TURNING: Final = "CL260"
+
 #: The code of a program of which more is not understood than understood.
 _OTHER_CONTROL: Final = "NC113"
 
@@ -297,11 +300,14 @@ _BECAME: Final[Mapping[Status, Callable[[FileKind, Outcome], Became]]] = {
 def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     """Return what became of a file: of a CL file each try counts, of a program the best."""
     if not tries:
-        became = Became.NOT_OURS if file.is_tried else Became.NOT_TRIED
+        is_other = file.is_tried and file.kind is FileKind.OTHER
+        became = Became.NOT_OURS if is_other else Became.NOT_TRIED
         return SurveyedFile(file.name, file.kind, file.looks, became)
     counted = tuple(tries) if file.kind is FileKind.CL else (min(tries, key=_worth),)
     if not file.looks and _OTHER_CONTROL in counted[0].codes:
         return SurveyedFile(file.name, FileKind.OTHER, "understood by no reader", Became.NOT_OURS)
+    if file.kind is FileKind.CL and all(_TURNING in each.codes for each in counted):
+        return SurveyedFile(file.name, FileKind.OTHER, "CL data of turning", Became.NOT_OURS)
     return SurveyedFile(
         file.name, file.kind, file.looks, max((t.became for t in counted), key=_ORDER.__getitem__), counted
     )

@@ -37,7 +37,7 @@ _MOST_BESIDE: Final = 50_000_000
 
 #: Of an outcome: the step that it is of, and the settings without which it would not have passed.
 STEP: Final = "step"
-SETTINGS: Final = "settings"
+SETTINGS: Final = "filled_in"
 
 
 class Step(StrEnum):
