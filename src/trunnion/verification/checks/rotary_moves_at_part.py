@@ -183,7 +183,7 @@ class _Judge:
     def _judge_by_number(self, row: int, found: RotaryMovesAtPart) -> None:
         """Judge a turn by the distance between the tool and the turned part."""
         poses = self._run.positions(np.array([row - 1, row])).joints
-        distance = self._distance(poses[0], poses[1])
+        distance = self._distance(row, poses[0], poses[1])
         if distance is not None and distance >= SAFE_DISTANCE:
             found.distances.append(distance)
             return
@@ -193,10 +193,10 @@ class _Judge:
             said = Wording("turns", "near_part", distance=distance, least=SAFE_DISTANCE, cure=cure)
         found.places.append(self._context.place(row, distance or 0.0, said))
 
-    def _distance(self, before: Floats, after: Floats) -> float | None:
-        """Distance of the tool from the turned part, mm; None if it is not known where the part turns to."""
-        machine, slides = self._machine, list(self._machine.linear)
-        if (np.abs(after[slides] - before[slides]) > STILL).any() or not self._knows_the_turn(before, after):
+    def _distance(self, row: int, before: Floats, after: Floats) -> float | None:
+        """Distance of the tool from the part that a row turns, mm; None if it is not known where the part turns to."""
+        machine, slides = self._run.machine_at(row), list(self._machine.linear)
+        if (np.abs(after[slides] - before[slides]) > STILL).any() or not self._knows_the_turn(row, before, after):
             return None
         if not self._part_is_known:
             self._part, self._part_is_known = cut_extent(self._run), True
@@ -204,12 +204,15 @@ class _Judge:
             return None
         return turn_clearance(machine, before, after, self._part)
 
-    def _knows_the_turn(self, before: Floats, after: Floats) -> bool:
-        """Whether it is known where the part, or the head, turns to."""
-        machine = self._machine
+    def _knows_the_turn(self, row: int, before: Floats, after: Floats) -> bool:
+        """Whether it is known where the part, or the head, turns to, and how high the tip is."""
+        machine = self._run.machine_at(row)
         moved = [k for k in machine.rotary if abs(after[k] - before[k]) > STILL]
-        if machine.tool_length is None and any(machine.axes[k].mount is Mount.TOOL for k in moved):
-            return False  # the tip swings by a length that is not known
+        if machine.tool_length is None:
+            if any(machine.axes[k].mount is Mount.TOOL for k in moved):
+                return False  # the tip swings by a length that is not known
+            if self._machine_positions.at(np.array([row - 1]))[0, self._along]:
+                return False  # the tip is below a position of the machine by a length that is not known
         if machine.workpiece_zero is not None:
             return True
         return not len(self._frame) and turns_part_alone(machine, before, after, STILL)
