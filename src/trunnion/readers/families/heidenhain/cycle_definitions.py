@@ -33,6 +33,8 @@ from trunnion.readers.families.heidenhain.words import (
     AXIS_SCALING,
     BORE_MILLING,
     CYCLE_LINES,
+    CYCLE_OPTIONS,
+    CYCLE_PARAMETERS,
     CYCLES_NOT_SIMULATED,
     DATUM,
     DWELL,
@@ -254,6 +256,9 @@ class Definitions:
         begin = re.search(r"(?:^|[ \t])Q[0-9]{1,4}[ \t]*=", rest)
         title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
         q_values = self._read_parameters(number, rest, parameters)
+        own = (*CYCLE_PARAMETERS.get(number, q_values), *CYCLE_OPTIONS.get(number, ()))
+        if foreign := tuple(f"Q{each}" for each in q_values if each not in own):
+            self._note(Wording("NC221", "foreign_parameters", names=foreign, number=number), Severity.WARNING)
         if number in CYCLES or number in CYCLES_NOT_SIMULATED:
             if number in ACT_WHEN_DEFINED:
                 self._note(
