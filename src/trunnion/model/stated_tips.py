@@ -4,10 +4,10 @@ In:     a run.
 Out:    ``StatedTips``: which rows begin and end at a known place of the workpiece, and how the tool leaves and comes.
 Units:  mm, unit vectors, workpiece frame.
 
-Without workpiece zero and tool length, of all tools or of one, nobody knows where a machine position (G53, SUPA, M91) is in the workpiece frame,
-nor where the part is after rotary axes have turned without TCP. What is not known of a tip is a set of directions: a
-retract of Z leaves one, and in a tilted plane X and Y alone do not end it. A block ends the directions of the
-coordinates that it names, in the axes in which it names them.
+Without workpiece zero and tool length, of all tools or of one, nobody knows where a machine position (G53, SUPA, M91)
+is in the workpiece frame, nor where the part is after rotary axes have turned without TCP. What is not known of a tip
+is a set of directions: a retract of Z leaves one, and in a tilted plane X and Y alone do not end it. A block ends the
+directions of the coordinates that it names, in the axes in which it names them.
 """
 
 from dataclasses import dataclass

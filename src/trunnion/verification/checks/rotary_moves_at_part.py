@@ -13,13 +13,13 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
+from trunnion.machines import SAFE_DISTANCE, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.verification.context import Context
 from trunnion.verification.kinematics.cut_extent import cut_extent
-from trunnion.verification.kinematics.home_tolerance import home_tolerance
+from trunnion.verification.kinematics.home_tolerance import home_tolerance, spindle_slide
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes, rotary_positioning_flags
 from trunnion.verification.results import Place
@@ -88,7 +88,7 @@ class _Judge:
         self._context, self._run = context, context.run
         self._machine = context.run.machine
         self._retracts = np.sort(np.array([e.before_row for e in self._run.events if e.kind == "retract"], np.int64))
-        self._along, self._outward = _spindle_slide(self._machine)
+        self._along, self._outward = spindle_slide(self._machine)
         frame = self._run.state.machine_frame.rows_with(True)
         self._frame = frame[~np.isin(frame, self._retracts)]
         self._machine_positions = MachinePositions.of(self._run)
@@ -224,13 +224,6 @@ class _Judge:
             cure = Wording("turns", "retract")
         unplaced = distance is None and self._machine.workpiece_zero is None
         return Wording("turns", "or_say_zero", cure=cure) if unplaced else cure
-
-
-def _spindle_slide(machine: Machine) -> tuple[int, float]:
-    """Column of the slide along the spindle, and whether its growing values lead away from the part (1.0 or -1.0)."""
-    along = {k: float(np.dot(machine.axes[k].direction, machine.spindle_direction)) for k in machine.linear}
-    column = max(along, key=lambda k: abs(along[k]))
-    return column, float(np.copysign(1.0, along[column] * machine.axes[column].sense))
 
 
 def _positioning_rows(run: Run) -> Ints:

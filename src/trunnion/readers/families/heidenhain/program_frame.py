@@ -50,7 +50,7 @@ def check_end_of_file(active: ActiveProgram, note: Note) -> None:
 
 
 def check_rest(active: ActiveProgram, source: SourceText, note: Note, last: str) -> None:
-    """Look for END PGM behind the block ``last`` of the run; report blocks before it that no label begins, and behind it."""
+    """Look for END PGM behind the block ``last`` of the run; report blocks that no label begins, and any behind it."""
     # An error ends the run too; what follows it would run if that were not there.
     ends = _PROGRAM_END.search(last) is not None and _SKIPPED.match(last) is None
     always = active.name is None or not ends
