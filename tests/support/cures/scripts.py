@@ -30,6 +30,7 @@ _PROJECT: Final = 'machine = "yl569"\ncl = ["part.cls"]\noutput = "out.mpf"\n'
 FILES: Final[Mapping[str, str]] = {
     "part.cls": HEAD + FOOT,
     "two.cls": HEAD.replace("OP1", "OP2") + FOOT,
+    "stop.cls": HEAD + "STOP/turn the part\nGOTO/20,0,5\n" + FOOT,
     "part.mpf": HEADS["yl569"].format(lines="G1 X10 F100"),
     "part.nc": HEADS["matsuura_mx330"].format(lines="G1 X10. F100."),
     "ours.toml": 'schema = 1\nextends = "yl569"\nname = "Ours"\n',
