@@ -66,9 +66,15 @@ def _write(name: str, text: str) -> None:
     Path(name).write_text(text.replace("\\n", "\n"), encoding="utf-8")
 
 
+def _latin(name: str, text: str) -> None:
+    with Path(name).open("a", encoding="latin-1") as file:
+        file.write(text)
+
+
 #: Words of scripts, which change files as those of a shell do.
 _WORDS: Final[Mapping[str, Callable[..., object]]] = {
     "append": _append,
+    "latin": _latin,
     "write": _write,
     "mkdir": lambda name: Path(name).mkdir(parents=True),
     "rm": lambda name: shutil.rmtree(name) if Path(name).is_dir() else Path(name).unlink(),
