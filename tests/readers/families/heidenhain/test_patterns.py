@@ -25,7 +25,7 @@ def program(number: int, values: dict[str, float], **others: float) -> str:
 def holes(run: Run) -> Floats:
     """Where the tool is deepest, once for each hole."""
     deep = run.tip[np.abs(run.tip[:, 2] + 5.0) < 1e-6][:, :2]
-    return deep[np.append(True, np.abs(np.diff(deep, axis=0)).max(axis=1) > 1e-6)]
+    return np.asarray(deep[np.append(True, np.abs(np.diff(deep, axis=0)).max(axis=1) > 1e-6)])
 
 
 def at(*angles: float) -> list[tuple[float, float]]:

@@ -15,7 +15,7 @@ from tests.support.reading import Runner, close
 from trunnion.arrays import Floats
 from trunnion.machines import load_machine
 from trunnion.model.run import Run
-from trunnion.model.splines import Spline
+from trunnion.model.splines import Spline, SplineRows
 from trunnion.readers import run_program
 from trunnion.readers.control.splines import CHORD
 
@@ -38,6 +38,10 @@ def beside(points: Floats, curve: Floats) -> float:
     return float(np.linalg.norm(curve[:, None] - near, axis=2).min(axis=1).max())
 
 
+def all_of(run: Run) -> list[SplineRows]:
+    return [run.splines[k] for k in range(len(run.splines))]
+
+
 def path(run: Run, first: int, last: int) -> Floats:
     return run.tip[first - 1 : last + 1]
 
@@ -47,7 +51,7 @@ def test_the_curves_of_the_documentation(run: Runner) -> None:
     assert not found.errors
     at = np.linspace(0.0, 1.0, 200)
     curves = ([[0, 0], [0, 3], [1, -2], [1, 1]], [[1, 1], [1, 4], [3, -1], [2, 2]], [[-2, 4], [0, -4], [2, 4]])
-    for (first, last, _), poles in zip(found.splines, curves, strict=True):
+    for (first, last, _), poles in zip(all_of(found), curves, strict=True):
         wanted = bezier(np.array([[*pole, 1.0] for pole in poles]), at)
         assert beside(path(found, first, last), wanted) <= CHORD
     parabola = path(found, found.splines[2].first, found.splines[2].last)
@@ -57,7 +61,7 @@ def test_the_curves_of_the_documentation(run: Runner) -> None:
 def test_a_nurbs_has_the_knots_of_linuxcnc(run: Runner) -> None:
     found = run(f"{HEAD}G5.2 P1 L3\nX0 Y1 P1\nM8\nX2 Y2 P1\nF200 X2 Y0 P1\nX0 Y0 P2\nG5.3\nG1 X5\nM2\n")
     assert not found.errors
-    (first, last, _), *none = found.splines
+    (first, last, _), *none = all_of(found)
     poles = np.array([[0, 0, 1], [0, 1, 1], [2, 2, 1], [2, 0, 1], [0, 0, 1]], dtype=float)
     wanted = Spline(2, np.array([0.0, 0, 0, 1, 2, 3, 3, 3]), poles, np.array([1.0, 1, 1, 1, 2]))
     assert not none
@@ -88,7 +92,7 @@ def test_linuxcnc_ends_where_the_reader_does(
     lines_of = [move for move in interpret(text, folder).moves if move.kind == "line"]
     found = run_program(folder / "part.ngc", load_machine("xyzac_trt"))
     assert [str(fault) for fault in found.errors if fault.code != "NC352"] == []
-    behind = [spline.last + 1 for spline in found.splines][2:]
+    behind = [spline.last + 1 for spline in all_of(found)][2:]
     got = found.joints[behind][:, [found.machine.column(name) for name in "XYZ"]]
     close(got, [move.machine[:3] for move in lines_of], atol=0.02)
 

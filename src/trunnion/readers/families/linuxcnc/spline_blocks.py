@@ -44,7 +44,7 @@ class SplineBlocks:
         self._weights: list[float] = []
 
     def execute(self, code: int, block: Block, axes: _Axes) -> None:
-        """Execute a block of a spline by its G code. BlockError if LinuxCNC refuses it, or what it does is not known."""
+        """Execute a block of a spline by its G code; BlockError if LinuxCNC refuses it, or it is not followed."""
         try:
             if code == NURBS:
                 self._add_pole(block, axes)
