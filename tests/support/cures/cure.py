@@ -93,6 +93,19 @@ class Cure:
             yield f"{self.code} {self.variant} ends {'well' if after.is_sound else 'badly'}: {said}\n    {rest}"
 
 
+def marked(message: str, trial: Trial, *lines: str, head: str = "", foot: str = "", **settings: str) -> Cure:
+    """Return the cure of a message, "CODE VARIANT", by lines between a head and a foot.
+
+    A line that begins with "- " goes out, one that begins with "+ " comes in; the others stand in both texts.
+    """
+    code, _, variant = message.partition(" ")
+    wrong, cured = (
+        "".join((head, *(f"{line.removeprefix(own)}\n" for line in lines if not line.startswith(other)), foot))
+        for own, other in (("- ", "+ "), ("+ ", "- "))
+    )
+    return Cure(code, variant, trial, wrong, ((wrong, cured),) if wrong != cured else (), settings)
+
+
 def read(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Read a CL file; settings are those of the reading."""
     file = folder / "part.cls"
