@@ -24,9 +24,6 @@ _BALL: Final[Mapping[str, Any]] = {
     "geometry": {"DC": 10, "RE": 5, "LCF": 20, "LB": 60},
 }  # fmt: skip
 _JSON: Final = json.dumps({"data": [_BALL]})
-_NAMELESS: Final = json.dumps(
-    {"data": [{**_BALL, "description": "", "geometry": {"DC": 10, "RE": 4}, "post-process": {}}]}
-)
 _BIT: Final = json.dumps(
     {"name": "B10", "shape": "ballend.fcstd", "parameter": {"Diameter": "10 mm", "Length": "60 mm"}}
 )
