@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -43,12 +43,12 @@ def _read(*, keeps: bool = True, linked: bool = False) -> Trial:
     return tried
 
 
-def _checked(tools: str = TOOL, **given: Any) -> Trial:
+def _checked(tools: str = TOOL, *, placed: bool = True) -> Trial:
     """Return what looks for collisions of a program, on a machine with a zero or without."""
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
         (folder / "part.ngc").write_text(text, encoding="utf-8")
-        machine = replace(load_machine("xyzac_trt"), **given)
+        machine = replace(load_machine("xyzac_trt"), workpiece_zero=(0.0, 0.0, 0.0) if placed else None)
         run = run_program(folder / "part.ngc", machine)
         shapes = {"1": parse_tool(tools)} if tools else {}
         return ended(lambda: check_collisions(run, [_TABLE], shapes))
@@ -56,16 +56,12 @@ def _checked(tools: str = TOOL, **given: Any) -> Trial:
     return tried
 
 
-_PLACED: Final = {"workpiece_zero": (0.0, 0.0, 0.0)}
-
 CURES: Final = (
     Cure("SIM310", "no_spindle_gauge", _read(), HEAD_OF_OURS, ((HEAD_OF_OURS, HEAD_OF_OURS + _GAUGE),)),
     Cure("SIM312", "leads_out_folder", _read(linked=True), HEAD_OF_OURS + _BODY, (), cured_by=_read()),
     Cure("SIM312", "belongs_no_definition", _read(keeps=False), HEAD_OF_OURS + _BODY, (), cured_by=_read()),
-    Cure("SIM150", "tool_not_known", _checked("", **_PLACED), SLOT, (), cured_by=_checked(**_PLACED)),
-    Cure("SIM310", "collision_check_machine", _checked(), SLOT, (), cured_by=_checked(**_PLACED)),
-    Cure(
-        "SIM310", "length_tool_not", _checked("1=flat:10,flutes=20", **_PLACED), SLOT, (), cured_by=_checked(**_PLACED)
-    ),
+    Cure("SIM150", "tool_not_known", _checked(""), SLOT, (), cured_by=_checked()),
+    Cure("SIM310", "collision_check_machine", _checked(placed=False), SLOT, (), cured_by=_checked()),
+    Cure("SIM310", "length_tool_not", _checked("1=flat:10,flutes=20"), SLOT, (), cured_by=_checked()),
     Cure("SIM313", "sunk_in", on(), SLOT, ({"zero": "0,0,-60"},), {"zero": "0,0,-75"}),
 )

@@ -112,7 +112,7 @@ def _by_process(error: TimeoutExpired | None = None, said: bytes = b"", made: by
 
 
 def _without_guesses(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-    with patch.dict(sys.modules, chardet=None, charset_normalizer=None):  # type: ignore[arg-type]
+    with patch.dict(sys.modules, chardet=None, charset_normalizer=None):
         return _read("part.obj")(text, settings, folder)
 
 

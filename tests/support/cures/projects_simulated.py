@@ -105,7 +105,7 @@ def _project_posted(name: str) -> Trial:
 
 def _shared(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Cut one tile of the stock of a project."""
-    return ended(lambda: simulate_share(_written(text, folder), Share(0, 2), {**settings}, SILENT))
+    return ended(lambda: simulate_share(_written(text, folder), Share(0, 2), dict(settings), SILENT))  # type: ignore[arg-type]
 
 
 _BODIES: Final = {"stock": "box:50,40,10,0,-20,-10", "cell": 2.0}

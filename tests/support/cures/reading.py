@@ -38,7 +38,7 @@ def file_of(name: str, read: Callable[..., object], *, warns: bool = False, **ho
     encoding = "utf-8" if name.endswith((".toml", ".csv", ".txt", ".cls")) else "latin-1"
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-        file, heard = folder / name, []
+        file, heard = folder / name, list[Problem]()
         file.write_bytes(text.encode(encoding))
         hears = {"warn": heard.append} if warns else {}
         return ended(lambda: read(file, **hears, **how, **settings), heard)

@@ -28,8 +28,10 @@ def simulated(text: str, machine: str, folder: Path, **given: Any) -> Outcome:
     file = folder / "part.nc"
     file.write_text(text, encoding="utf-8")
     given = {"stock": STOCK, "tools": TOOL, "cell": 2.0, **given}
-    numbers = {name: float(given[name]) for name in ("cell", "accuracy", "turn", "tilt") if name in given}
-    given |= {"tools": given["tools"].split(), **numbers}
+    numbers: dict[str, Any] = {
+        name: float(given[name]) for name in ("cell", "accuracy", "turn", "tilt") if name in given
+    }
+    given = {**given, "tools": given["tools"].split(), **numbers}
     try:
         found = trunnion.simulate(file, machine=machine, **given)
     except TrunnionError as error:
