@@ -130,7 +130,7 @@ def _command(words: list[str], problems: list[Problem]) -> bool:
         code = copy_context().run(_ended, words)
     for stream in streams[1:]:
         stream.flush()
-    printed = _plain(b"".join(stream.buffer.getvalue() for stream in streams[1:]).decode())  # type: ignore[attr-defined]
+    printed = _plain(b"".join(stream.buffer.getvalue() for stream in streams[1:]).decode())
     wordings = dict.fromkeys(wording for wording, text in found if text and _plain(text) in printed)
     problems += [Problem("", 0, wording) for wording in wordings]
     if code:
