@@ -46,7 +46,7 @@ def _passes_at_home(run: Run, rows: Ints) -> Flags:
     """Whether the tool stands at home along the spindle in rows, and did not go there out of a cut, (k,) bool."""
     along, outward = spindle_slide(run.machine)
     heights = outward * (run.positions(rows).joints[:, along] - run.machine.home[along])
-    found = MachinePositions.of(run).at(rows)[:, along] & (heights >= -home_tolerance(run, rows)[:, along])
+    found: Flags = MachinePositions.of(run).at(rows)[:, along] & (heights >= -home_tolerance(run, rows)[:, along])
     if not found.any():
         return found
     frame, still = run.machine_frame, names_no_axis(run.programmed)
