@@ -27,6 +27,7 @@ from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.path_blocks import value_of
 from trunnion.readers.families.heidenhain.patterns import WITH_PATTERNS, Pattern, pattern_of
+from trunnion.readers.families.heidenhain.plane_blocks import store_rotary_angles
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.words import (
@@ -395,12 +396,3 @@ def _last(text: str, parameters: Parameters) -> float:
         raise KlartextError(Wording("NC210", "number_missing"))
     value = parameters[canonical(match[2])] if match[2] else float(match[3].replace(",", "."))
     return -value if match[1] == "-" else value
-
-
-def store_rotary_angles(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
-    """Store the rotary position of a plane in Q120 (A), Q121 (B) and Q122 (C)."""
-    if rotary is None:
-        return
-    found = dict(zip(control.rotary_names, rotary, strict=True))
-    for number, name in zip((120, 121, 122), "ABC", strict=True):
-        parameters[f"Q{number}"] = found.get(name, 0.0)
