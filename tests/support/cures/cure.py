@@ -29,11 +29,11 @@ class Outcome:
         return found | {(code, "") for code, _ in found}
 
     def cures(self, code: str, variant: str) -> list[str]:
-        """The cures of a message, as said or as its explanation has them; and the settings that it is with."""
+        """The cures of a message, as said or as its explanation has them, with the settings or arguments concerned."""
         if not variant:
             return [explanations()[code].cure]
         return [
-            f"{problem.setting}: {each.cure}"
+            f"{problem.subject.name if problem.subject else ''}: {each.cure}"
             for problem in self.problems
             for each in _with_parts(problem.wording)
             if (each.code, each.variant) == (code, variant)
