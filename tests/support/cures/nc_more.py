@@ -11,7 +11,8 @@ from trunnion.errors import Problem, TrunnionError
 
 _HEADS: Final = {
     **HEADS,
-    "haas_umc750": "%\nO00001\nG21 G90 G94\nT5 M6\nG54\nS500 M3\nG43 H5 G0 X0. Y0. Z50.\n{lines}\nG1 Z5. F100.\nM30\n%\n",
+    "haas_umc750": "%\nO00001\nG21 G90 G94\nT5 M6\nG54\nS500 M3\nG43 H5 G0 X0. Y0. Z50.\n{lines}\n"
+    "G1 Z5. F100.\nM30\n%\n",
 }
 _FANUC: Final = "matsuura_mx330"
 _LINUXCNC: Final = "xyzac_trt"

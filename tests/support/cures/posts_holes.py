@@ -73,6 +73,7 @@ CURES: Final = (
     _motion("CTL350 cycle_no_cycle", f"BORE,MANUAL,{_HEIGHTS},MMPM,100", "dmu65"),
     _motion("CTL350 cycle_no_cycle_linuxcnc", f"BORE,MANUAL,{_HEIGHTS},MMPM,100", "xyzac_trt"),
     _cycle("CTL350 dwell_bottom_thread", f"TAP,{_HEIGHTS},DWELL,1,MMPR,1", f"TAP,{_HEIGHTS},MMPR,1", "xyzac_trt"),
+    _cycle("CTL350", f"TAP,{_HEIGHTS},DWELL,1,MMPR,1", f"TAP,{_HEIGHTS},MMPR,1", "xyzac_trt"),
     _motion("CTL350 no_documented_cycle", f"BORE,MANUAL,{_HEIGHTS},MMPM,100", "hs664rt"),
     _motion("CTL350 thread_left_hand", f"TAP,{_HEIGHTS},MMPR,1", "hs664rt", head=_LEFT),
     _cycle("CTL320 thread_mm_min", f"TAP,{_HEIGHTS},MMPR,1.0001", f"TAP,{_HEIGHTS},MMPR,1", "hs664rt"),
