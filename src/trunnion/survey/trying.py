@@ -21,6 +21,7 @@ from trunnion.controls import load_control
 from trunnion.errors import Severity, TrunnionError
 from trunnion.jobs.describe.cl_files import describe_cl
 from trunnion.jobs.inputs.reading import as_machine
+from trunnion.options.words import PROOF_SETTINGS
 from trunnion.readers import reader_of
 from trunnion.survey.found_files import MOST_BYTES, is_touchable
 from trunnion.survey.stand_ins import stand_ins
@@ -193,7 +194,8 @@ def _take_beside(subject: _Subject) -> bool:
 def _verified(subject: _Subject) -> Outcome:
     arguments: dict[str, Any] = {"machine": subject.trial.machine, "subprograms": list(subject.subprograms)}
     if subject.cl:
-        arguments |= {"cl": [subject.cl], "settings": dict(subject.settings)}
+        proven = {name: value for name, value in subject.settings.items() if name in PROOF_SETTINGS}
+        arguments |= {"cl": [subject.cl], "settings": proven}
     return _worked(subject, Action.VERIFY, subject.program, arguments, "")
 
 
