@@ -12,7 +12,9 @@ _FOLDER: Final = "mkdir in\ncp part.mpf in/a.mpf\ntrunnion batch in --action ver
 def _jobs(message: str, text: str, old: str, new: str, before: str = "") -> Cure:
     """A file of jobs beside a program, and what stands in place of a part of it."""
     wrap = [each.replace("\n", "\\n") for each in (text, old, new)]
-    return script(message, f"append part.mpf ''\n{before}write jobs.toml '{wrap[0]}'\ntrunnion batch jobs.toml", *wrap[1:])
+    return script(
+        message, f"append part.mpf ''\n{before}write jobs.toml '{wrap[0]}'\ntrunnion batch jobs.toml", *wrap[1:]
+    )
 
 
 CURES: Final = (
@@ -26,11 +28,11 @@ CURES: Final = (
           before="mkdir out\ncp part.mpf out/a.mpf\n"),
     _jobs("BAT380 result_would_another",
           _HEAD.replace("verify", "convert").replace('"*.mpf"', '"a.mpf", "a.MPF"') + "to_cl = true\n", ', "a.MPF"', "",
-          
+
           before="cp part.mpf a.mpf\ncp part.mpf a.MPF\n"),
     _jobs("DEF330 twice",
           _HEAD.replace("action", 'name = "a"\naction') + '[[job]]\nname = "a"\nfiles = ["*.mpf"]\nmachine = "yl569"\naction = "verify"\n',
-          
+
           'name = "a"\\nfiles'.replace("\\n", "\n"), 'name = "b"\nfiles'),
     _jobs("DEF330 keys", _HEAD + "settings = { " + ", ".join(f"a{k} = 1" for k in range(2000)) + " }\n",
           "settings = { " + ", ".join(f"a{k} = 1" for k in range(2000)) + " }\n", ""),
@@ -44,7 +46,7 @@ CURES: Final = (
     script("BAT120 no_files_match", _FOLDER + " --files '*.nc'", "*.nc", "**/*.mpf"),
     script("BAT320 result_would_leads",
            f"{_FOLDER} --report json".replace("in/a.mpf\n", "in/b/a.mpf\nmkdir out\nmkdir x\nlink ../x out/b\n").replace("mkdir in\n", "mkdir in/b\n"),
-           
+
            "link ../x out/b\n", ""),
     script("BAT130 no_place_results", f"{_FOLDER[:-3]}zzz://bucket/folder", "zzz://bucket/folder", "out"),
 )  # fmt: skip

@@ -23,7 +23,7 @@ def _on(message: str, hook: str, given: str, old: str, new: str) -> Cure:
 
 CURES: Final = (
     script("HOK110 no_python_file",
-           f"write shop.txt 'def on_block(block, context):\\n    return None\\n'\n{_POST[:-2]}txt", 
+           f"write shop.txt 'def on_block(block, context):\\n    return None\\n'\n{_POST[:-2]}txt",
            "shop.txt", "shop.py"),
     _file("HOK110 file_no_hooks", "x = 5", "x = 5", "def on_block(block, context):\\n    return None"),
     _file("HOK110 no_hook", "def on_zzzzzzz(block, context):\n    return None", "on_zzzzzzz", "on_block"),
@@ -42,7 +42,7 @@ CURES: Final = (
     _on("HOK132 event_row_block", "block", "Message(block.row + 2, 0, 'A')", "block.row + 2", "block.row + 1"),
     _on("HOK132 with", "block", "Message(block.row, 0, 'A' + chr(10) + 'B')", " + chr(10)", ""),
     _on("HOK132 operation", "operation",
-        "replace(operation, moves=replace(operation.moves, feed=operation.moves.feed[:1]))", 
+        "replace(operation, moves=replace(operation.moves, feed=operation.moves.feed[:1]))",
         "operation.moves.feed[:1]", "operation.moves.feed * 0.8"),
     _file("HOK135 changes_operation_place", f"def on_operation(operation, context):\n    {_IN_PLACE}", _IN_PLACE,
           "return replace(operation, moves=replace(operation.moves, feed=operation.moves.feed * 0.8))"),

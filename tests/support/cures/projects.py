@@ -21,7 +21,9 @@ _RELEASED: Final = "trunnion post part.cls --machine yl569 --output r.mpf\ncp r.
 def _project(message: str, text: str, old: str, new: str, command: str = _POST, before: str = "") -> Cure:
     """A project that is posted, and what stands in place of a part of it; both CL files are there."""
     wrap = [each.replace("\n", "\\n") for each in (text, old, new)]
-    return script(message, f"append part.cls ''\nappend two.cls ''\n{before}write p.toml '{wrap[0]}'\n{command}", *wrap[1:])
+    return script(
+        message, f"append part.cls ''\nappend two.cls ''\n{before}write p.toml '{wrap[0]}'\n{command}", *wrap[1:]
+    )
 
 
 CURES: Final = (
@@ -50,10 +52,10 @@ CURES: Final = (
              "settings = { " + ", ".join(f"a{k} = 1" for k in range(2000)) + " }\n", ""),
     _project("DEF330 too_many_setups",
              'machine = "yl569"\n' + "".join(f'[[setup]]\nname = "s{k}"\ncl = ["part.cls"]\noutput = "{k}.mpf"\n' for k in range(201)),
-             
+
              "".join(f'[[setup]]\nname = "s{k}"\ncl = ["part.cls"]\noutput = "{k}.mpf"\n' for k in range(1, 201)), ""),
     _project("DEF330 of_posted_program", 'machine = "yl569"\nprograms = ["part.mpf"]\nlisting = "a.html"\n' + _CUT,
-             'listing = "a.html"\n', "", 
+             'listing = "a.html"\n', "",
              command="append part.mpf ''\ntrunnion check p.toml"),
     _project("DEF330 beside_output", _HEAD + 'programs = ["part.mpf"]\n', 'programs = ["part.mpf"]\n', "",
              before="append part.mpf ''\n"),
