@@ -110,4 +110,5 @@ CURES: Final = (
     script("ARG190 dialect_of_written",
            "trunnion convert part.mpf --machine yl569 --to-cl --output a.cls --dialect clsf", "--dialect",
            "--to-dialect"),
+    script("ARG190 earlier_option", f"{_VERIFY} --offset G54", "--offset", "--work-offset"),
 )  # fmt: skip

@@ -8,6 +8,14 @@ from tests.support.cures.scripts import script
 _HEAD: Final = 'results = "out"\n[[job]]\naction = "verify"\nfiles = ["*.mpf"]\nmachine = "yl569"\n'
 _FOLDER: Final = "mkdir in\ncp part.mpf in/a.mpf\ntrunnion batch in --action verify --machine yl569 --results out"
 
+_SECOND: Final = '[[job]]\nname = "a"\nfiles = ["*.mpf"]\nmachine = "yl569"\naction = "verify"\n'
+_MANY_SETTINGS: Final = "settings = { " + ", ".join(f"a{k} = 1" for k in range(2000)) + " }\n"
+_LINKED: Final = (
+    "mkdir in/b\ncp part.mpf in/b/a.mpf\nmkdir out\nmkdir x\nlink ../x out/b\n"
+    + _FOLDER.rpartition("\n")[2]
+    + " --report json"
+)
+
 
 def _jobs(message: str, text: str, old: str, new: str, before: str = "") -> Cure:
     """A file of jobs beside a program, and what stands in place of a part of it."""
@@ -30,12 +38,9 @@ CURES: Final = (
           _HEAD.replace("verify", "convert").replace('"*.mpf"', '"a.mpf", "a.MPF"') + "to_cl = true\n", ', "a.MPF"', "",
 
           before="cp part.mpf a.mpf\ncp part.mpf a.MPF\n"),
-    _jobs("DEF330 twice",
-          _HEAD.replace("action", 'name = "a"\naction') + '[[job]]\nname = "a"\nfiles = ["*.mpf"]\nmachine = "yl569"\naction = "verify"\n',
-
-          'name = "a"\\nfiles'.replace("\\n", "\n"), 'name = "b"\nfiles'),
-    _jobs("DEF330 keys", _HEAD + "settings = { " + ", ".join(f"a{k} = 1" for k in range(2000)) + " }\n",
-          "settings = { " + ", ".join(f"a{k} = 1" for k in range(2000)) + " }\n", ""),
+    _jobs("DEF330 twice", _HEAD.replace("action", 'name = "a"\naction') + _SECOND, 'name = "a"\nfiles',
+          'name = "b"\nfiles'),
+    _jobs("DEF330 keys", _HEAD + _MANY_SETTINGS, _MANY_SETTINGS, ""),
     _jobs("DEF330 no_pattern", _HEAD.replace("*.mpf", "/*.mpf"), "/*.mpf", "*.mpf"),
     _jobs("DEF330 no_patterns", _HEAD.replace('"*.mpf"', ""), "[]", '["**/*.mpf"]'),
     _jobs("DEF330 patterns", _HEAD.replace('"*.mpf"', ", ".join(['"*.mpf"'] * 2000)), ", ".join(['"*.mpf"'] * 2000),
@@ -44,9 +49,15 @@ CURES: Final = (
           before="cp part.mpf part.spf\n"),
     script("BAT120 no_files", _FOLDER.replace("in/a.mpf", "in/a.xyz"), "--machine", "--files '**/*.xyz' --machine"),
     script("BAT120 no_files_match", _FOLDER + " --files '*.nc'", "*.nc", "**/*.mpf"),
-    script("BAT320 result_would_leads",
-           f"{_FOLDER} --report json".replace("in/a.mpf\n", "in/b/a.mpf\nmkdir out\nmkdir x\nlink ../x out/b\n").replace("mkdir in\n", "mkdir in/b\n"),
-
-           "link ../x out/b\n", ""),
+    script("BAT320 result_would_leads", _LINKED, "link ../x out/b\n", ""),
     script("BAT130 no_place_results", f"{_FOLDER[:-3]}zzz://bucket/folder", "zzz://bucket/folder", "out"),
+    _jobs("FIL340 no_folder_name", _HEAD.replace('"out"', '"~/out"'), "~/out", "out"),
+    _jobs("FIL340 name_of_no_folder", _HEAD.replace('"out"', '"aux"'), "aux", "out"),
+    script("FIL230 file", f"append part.cls ''\n{_FOLDER[:-3]}part.cls", "--results part.cls", "--results out"),
+    script("FIL250 already_no_summary", f"write s.sqlite ours\n{_FOLDER} --summary s.sqlite", "--summary s.sqlite",
+           "--summary t.sqlite"),
+    script("FIL240 result_over_input",
+           _FOLDER.replace("verify", "convert --to-machine yl569 --files '*.mpf'").replace("results out", "results in"),
+
+           "--results in", "--results out"),
 )  # fmt: skip

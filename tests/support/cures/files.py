@@ -11,6 +11,8 @@ _EDITED: Final = f"{_OUT}\nappend out.mpf ;EDITED\n{_OUT}"
 _FOREIGN: Final = f"write out.mpf M30\n{_OUT}"
 _NEXT: Final = _OUT.replace("part.cls", "two.cls")
 _BOTH: Final = "trunnion post part.cls a/part.cls --machine yl569 --output out"
+_DIVIDED: Final = "trunnion post part.cls --machine matsuura_mx330 --output out.nc --set programs=operations"
+_NAMED: Final = _DIVIDED.replace("matsuura_mx330", "yl569").replace("out.nc", "out.mpf")
 _MANIFEST: Final = f"{_OUT} --manifest out.json"
 
 
@@ -96,4 +98,9 @@ CURES: Final = (
     script("FIL340 not_on_every_system", "trunnion new 'our mill?.toml' --like yl569", "'our mill?.toml'",
            "our_mill.toml"),
     script("FIL340 name_of_shipped_machine", "trunnion new dmu65.toml --like yl569", "dmu65.toml", "our_dmu65.toml"),
+    script("FIL250 number_of_other_file", f"write O1001.nc M30\n{_DIVIDED}", "write O1001.nc M30\n", ""),
+    script("FIL250 number_of_other_file", f"write O1001.nc M30\n{_DIVIDED}", _DIVIDED,
+           f"{_DIVIDED} --set first_number=2001"),
+    script("FIL250 name_of_other_file", f"write OP1.spf M30\nwrite OP1.SPF M30\n{_NAMED}",
+           "write OP1.spf M30\nwrite OP1.SPF M30\n", ""),
 )  # fmt: skip
