@@ -90,6 +90,8 @@ CURES: Final = (
     _manifest("no_list_of_files", "^.*$", "[]"),
     _manifest("no_files", r'"files": \[.*?\]', '"files": []'),
     _manifest("no_such_list", r'"files": \[.*?\]', '"files": 5'),
+    _manifest("other_schema", '"schema": [0-9]+', '"schema": 99'),
+    _manifest("nothing_of_a_post", '"what": "program"', '"what": "song"'),
     _manifest("no_name_beside", '"name": "out.mpf"', '"name": "../out.mpf"'),
     _manifest("other_program", '"program": "out.mpf"', '"program": "b.mpf"'),
     _manifest("no_cl_files", r'"cl": \[.*?\]', '"cl": []'),
