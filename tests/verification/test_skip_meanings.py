@@ -262,7 +262,6 @@ WITHIN_ON_MACHINES = [
 ]
 
 
-@pytest.mark.third
 @pytest.mark.parametrize(("machine", "within"), WITHIN_ON_MACHINES)
 def test_an_opskip_of_which_no_block_may_be_skipped_fails(machine: str, within: str, tmp_path: Path) -> None:
     cl, program = tmp_path / "p.cls", tmp_path / "p.nc"

@@ -111,6 +111,7 @@ def test_in_a_wedge_axes_turn_where_they_must() -> None:
     assert found.turning < 1.5 * turned / 40.0
 
 
+@pytest.mark.nightly
 def test_a_holder_that_meets_the_plates_is_named() -> None:
     with pytest.raises(InputError, match=r"holder and plate \d do not clear each other at .* mm are missing") as caught:
         choose_axes(floor(1.0), necked(4.0, 25.0, 30.0), slot(6.0, 60.0), Wanted(tilt=60.0))
@@ -238,7 +239,7 @@ def test_fields_on_the_published_impeller_are_clear_and_smooth(
         assert part.distance >= {"cutter": 0.06, "shank": 0.5, "holder": 2.0}[part.part] - 2e-3
 
 
-@pytest.mark.nightly  # test_a_holder_that_meets_the_plates_is_named says it of plates
+@pytest.mark.nightly
 def test_a_tool_too_short_for_the_published_impeller_is_refused(published: tuple[Impeller, Obstacles]) -> None:
     impeller, obstacles = published
     stub = ball(6.0, flute_length=6.0, length=8.0, holder=(BodyPiece(20, 24, 30), BodyPiece(40, 40, 20)))
