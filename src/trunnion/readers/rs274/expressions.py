@@ -7,7 +7,7 @@ exhaust the stack. A value may be None: that of an unset parameter, in languages
 import math
 import operator
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Final, Protocol
@@ -240,8 +240,9 @@ def _functions(arithmetic: Arithmetic) -> re.Pattern[str]:
     return _any_of((*arithmetic.functions, *arithmetic.pairs, "EXISTS"))
 
 
-def _any_of(names: Iterable[str]) -> re.Pattern[str]:
-    return re.compile("|".join(re.escape(name) for name in sorted(names, key=len, reverse=True)))
+def _any_of(names: Collection[str]) -> re.Pattern[str]:
+    """Return what finds the longest of the names that come next; nothing where a language has none."""
+    return re.compile("|".join(re.escape(name) for name in sorted(names, key=len, reverse=True)) or "(?!)")
 
 
 def _or_zero(value: Value) -> float:
