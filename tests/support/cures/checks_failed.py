@@ -16,8 +16,8 @@ _MACHINE: Final = "yl569"
 #: Two operations: three-axis with coolant, compensation, an arc, a dwell and a hole; and one under TCP.
 _CL: Final = (
     HEAD.replace("RAPID\n", "COOLNT/FLOOD\nRAPID\n", 1)
-    + "CUTCOM/LEFT\nGOTO/20,9,5\nGOTO/20,30,5\nCUTCOM/OFF\nGOTO/40,30,5\nCIRCLE/50,30,5,0,0,1,10\nGOTO/60,30,5\nDELAY/2\n"
-    "RAPID\nGOTO/60,30,50\nCYCLE/DRILL,FEDTO,-10,RAPTO,3,MMPM,100\nGOTO/70,0,0\nCYCLE/OFF\n"
+    + "CUTCOM/LEFT\nGOTO/20,9,5\nGOTO/20,30,5\nCUTCOM/OFF\nGOTO/40,30,5\nCIRCLE/50,30,5,0,0,1,10\nGOTO/60,30,5\n"
+    "DELAY/2\nRAPID\nGOTO/60,30,50\nCYCLE/DRILL,FEDTO,-10,RAPTO,3,MMPM,100\nGOTO/70,0,0\nCYCLE/OFF\n"
     + FOOT
     + LEANING.replace("OP1", "OP2")
     + FOOT
