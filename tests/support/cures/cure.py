@@ -29,11 +29,11 @@ class Outcome:
         return found | {(code, "") for code, _ in found}
 
     def cures(self, code: str, variant: str) -> list[str]:
-        """The cures of a message, as said or as its explanation has them; and the settings that it is with."""
+        """The cures of a message, as said or as its explanation has them, with the settings or arguments concerned."""
         if not variant:
             return [explanations()[code].cure]
         return [
-            f"{problem.setting}: {each.cure}"
+            f"{problem.subject.name if problem.subject else ''}: {each.cure}"
             for problem in self.problems
             for each in _with_parts(problem.wording)
             if (each.code, each.variant) == (code, variant)
@@ -91,6 +91,19 @@ class Cure:
         if after.is_sound == self.refuses:
             rest = "; ".join(map(str, after.problems))
             yield f"{self.code} {self.variant} ends {'well' if after.is_sound else 'badly'}: {said}\n    {rest}"
+
+
+def marked(message: str, trial: Trial, *lines: str, head: str = "", foot: str = "", **settings: str) -> Cure:
+    """Return the cure of a message, "CODE VARIANT", by lines between a head and a foot.
+
+    A line that begins with "- " goes out, one that begins with "+ " comes in; the others stand in both texts.
+    """
+    code, _, variant = message.partition(" ")
+    wrong, cured = (
+        "".join((head, *(f"{line.removeprefix(own)}\n" for line in lines if not line.startswith(other)), foot))
+        for own, other in (("- ", "+ "), ("+ ", "- "))
+    )
+    return Cure(code, variant, trial, wrong, ((wrong, cured),) if wrong != cured else (), settings)
 
 
 def read(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
