@@ -62,7 +62,7 @@ def _state(
         cuts = np.asarray((runs[0].kind[a] != Kind.RAPID) & (runs[1].kind[b] != Kind.RAPID))
         if mode in OF_COMPENSATION:
             sides = [run.state.compensation for run in runs]
-            return cuts & np.asarray(sides[0].at(a) != 0) & np.asarray(sides[1].at(b) != 0)
+            return np.asarray(cuts & (sides[0].at(a) != 0) & (sides[1].at(b) != 0))
         return cuts & (columns[0].at(a) >= 0) & (columns[1].at(b) >= 0) if mode in _OF_BOTH else cuts
 
     def name(number: int) -> Wording | str:
