@@ -175,7 +175,8 @@ class WordInterpreter(Rs274Interpreter[A]):
             block.take(letter)
         if word.effect in _NOT_SIMULATED:
             severity, code = _NOT_SIMULATED[word.effect]
-            self._note(Wording(word.problem or code, "not_simulated", word=word.text, does=word.does), severity)
+            text = word.text if word.code >= 0 else self.control.own_words.own_text(word.code)
+            self._note(Wording(word.problem or code, "not_simulated", word=text, does=word.does), severity)
         elif word.effect is Effect.UNKNOWN:
             self._execute_unknown(word)
         if word.mode:

@@ -26,6 +26,7 @@ from trunnion.readers.families.heidenhain.cycles import (
 from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.path_blocks import value_of
+from trunnion.readers.families.heidenhain.patterns import WITH_PATTERNS, Pattern, pattern_of
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.words import (
@@ -38,6 +39,7 @@ from trunnion.readers.families.heidenhain.words import (
     DWELL,
     MIRROR,
     ORIENTATION,
+    PATTERNS,
     PRESET,
     ROTATION,
     SCALING,
@@ -74,12 +76,14 @@ class Definitions:
     """Executes CYCL DEF blocks.
 
     defined_cycle   the cycle that CYCL CALL executes
+    pattern         what the last block has defined to be executed at once
     """
 
     def __init__(self, control: HeidenhainControl, note: Note) -> None:
         self._control = control
         self._note = note
         self.defined_cycle: Cycle | None = None
+        self.pattern: Pattern | None = None
         # Number of the older cycle whose lines are being read, and the last of them.
         self._open: tuple[int, int] | None = None
 
@@ -97,6 +101,7 @@ class Definitions:
 
     def define(self, text: str, parameters: Parameters) -> None:
         """Execute a block; ``text`` is what follows CYCL DEF."""
+        self.pattern = None
         match = _NUMBER.match(text)
         if match is None:
             raise KlartextError(Wording("NC210", "cycle_number"))
@@ -264,6 +269,8 @@ class Definitions:
             self.defined_cycle = Cycle(number, q_values=q_values)
             if number == BORE_MILLING:
                 self._note(Wording("NC221", "cycle_208_tool_radius_control"), Severity.WARNING)
+        elif number in PATTERNS:
+            self._pattern(number, q_values)
         elif number == PRESET:
             self._preset(q_values)
         else:
@@ -307,6 +314,20 @@ class Definitions:
             raise KlartextError(Wording("NC215", "preset_does_not_exist", preset=preset))
         self._control.note_preset(int(preset))
         self._control.set_offset(int(preset), f"preset {preset:g}")
+
+    def _pattern(self, number: int, q_values: dict[int, float]) -> None:
+        """Define a pattern, which is executed at once; the cycle before has its clearances and surface from then on."""
+        cycle = self.defined_cycle
+        try:
+            pattern = pattern_of(number, q_values)
+            if cycle is None:
+                raise CycleExecutionError(Wording("NC380", "called_before_any_defined"))
+            if cycle.number not in WITH_PATTERNS:
+                raise CycleExecutionError(Wording("NC380", "not_with_patterns", number=cycle.number))
+        except CycleExecutionError as error:
+            raise KlartextError(error.wording.within("of_cycle")) from None
+        cycle.q_values |= pattern.values
+        self.pattern = pattern
 
     # Calls
 

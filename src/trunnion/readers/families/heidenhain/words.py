@@ -184,6 +184,8 @@ CYCLE_PARAMETERS: Final = {
     209: (200, 201, 239, 203, 204, 257, 256),
     240: (200, 343, 201, 206, 211, 203, 204),
     241: (200, 201, 206, 211, 203, 204, 379, 253, 208),
+    220: (216, 217, 244, 245, 246, 247, 241, 200, 203, 204, 301),
+    221: (225, 226, 237, 238, 242, 243, 224, 200, 203, 204, 301),
     PRESET: (339,),
 }
 
@@ -200,7 +202,7 @@ CYCLES_NOT_SIMULATED: Final = {
     15: "pilot drilling", 16: "contour milling", 18: "thread cutting", 20: "contour data", 21: "pilot drilling",
     22: "rough-out", 23: "floor finishing", 24: "side finishing", 25: "contour train", 27: "cylinder surface",
     28: "cylinder surface slot", 29: "cylinder surface ridge", 39: "cylinder surface contour",
-    220: "polar pattern", 221: "linear pattern", 225: "engraving", 230: "multipass milling", 231: "ruled surface",
+    225: "engraving", 230: "multipass milling", 231: "ruled surface",
     232: "face milling", 233: "face milling", 239: "load measuring", 251: "rectangular pocket",
     252: "circular pocket", 253: "slot milling", 254: "circular slot", 256: "rectangular stud", 257: "circular stud",
     258: "polygon stud", 262: "thread milling", 263: "thread milling and countersinking",
@@ -210,7 +212,10 @@ CYCLES_NOT_SIMULATED: Final = {
 }  # fmt: skip
 
 #: Of these, those that act as soon as they are defined.
-ACT_WHEN_DEFINED: Final = frozenset({220, 221, 239})
+ACT_WHEN_DEFINED: Final = frozenset({239})
+
+#: Cycles that execute the cycle before at all positions of a pattern, as soon as they are defined.
+PATTERNS: Final = frozenset({220, 221})
 
 #: FN functions that write system data, those of tools and presets among them, which the path does not show.
 FN_SYSTEM_DATA: Final = frozenset({17, 25})

@@ -7,6 +7,7 @@ from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.families.sinumerik import fields
 from trunnion.readers.families.sinumerik.block import Block, Call
 from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
 from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
@@ -19,6 +20,7 @@ from trunnion.readers.families.sinumerik.words import (
     FEED_GROUP,
     FLOW,
     FRAMES,
+    G_NO_MOTION,
     NOT_SIMULATED,
     ORIENTATION,
     POSITION_MODES,
@@ -196,6 +198,8 @@ class BlockReader:
                 pass  # Surface normals are for radius compensation, which is not simulated.
             case (("L" | "P"), ""):
                 self._subprogram_word(reader, block, letter, number)
+            case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), _) if G_NO_MOTION.intersection(block.g):
+                pass  # Those of G74 and G75 are the machine's own axes, as in X1=0.
             case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), ""):
                 self._note(Wording("NC230", "axis_value_not_executed", axis=letter, value=number), Severity.ERROR)
             case _:
@@ -320,7 +324,7 @@ class BlockReader:
             raise ExpressionError(Wording("NC220", "system_variable_not_simulated", name=name))
         index = reader.index()
         reader.expect("=")
-        if not variables.assign(name, index, reader.value()):
+        if not fields.assign(reader, variables, name, index):
             self._note(Wording("NC223", "no_definition", name=name), Severity.ERROR)
 
 
