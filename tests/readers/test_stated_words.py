@@ -75,6 +75,13 @@ def test_a_definition_that_states_it_is_named_too_and_strict_takes_it(tmp_path: 
     found = trunnion.verify(program, machine=str(ours), strict=True)
     assert found.standing.stated == ("G65 P9810 comes back (stated)", "#100 = 2 (stated)")
     assert "only this call" not in next(check.summary for check in found.checks if check.key == "basis")
+    other = trunnion.verify(program, machine=str(ours), settings={variable: 3}, assume={word: "moves nothing"})
+    assert other.standing.stated == (
+        "G65 P9810 moves nothing (stated; the definition has comes back)",
+        "#100 = 3 (stated; the definition has 2)",
+    )
+    same = trunnion.verify(program, machine=str(ours), settings={variable: 2})
+    assert same.standing.stated == found.standing.stated
 
 
 @pytest.mark.parametrize(

@@ -68,6 +68,7 @@ class CycleInterpreter(OffsetInterpreter):
         if along in axes:
             given["Z"] = axes[along][0]
         self._modal_words |= given
+        self._warn_of_shift(given)
         repeats = block.take(letter)
         block.take("L")
         self._report_rotary_words(axes)
@@ -171,6 +172,13 @@ class CycleInterpreter(OffsetInterpreter):
             raise BlockError(Wording("NC217", "p_cycle_without_point_no"))
         if not words.takes_number(block):
             settings.check_dwell(block)
+
+    def _warn_of_shift(self, given: dict[str, float]) -> None:
+        """Warn of a Q whose sign does not count, and of fine boring that no block gives a shift."""
+        if given.get("Q", 0.0) < 0.0:
+            self._note(Wording("NC221", "q_without_sign", value=given["Q"]), Severity.WARNING)
+        if self.motion_code == cycles.FINE_BORE and not any(self._modal_words.get(letter) for letter in "QIJ"):
+            self._note(Wording("NC221", "bore_without_shift"), Severity.WARNING)
 
     def _hole(self) -> cycles.Hole:
         control, given = self.control, self._modal_words

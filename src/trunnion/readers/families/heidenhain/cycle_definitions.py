@@ -27,6 +27,7 @@ from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.path_blocks import value_of
 from trunnion.readers.families.heidenhain.patterns import WITH_PATTERNS, Pattern, pattern_of
+from trunnion.readers.families.heidenhain.plane_blocks import store_rotary_angles
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.words import (
@@ -34,6 +35,8 @@ from trunnion.readers.families.heidenhain.words import (
     AXIS_SCALING,
     BORE_MILLING,
     CYCLE_LINES,
+    CYCLE_OPTIONS,
+    CYCLE_PARAMETERS,
     CYCLES_NOT_SIMULATED,
     DATUM,
     DWELL,
@@ -259,6 +262,9 @@ class Definitions:
         begin = re.search(r"(?:^|[ \t])Q[0-9]{1,4}[ \t]*=", rest)
         title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
         q_values = self._read_parameters(number, rest, parameters)
+        own = (*CYCLE_PARAMETERS.get(number, q_values), *CYCLE_OPTIONS.get(number, ()))
+        if foreign := tuple(f"Q{each}" for each in q_values if each not in own):
+            self._note(Wording("NC221", "foreign_parameters", names=foreign, number=number), Severity.WARNING)
         if number in CYCLES or number in CYCLES_NOT_SIMULATED:
             if number in ACT_WHEN_DEFINED:
                 self._note(
@@ -390,12 +396,3 @@ def _last(text: str, parameters: Parameters) -> float:
         raise KlartextError(Wording("NC210", "number_missing"))
     value = parameters[canonical(match[2])] if match[2] else float(match[3].replace(",", "."))
     return -value if match[1] == "-" else value
-
-
-def store_rotary_angles(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
-    """Store the rotary position of a plane in Q120 (A), Q121 (B) and Q122 (C)."""
-    if rotary is None:
-        return
-    found = dict(zip(control.rotary_names, rotary, strict=True))
-    for number, name in zip((120, 121, 122), "ABC", strict=True):
-        parameters[f"Q{number}"] = found.get(name, 0.0)

@@ -93,8 +93,11 @@ class PathInterpreter(FlowInterpreter):
         self._m_functions.execute_after_motion(block)
 
     def _set_compensation(self, block: Block) -> None:
+        modal = self.control.modal
+        if block.side in ("RL", "RR") and modal.compensation.current == -_RADIUS_COMPENSATION[block.side]:
+            self._note(Wording("NC343", "side_without_r0", word=block.side), Severity.ERROR)
         if block.side:
-            self.control.modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
+            modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
         if block.side in ("RL", "RR"):
             self._note(Wording("NC221", "radius_compensation", word=block.side), Severity.WARNING)
             self.control.judge_compensation()

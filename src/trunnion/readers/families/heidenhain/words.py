@@ -189,6 +189,18 @@ CYCLE_PARAMETERS: Final = {
     PRESET: (339,),
 }
 
+#: Q parameters that newer software has added to cycles, or that some machines leave out. Any other belongs to none.
+CYCLE_OPTIONS: Final = {
+    200: (395,),
+    202: (357,),
+    203: (395,),
+    205: (208, 253, 373, 379, 395),
+    208: (342, 351, 370),
+    209: (336, 403),
+    240: (253, 342, 344),
+    241: (202, 205, 212, 395, 401, 427, 428, 429, 430, 435, 436),
+}
+
 #: Lines of the older cycles that blocks call, by number: the value of each.
 CYCLE_LINES: Final = {
     1: {1: "DIST", 2: "DEPTH", 3: "PLNGNG", 4: "DWELL", 5: "F"},
