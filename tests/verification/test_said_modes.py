@@ -123,7 +123,7 @@ def test_rotary_axes_before_any_work_offset_are_elsewhere_than_behind_it(
 
 def test_every_word_of_a_sinumerik_without_effect_on_the_path_has_a_mode_or_does_nothing() -> None:
     # Those that show in tolerances, tools and feeds, or are errors.
-    elsewhere = words.TOLERANCES | words.TOOL_DELTAS | {"OTOL", "FB", "FD", "FDA", "FZ", "G9"}
+    elsewhere = words.TOLERANCES | words.TOOL_DELTAS | {"OTOL", "FB", "FD", "FDA", "FZ", "FP", "G9"}
     g_words = {f"G{code}" for code in words.G_WITHOUT_PATH_EFFECT}
     known = words.WITHOUT_PATH_EFFECT | words.WITHOUT_PATH_EFFECT_VALUES | words.WITHOUT_PATH_EFFECT_CALLS | g_words
     tables = (elsewhere, unseen_modes.MODES.keys(), unseen_modes.VALUES, unseen_modes.ONCE, unseen_modes.NOTHING)
