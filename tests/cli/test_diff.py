@@ -222,6 +222,7 @@ REGISTERS = [
 ]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("machine", "text", "old", "new", "says"), REGISTERS, ids=[case[-1] for case in REGISTERS])
 def test_what_moves_the_tool_off_its_positions_is_compared(
     machine: str, text: str, old: str, new: str, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]

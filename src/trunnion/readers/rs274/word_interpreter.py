@@ -69,6 +69,8 @@ class WordInterpreter(Rs274Interpreter[A]):
 
     def _check_groups(self, block: Block) -> None:
         """Report two G codes of a block that set one mode."""
+        if len(block.g) < 2:
+            return
         for fault in same_group(block.g, self.table.groups["G"], lambda code: self.table.words("G", [code])[0].text):
             self._note(fault, Severity.ERROR)
 

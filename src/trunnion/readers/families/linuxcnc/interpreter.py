@@ -122,6 +122,8 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _check_groups(self, block: Block) -> None:
         """Refuse two G codes or two M codes of one group, also twice the same, as LinuxCNC does."""
         for letter, codes in (("G", block.g), ("M", block.m)):
+            if len(codes) < 2:
+                continue
             for group in self.table.groups[letter]:
                 found = [word.text for word in self.table.words(letter, codes) if word.code in group]
                 if len(found) > 1:
