@@ -48,6 +48,7 @@ def _definition(message: str, *lines: str, text: str = HEAD, **settings: str) ->
 
 _FEED: Final = "FEDRAT/MMPM,500.0\n"
 _OP2: Final = HEAD.replace("OP1", "OP2")
+_LEANING2: Final = LEANING.replace("OP1", "OP2").replace("TOOL,1,ADJUST,1", "TOOL,2,ADJUST,2") + FOOT
 _TILTED: Final = CLEAR.replace("0.0,0.0,1.0", "0.0,0.6,0.8") + _FEED + "GOTO/10.0,0.0,5.0\n"
 _FAN: Final = (
     CLEAR
@@ -156,4 +157,25 @@ CURES: Final = (
     _definition("CTL455 calls_subprogram", 'extends = "matsuura_mx330"',
                 '+ [control.known]\n"M98 P77" = "comes back: probes"',
                 text=HEAD + "INSERT/M98 P77\n"),
+    _definition("CTL910 can_be_forced", 'extends = "yl569"', "[control]", "[control.templates]",
+                '- program_start = "G91"'),
+    _definition("CL210 unknown_refused", 'extends = "yl569"', '+ [control.statements]\n"CLAMP/ON" = ""',
+                text=HEAD + "CLAMP/ON\n"),
+    _lines("CTL940 can_be_forced", "- SPINDL/RPM,90000,CLW", "+ SPINDL/RPM,6000,CLW", "GOTO/20,0,5"),
+    _lines("CTL940", "- SPINDL/RPM,90000,CLW", "+ SPINDL/RPM,6000,CLW", "GOTO/20,0,5"),
+    _settings("PLN310 not_supported", {"mode": None}, _TILTED, "xyzac_trt", mode="tilted"),
+    marked("PLN320 operation_control_does", post("xyzac_trt"), _TILTED.rstrip(), foot=FOOT),
+    marked("PLN320 operation_control_does_not", post("xyzac_trt"), _TILTED.rstrip(), foot=FOOT, tcp="off",
+           zero="0,0,0"),
+    _lines("PLN640 as_motion", "CYCLE/DRILL,DEEP,FEDTO,-10,RAPTO,3,STEP,4,1,1,MMPM,100", "GOTO/50,0,0", "CYCLE/OFF",
+           on="matsuura_mx330", head=CLEAR),
+    _lines("PLN160", *(f"- GOTO/{k},0,5,0,0,-1" for k in range(30)), *(f"+ GOTO/{k},0,5,0,0,1" for k in range(30))),
+    _lines("PLN120 in_hole", "CYCLE/DRILL,FEDTO,-10,RAPTO,3,MMPM,100", "- GOTO/20,0,5,0,0,-1", "+ GOTO/20,0,5,0,0,1",
+           "CYCLE/OFF", head=CLEAR),
+    Cure("PLN110", "no_rotary_position", post("generic_nutated_b45_c"),
+         HEAD + "GOTO/20,0,5,0,0.98480775,-0.17364818\n" + FOOT, (),
+         cured_by=post("generic_head_head_ca")),
+    Cure("PLN530", "tools_program_without", post("generic_head_head_ca"), LEANING + FOOT + _LEANING2,
+         ((_LEANING2, ""),),
+         {"tcp": "off", "zero": "0,0,0", "tool_length": "100"}),
 )  # fmt: skip
