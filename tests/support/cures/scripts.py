@@ -5,9 +5,11 @@ files of ``FILES`` that a script names are there before it begins.
 """
 
 import io
+import re
 import shlex
 import shutil
 import sys
+import tarfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from contextvars import copy_context
@@ -15,6 +17,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, Final, Self
 from unittest.mock import patch
+from zipfile import ZipFile
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome
@@ -71,10 +74,30 @@ def _latin(name: str, text: str) -> None:
         file.write(text)
 
 
+def _edit(name: str, pattern: str, new: str) -> None:
+    text = Path(name).read_text(encoding="utf-8")
+    Path(name).write_text(re.sub(pattern, new, text, count=1, flags=re.DOTALL), encoding="utf-8")
+
+
+def _zip(name: str, *files: str) -> None:
+    with ZipFile(name, "w") as archive:
+        for file in files:
+            archive.write(file)
+
+
+def _tar(name: str, *files: str) -> None:
+    with tarfile.open(name, "w") as archive:
+        for file in files:
+            archive.add(file)
+
+
 #: Words of scripts, which change files as those of a shell do.
 _WORDS: Final[Mapping[str, Callable[..., object]]] = {
     "append": _append,
     "latin": _latin,
+    "edit": _edit,
+    "zip": _zip,
+    "tar": _tar,
     "write": _write,
     "mkdir": lambda name: Path(name).mkdir(parents=True),
     "rm": lambda name: shutil.rmtree(name) if Path(name).is_dir() else Path(name).unlink(),

@@ -24,6 +24,10 @@ def _set(message: str, setting: str, cured: str, machine: str = "yl569") -> Cure
 _TWO_OF_ONE_NAME: Final = (
     "cp part.cls two.cls\n" + _SETTING_OF_SHOP.replace("part.cls", "part.cls two.cls --output out.mpf") + "note=A,OP1:B"
 )
+_NUMBERED: Final = (
+    "trunnion post part.cls two.cls --machine matsuura_mx330 --output out.nc --set first_number=9999 "
+    "--set programs=operations"
+)
 
 CURES: Final = (
     _set("ARG210 unknown", "colour=1", "tolerance=0.02"),
@@ -59,4 +63,7 @@ CURES: Final = (
            "trunnion post part.cls --machine matsuura_mx330 --set program_from=file --output out.nc", "out.nc",
            "O1001.nc"),
     script("ARG270 operations_of_one_name", _TWO_OF_ONE_NAME, "cp part.cls two.cls\n", ""),
+    _set("ARG220 too_small", "split=1", "split=100000", "yl569 --output out.mpf --set programs=operations"),
+    script("ARG240 no_program_numbers", _NUMBERED, "=9999", "=1001"),
+    script("ARG240 no_program_numbers", _NUMBERED, "first_number=9999 --set programs=operations", "programs=one"),
 )  # fmt: skip
