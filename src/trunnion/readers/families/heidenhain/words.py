@@ -88,6 +88,18 @@ M_WITHOUT_PATH_EFFECT: Final = {
     149: "no lift-off",
 }
 
+#: What those do that no path shows, for comparisons: the mode that each sets.
+M_UNSEEN_MODES: Final = {
+    90: "contour speed", 101: "replacement tools", 102: "replacement tools", 103: "feed downwards",
+    107: "message for oversize", 108: "message for oversize", 110: "feed at arcs", 111: "feed at arcs",
+    115: "tilt by M114", 118: "handwheel", 120: "look-ahead", 124: "points left out", 134: "exact stop of rotary axes",
+    135: "exact stop of rotary axes", 138: "rotary axes that tilt", 148: "lift-off", 149: "lift-off",
+}  # fmt: skip
+
+#: The others act once, where they stand: 94 takes a rotary axis back below 360 degrees, 97 passes small steps, 141
+#: lets a probe go, 143 deletes a rotation, and 145 is of the display.
+M_UNSEEN_ONCE: Final = frozenset({94, 97, 141, 143, *range(200, 205)})
+
 #: Of these, those whose words change what the program does: the message.
 M_WORDS_NOT_SIMULATED: Final = {
     (103, "F"): "moves down have another feed: not simulated",

@@ -219,6 +219,10 @@ class LinuxcncInterpreter(CycleInterpreter):
                 name = f"{word.text} {letter}"
                 before = control.tool_delta(name) if word.text == "G43.2" else 0.0
                 control.add_tool_delta(name, before + value * control.length_unit)
+        for letter in "ABCUVW":
+            if block.take(letter):
+                does = f"an offset of the axis {letter} is not simulated"
+                self._note(Wording("NC220", "not_simulated", word=f"{word.text} {letter}", does=does), Severity.ERROR)
         if block.take("H"):
             self._note(Wording("NC220", "length_of_other_tool", word=word.text), Severity.ERROR)
 
@@ -234,21 +238,39 @@ class LinuxcncInterpreter(CycleInterpreter):
         if block.words.get("L") is not None and block.words["L"].value:
             seconds = block.words["Q"].value if "Q" in block.words else 0.0
             self.control.note_wait(Wording("NC226", "waits_for_input", duration=format_duration(max(seconds, 0.0))))
-        self._signal(word, block)
+        self._report_signal(word, block)
+        self.control.say_once(" ".join((word.text, *(f"{name}{each.value:g}" for name, each in block.words.items()))))
 
-    def _signal(self, word: Word, block: Block) -> None:
+    def _report_signal(self, word: Word, block: Block) -> None:
         if fault := words.fault_of_signal(word, block):
             self._note(fault, Severity.ERROR)
 
+    def _signal(self, word: Word, block: Block) -> None:
+        self._report_signal(word, block)
+        if "P" in block.words:
+            self.control.say_mode(f"digital output {block.words['P'].value:g}", word.text)
+
     def _analog_output(self, word: Word, block: Block) -> None:
-        self._signal(word, block)
+        self._report_signal(word, block)
+        if "E" in block.words:
+            value = block.words["Q"].value if "Q" in block.words else 0.0
+            self.control.say_mode(f"analog output {block.words['E'].value:g}", f"{word.text} {value:g}")
         if block.take("E") == words.KINEMATICS_OUTPUT:
             self._note(
                 Wording("NC220", "output_switches_kinematics", word=word.text, output=words.KINEMATICS_OUTPUT),
                 Severity.ERROR,
             )
 
+    def _overrides(self, word: Word, block: Block) -> None:
+        for code in ("M50", "M51"):
+            self.control.say_mode(words.OVERRIDES[code], f"P{word.sets:g}")
+
+    def _override(self, word: Word, block: Block) -> None:
+        value = block.words["P"].value if "P" in block.words else 1.0
+        self.control.say_mode(words.OVERRIDES[word.text], f"P{value:g}")
+
     def _adaptive_feed(self, word: Word, block: Block) -> None:
+        self.control.say_mode("adaptive feed", f"P{block.words['P'].value:g}" if "P" in block.words else "on")
         if block.take("P") != 0.0:
             self._note(Wording("NC221", "m52_lets_signal_scale_feed"), Severity.WARNING)
 

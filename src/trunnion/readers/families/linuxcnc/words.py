@@ -113,8 +113,8 @@ TABLE: Final = WordTable(
     Word("M5", "event `spindle`: off", act="iso", group="spindle"),
     Word("M9", "event `coolant`: off", act="iso", group="coolant"),
     Word("M19", "event `spindle`: oriented", act="iso", group="spindle", letters="RQP", values={"P": whole(0, 2)}),
-    Word("M48 M49", effect=_NONE, group="overrides"),
-    Word("M50 M51 M53", effect=_NONE, group="overrides", letters="P", values={"P": _SWITCH}),
+    Word("M48 M49", effect=_NONE, act="overrides", sets=(1.0, 0.0), group="overrides"),
+    Word("M50 M51 M53", effect=_NONE, act="override", group="overrides", letters="P", values={"P": _SWITCH}),
     Word("M52", "off with `P0`; else a signal of the machine scales the feed: a warning", effect=_NONE,
          act="adaptive_feed", group="overrides", letters="P"),
     Word("M60", "event `stop`", act="change_pallet", group="stop", when=_AFTER),
@@ -138,6 +138,9 @@ TABLE: Final = WordTable(
 
 MACHINE: Final = TABLE.code("G53")
 RIGID_TAP: Final = TABLE.code("G33.1")
+
+#: What the operator may do, by the word that lets him or not.
+OVERRIDES: Final = {"M50": "override of the feed", "M51": "override of the spindle", "M53": "feed hold"}
 
 #: The words of splines. G5 and G5.1 count for their block alone, and leave the motion that was in force.
 CUBIC: Final = TABLE.code("G5")

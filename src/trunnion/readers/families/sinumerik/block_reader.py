@@ -241,10 +241,11 @@ class BlockReader:
         elif name == "PL" and follows == "=":
             block.interval = as_number(self._value(reader)[0])
         elif name in WITHOUT_PATH_EFFECT_VALUES and follows in ("=", "["):
-            if follows == "[":
-                _skip(reader, "[", "]")
+            axis = _skip(reader, "[", "]") if follows == "[" else ""
             if reader.accept("="):
-                keep_value(block, name, self._value(reader)[0])
+                value = self._value(reader)[0]
+                keep_value(block, name, value)
+                block.said.append((name, f"{axis}={value}"))
         elif name == "SPOS" and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")
@@ -262,7 +263,7 @@ class BlockReader:
         elif name == FEED_GROUP and follows == "(":
             self._feed_group(reader)
         elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
-            _skip(reader, "(", ")")
+            block.said.append((name, _skip(reader, "(", ")")))
             if name in WAITS:
                 block.waits.append(name)
         elif name in _MODES:
@@ -347,8 +348,9 @@ def read_call(reader: ExpressionReader, name: str) -> Call:
         reader.expect(",")
 
 
-def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
-    """Skip brackets and their contents."""
+def _skip(reader: ExpressionReader, opening: str, closing: str) -> str:
+    """Skip brackets and their contents; returns their text, without blanks."""
+    start = reader.at
     reader.expect(opening)
     depth = 1
     while depth:
@@ -356,6 +358,7 @@ def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
             raise ExpressionError(Wording("NC210", "closing_missing", closing=closing))
         depth += {opening: 1, closing: -1}.get(reader.peek(), 0)
         reader.at += 1
+    return _text(reader.tokens, start, reader.at).replace(" ", "")
 
 
 def _size(number: float, name: str) -> float:

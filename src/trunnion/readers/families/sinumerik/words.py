@@ -84,27 +84,12 @@ G_GROUPS: Final = (
     frozenset({460, 461, 462}),
 )
 
-#: Modes by their G words: those of which the path shows the word, and the others.
+#: Modes of which the path shows the word, by their G words; ``unseen_modes`` has the others.
 G_SHOWN_MODES: Final = {
     **dict.fromkeys(G_PLANES, "plane"),
     **dict.fromkeys((90, 91), "distances"),
     **dict.fromkeys(G_FEEDS, "feed"),
     **dict.fromkeys(G_RADIUS_COMPENSATION, "compensation"),
-}
-G_MODES: Final = {
-    **dict.fromkeys((60, 64, 641, 642, 643, 644, 645), "path control"),
-    **dict.fromkeys((601, 602, 603), "exact stop"),
-}
-
-#: Modes by their other words; those of the tool axis show in its way.
-DRIVING_MODES: Final = {
-    **dict.fromkeys(("SOFT", "BRISK", "DRIVE"), "acceleration"),
-    **dict.fromkeys(("FFWON", "FFWOF"), "feed forward"),
-    **dict.fromkeys(("COMPOF", "COMPON", "COMPCURV", "COMPCAD", "COMPSURF"), "compressor"),
-    **dict.fromkeys(("DYNNORM", "DYNPOS", "DYNROUGH", "DYNSEMIFIN", "DYNFINISH", "DYNPREC"), "dynamics"),
-    **dict.fromkeys(("UPATH", "SPATH"), "path parameter"),
-    **dict.fromkeys(("ORISON", "ORISOF"), "smoothing of the tool axis"),
-    "FNORM": "course of the feed",
 }
 
 #: How the control goes through the ends of blocks, by G code: ``RowRecorder.add_exact_stop``.
