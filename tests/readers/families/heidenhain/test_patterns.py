@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.readers.families.heidenhain.test_cycles import BEFORE, DRILL, define
+from tests.support.klartext_cycles import BEFORE, DRILL, define
 from tests.support.reading import Runner, close
 from trunnion.arrays import Floats
 from trunnion.model.run import Run
