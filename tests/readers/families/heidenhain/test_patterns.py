@@ -96,6 +96,10 @@ def test_a_pattern_that_is_not_followed_drills_nothing(
     assert len(found) == 1
 
 
+def test_straight_on_from_place_to_place_is_a_value_of_the_circle(run: Runner) -> None:
+    assert run(program(220, CIRCLE, Q365=0)).diagnostics == ()
+
+
 def test_it_needs_a_cycle_with_which_the_manuals_combine_it(run: Runner) -> None:
     pattern = define(220, **CIRCLE, Q301=1.0)
     assert "before any was defined" in run(f"{BEFORE}{pattern}M30\n").errors[0].text
