@@ -17,8 +17,8 @@ from contextlib import contextmanager
 from importlib.util import cache_from_source
 from math import sqrt
 from pathlib import Path
-from runpy import run_path
 
+from tests.support.durations import SLOW, kept
 from tests.support.locations import ROOT
 from tests.support.mutation_score.mutants import KINDS, Mutant, draw_mutants
 from tests.support.mutation_score.reach import Sources, rounds
@@ -46,7 +46,7 @@ class Trial:
             shutil.copytree(tree, self.root, ignore=ignored, symlinks=True)
             compile_kernels(self.root)
         self.root = self.root.resolve()
-        self.sources = Sources(self.root, run_path(str(self.root / "tests" / "support" / "slow.py"))["SLOW"])
+        self.sources = Sources(self.root, [file for file, taken in kept().items() if taken > SLOW])
         self.fails_anyway, self.excluded = dict[str, bool](), set[str]()
 
     def outcome(self, mutant: Mutant) -> tuple[str, str]:
