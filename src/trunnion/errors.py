@@ -8,6 +8,7 @@ A Problem prints as ``file:line: error: what is wrong; how to correct it [CODE]`
 CI systems jump to the line. ``trunnion.explanations`` knows what each code means.
 """
 
+import re
 import stat
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -15,6 +16,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import chain
 from pathlib import Path
+from typing import Final
 
 from trunnion.messages import LIBRARY, Wording, Words
 from trunnion.wording import one_line
@@ -129,16 +131,29 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     )
 
 
+#: Parameters that are the word or the code that a message is about, and the value of a word that is no code: ``X12.5``.
+_WORDS: Final = ("word", "code")
+_VALUE: Final = re.compile(r"(?<=^[A-FH-LN-Z])[ =]*[-+.0-9].*$")
+
+
 def kind_of(wording: Wording) -> tuple[str, ...]:
     """Return of what kind a message is: its code and variant, with those of the wordings that are filled in."""
     parts = (kind_of(value) for _, value in wording.parameters if isinstance(value, Wording))
     return tuple(chain((wording.code, wording.variant), *parts))
 
 
+def _words_of(wording: Wording) -> tuple[str, ...]:
+    """Return the words that a message is about, without their values."""
+    inner = (_words_of(value) for _, value in wording.parameters if isinstance(value, Wording))
+    own = [_VALUE.sub("", str(value).upper()) for name, value in wording.parameters if name in _WORDS]
+    return tuple(chain(own, *inner))
+
+
 def first_of_kinds(problems: Sequence[Problem], most: int) -> tuple[list[Problem], int]:
     """Where more than ``most`` lines have errors, keep the first error of each kind, with the number of its kind.
 
-    Errors of a file as a whole, and all that is no error, stay as they are. Kinds are those of one file (``kind_of``).
+    Errors of a file as a whole, and all that is no error, stay as they are. Kinds are those of one file (``kind_of``)
+    and word: another G code is another mistake.
 
     Returns the problems, with ``most`` kinds of errors at most, and the number of errors of the kinds left out.
     """
@@ -147,7 +162,7 @@ def first_of_kinds(problems: Sequence[Problem], most: int) -> tuple[list[Problem
         return list(problems), 0
     firsts, counts = dict[tuple[str, tuple[str, ...]], Problem](), Counter[tuple[str, tuple[str, ...]]]()
     for problem in in_lines:
-        kind = problem.file, kind_of(problem.wording)
+        kind = problem.file, (*kind_of(problem.wording), *_words_of(problem.wording))
         firsts.setdefault(kind, problem)
         counts[kind] += 1
     named = list(firsts.items())[:most]

@@ -71,7 +71,7 @@ def run_disturbed(cluster: Cluster, batch: Batch, folder: Path, place: str) -> B
     )
 
 
-@pytest.mark.parametrize("place", ["folder", "file"])
+@pytest.mark.parametrize("place", [pytest.param("folder", marks=pytest.mark.nightly), "file"])
 def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
     cluster: Cluster, tmp_path: Path, place: str
 ) -> None:

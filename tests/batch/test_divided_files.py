@@ -46,6 +46,7 @@ def kept(folder: Path) -> list[str]:
     return [path.name for path in (folder / SHARES).rglob("*") if path.is_file()]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("tiles", [2, 3, 7])
 def test_results_are_those_of_files_that_are_not_divided(tmp_path: Path, tiles: int, seed: int) -> None:
@@ -199,6 +200,7 @@ def test_a_simulation_that_is_divided_gives_the_same_bytes(
     assert tree(tmp_path / f"out{tiles}") == undivided
 
 
+@pytest.mark.nightly
 def test_processes_give_the_same_bytes(tmp_path: Path, undivided: dict[str, object]) -> None:
     write_divided(tmp_path)
     run_batch(write_jobs(tmp_path, 3), workers=2)
@@ -302,6 +304,7 @@ def by_number(folder: Path) -> dict[int, Path]:
 ODD = ["another file", "another number", "changed", "cut short", "no seal", "empty", "odd seal"]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("how", ODD)
 def test_a_share_that_is_not_what_its_name_says_is_told_and_it_alone_is_made_again(tmp_path: Path, how: str) -> None:
     mine = by_number(stopped_before_joining(tmp_path / "mine", {"x.cls": "one"}, 3))
@@ -356,6 +359,7 @@ def test_what_another_run_has_joined_meanwhile_counts(tmp_path: Path) -> None:
     assert tree(tmp_path / "out") == whole(tmp_path)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("what", ["folder", "pipe", "link"])
 @pytest.mark.parametrize("is_url", [False, pytest.param(True, marks=needs_dask)])
 def test_what_is_no_file_in_the_place_of_a_share_fails_its_file_before_any_work(

@@ -110,6 +110,7 @@ def test_a_machine_is_built_from_nothing_and_saved(page: Page, folder: Path) -> 
     assert page.locator("#mistakes").inner_text().startswith("no mistakes, 2 values")
 
 
+@pytest.mark.nightly
 def test_a_page_made_large_scrolls_down_only(page: Page) -> None:
     """WCAG 1.4.10, at 200 and 400 %: nothing is cut off, and no part is squeezed to nothing."""
     begin(page, base="yl569")
@@ -215,6 +216,7 @@ def test_fields_filled_faster_than_they_are_judged_are_all_written(page: Page) -
     assert page.locator("#text").input_value() == saved
 
 
+@pytest.mark.nightly
 def test_a_field_being_typed_outlives_new_rows_and_another_page(page: Page) -> None:
     begin(page, chain="table_table_bc")
     held = Held(page, "change")
@@ -234,6 +236,7 @@ def test_a_field_being_typed_outlives_new_rows_and_another_page(page: Page) -> N
     assert page.evaluate("document.activeElement.dataset.key") == "X 1"
 
 
+@pytest.mark.nightly
 def test_typing_in_the_text_loses_no_letter(page: Page) -> None:
     """Each answer comes while the next letters are typed; a change of a field meanwhile is made in the typed text."""
     begin(page, base="yl569")
@@ -330,6 +333,7 @@ def test_a_change_of_a_field_can_be_undone_in_the_text(page: Page) -> None:
     assert (text.input_value(), box_of(page, '["spindle","min_rpm"]').input_value()) == (second, "200")
 
 
+@pytest.mark.nightly
 def test_jog_boxes_keep_what_is_typed_and_show_what_is_wrong(page: Page) -> None:
     begin(page, base="yl569")
     box = page.locator("#jog label:has-text('X') input[type=text]")
@@ -383,6 +387,7 @@ def test_it_looks_like_the_picture_of_the_docs(page: Page, browser: Browser) -> 
     check_picture(browser, page.screenshot(), "builder.png")
 
 
+@pytest.mark.nightly
 def test_each_field_says_axis_part_and_unit_to_a_screen_reader(page: Page) -> None:
     begin(page, base="yl569")
     page.locator("[data-page=travels]").click()

@@ -60,6 +60,7 @@ def test_a_definition_that_extends_marks_what_it_takes_over_as_trunnion_new_does
     assert same["text"] == text.replace(mark, "limits_deg = [-11, 100]\n")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("path", "value"),
     [
@@ -92,6 +93,7 @@ def test_a_text_that_is_not_toml_is_told_at_its_line(session: BuilderSession) ->
     )
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("chain", CHAINS)
 def test_every_order_of_axes_makes_a_machine_whose_sample_is_proven(session: BuilderSession, chain: str) -> None:
     found = ask(session, "begin", name='Our "B"', chain=chain, control="heidenhain_tnc640")
@@ -103,6 +105,7 @@ def test_every_order_of_axes_makes_a_machine_whose_sample_is_proven(session: Bui
     assert sample["standing"]["not_measured"]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", shipped_machines())
 def test_the_shipped_sample_is_proven_on_every_machine(session: BuilderSession, name: str) -> None:
     sample = ask(session, "sample", text=begun(session, name))
@@ -262,6 +265,7 @@ def test_a_file_keeps_its_line_ends(tmp_path: Path) -> None:
     assert (tmp_path / "ours.toml").read_bytes().count(b"\r\n") == 3
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("above", "below"),
     [
@@ -293,6 +297,7 @@ def test_a_text_that_is_not_changed_is_saved_to_the_letter(lines: list[tuple[str
     assert file_text(page_text(raw), raw) == raw
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     "name", ["our mill (2).toml", "[a],b&c.toml", ".ours.toml", "-ours.toml", "铣床.toml", "a.b.toml"]
 )
@@ -362,6 +367,7 @@ def test_a_body_that_is_no_file_hangs_nothing(session: BuilderSession, tmp_path:
     assert "is not a regular file" in ask(session, "judge", text=text)["remark"]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", shipped_machines())
 def test_another_control_and_back_leaves_no_trace(session: BuilderSession, name: str) -> None:
     text = begun(session, name)
@@ -382,6 +388,7 @@ def test_a_setting_of_another_control_is_inherited_from_that(session: BuilderSes
         assert not told["own"]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("value", "shown"),
     [("inf", "inf"), ("2020-01-01", "2020-01-01"), ("[1, 2]", "[1, 2]"), ("[{ a = 1 }]", "[{ a = 1 }]"),
@@ -395,6 +402,7 @@ def test_what_a_field_cannot_hold_is_shown_as_the_text_has_it(session: BuilderSe
         assert any(each["path"] == ["spindle", "max_rpm"] for each in found["problems"])
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     "name",
     [

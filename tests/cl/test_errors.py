@@ -174,8 +174,3 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(InputError, match="not a regular file"):
         read_cl(tmp_path / "pipe")
-
-
-def test_units_that_are_none_are_refused(fails: Fail) -> None:
-    (problem,) = fails("TOOL PATH/A,TOOL,T\nGOTO/1,2,3\nEND-OF-PATH\n", units="feet")
-    assert problem.cure == "units are mm or inch"

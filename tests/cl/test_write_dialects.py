@@ -38,6 +38,7 @@ def refused(dialect: str, *operations: Operation) -> str:
     return str(caught.value)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("dialect", OTHERS)
 @pytest.mark.parametrize(("k", "degrees"), [(k, degrees) for k in range(4) for degrees in (20, 175, 181, 300)])
 def test_arcs_in_any_plane_and_of_any_angle(dialect: str, k: int, degrees: int, body: Body, tmp_path: Path) -> None:

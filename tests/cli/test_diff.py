@@ -222,6 +222,7 @@ REGISTERS = [
 ]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("machine", "text", "old", "new", "says"), REGISTERS, ids=[case[-1] for case in REGISTERS])
 def test_what_moves_the_tool_off_its_positions_is_compared(
     machine: str, text: str, old: str, new: str, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
@@ -379,7 +380,7 @@ def test_programs_are_compared_with_the_subprograms_that_are_named(
     ("part", "old", "new", "says"),
     [
         ("holes", "G84", "G74", "right-hand thread, after which the spindle turns clockwise against left-hand thread"),
-        ("holes", "M30", "M99", "end of the program against nothing"),
+        ("holes", "M30", "M99", "end of the program by M30 against nothing"),
         ("contour", "M5\nN270 M0", "\nN270 M0", "stop against stop while the spindle turns clockwise"),
     ],
 )

@@ -160,6 +160,7 @@ def test_a_program_that_is_clamped_as_told_is_verified_without_a_word(
     assert "there are none" in capsys.readouterr().err
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -387,6 +388,7 @@ def test_turns_that_were_asked_for_are_told_from_those_around_the_best(
 FAMILIES = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("source", FAMILIES)
 def test_what_is_converted_from_a_placed_program_says_how_the_part_is_clamped_and_no_more(
     tmp_path: Path, source: str

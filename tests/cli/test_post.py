@@ -53,6 +53,7 @@ BAD: dict[str, tuple[str | bytes, str, str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", BAD)
 def test_bad_input_ends_with_2_names_its_place_and_leaves_no_file(
     name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]

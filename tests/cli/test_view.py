@@ -4,10 +4,19 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.simulating import STOCK, TOOL, cuboid
 from tests.support.stepped_slot import write_slot
 from trunnion.cli import main
 from trunnion.simulation.meshes import save_mesh
+
+
+def test_the_verdict_of_the_page_is_said_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program, page = tmp_path / "a.mpf", tmp_path / "a.html"
+    program.write_text("G71 G90 G54 D1\nG0 X0 Y0 Z50\nG1 X9 F100\nM30\n")
+    assert main(["view", str(program), "--machine", "yl569", "--output", str(page)]) == 0
+    assert "\nFailed: " in capsys.readouterr().out
+    assert trunnion.write_view(program, machine="yl569", output=page).startswith("Failed: ")
 
 
 def test_it_takes_what_simulate_takes(tmp_path: Path) -> None:

@@ -144,6 +144,7 @@ def level_paths(draw: st.DrawFn) -> Toolpath:
     return Toolpath("made.cls", tuple(made))
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("source", sorted(SITES))
 @settings(max_examples=examples(3))
 @given(path=level_paths())
@@ -236,6 +237,7 @@ def test_a_rounded_helix_is_as_near_as_its_digits_go_where_it_is_written_as_line
     assert [check.key for check in checks] == ["tip"]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("source", sorted(SITES))
 def test_turns_at_the_pole_are_no_points_and_come_back_once(tmp_path: Path, source: str) -> None:
     site = SITES[source]

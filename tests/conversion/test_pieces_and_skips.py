@@ -29,6 +29,7 @@ def _converted(machine: str, text: str, folder: Path) -> ConvertResult:
     return trunnion.convert(program, machine=machine, to_cl=True)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", FAMILIES)
 def test_the_same_arcs_and_turns_in_other_words_become_the_same(machine: str, tmp_path: Path) -> None:
     kinds = ("an arc in two", "a full circle as two halves", "a turn back", "a turn further")
@@ -43,6 +44,7 @@ def test_the_same_arcs_and_turns_in_other_words_become_the_same(machine: str, tm
                 assert [each.code for each in found.problems] == [each.code for each in known.problems], edit
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", FAMILIES)
 def test_a_block_that_hangs_on_a_skipped_one_is_warned_of(machine: str, tmp_path: Path) -> None:
     lines = _posted(machine, "pocket", tmp_path).splitlines()

@@ -142,6 +142,7 @@ def test_a_tool_whose_name_is_a_number_is_called_by_its_name_again(tmp_path: Pat
     assert there_and_back(first, tmp_path) == first
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", ["yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt", "haas_umc750"])
 def test_a_stop_behind_the_last_point_stays_in_its_operation(machine: str, tmp_path: Path) -> None:
     text = HEAD + FOOT.replace("END-OF-PATH", "STOP\nEND-OF-PATH")

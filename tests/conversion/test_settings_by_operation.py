@@ -60,6 +60,7 @@ def convert(program: Path, one: str, two: str, **settings: str) -> ConvertResult
     return trunnion.convert(program, machine=one, to_machine=two, settings=settings)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("one", "two"), [*permutations(TOLERANCES, 2), ("dmu65", "mikron_600u")])
 def test_each_operation_keeps_its_tolerance_and_its_mode(one: str, two: str, tmp_path: Path) -> None:
     found = convert(posted(tmp_path, one, tolerances=(0.03, 0.005)), one, two)
@@ -79,6 +80,7 @@ def test_a_cl_file_says_the_tolerance_of_each_operation(machine: str, tmp_path: 
         assert said(again.text, MODES[machine]) == said(program.read_text(), MODES[machine])
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", TOLERANCES)
 @pytest.mark.parametrize("way", ["program", "operation"])
 def test_a_tolerance_that_is_given_precedes_that_of_the_program(machine: str, way: str, tmp_path: Path) -> None:
@@ -88,6 +90,7 @@ def test_a_tolerance_that_is_given_precedes_that_of_the_program(machine: str, wa
     assert [float(text) for text in said(found.text, TOLERANCES[machine])] == expected
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("one", "two"), [*permutations(OFFSETS, 2), ("yl569", "generic_head_head_ca")])
 def test_each_operation_keeps_its_work_offset(one: str, two: str, tmp_path: Path) -> None:
     program = posted(tmp_path, one, {"work_offset": "G54,F:G55"})
@@ -123,6 +126,7 @@ def test_a_default_of_the_other_machine_is_not_taken_for_what_the_program_says(
     assert set(said(found.text, said_so)) == {offset}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("machine", "setting", "values", "pattern"), [
     ("dmu65", "rotary_tolerance", ("0.1", "0.05"), r" TA([.\d]+)"),
     ("dmu65", "work_offset", ("1", "2"), r"Q339=\+(\d)"),

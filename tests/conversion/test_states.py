@@ -41,6 +41,7 @@ def test_the_page_has_the_table() -> None:
     assert PAGE.read_text(encoding="utf-8") == page()
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("state", STATES, ids=lambda state: state.name.replace(" ", "_"))
 def test_each_cell_of_the_table_is_so(state: State, tmp_path: Path) -> None:
     sample = SAMPLES[state.name]

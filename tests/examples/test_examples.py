@@ -43,6 +43,7 @@ def texts(notebook: Any) -> list[str]:
     return ["".join(one.get("text") or one["data"]["text/plain"] for one in cell.outputs) for cell in cells]
 
 
+@pytest.mark.nightly
 def test_the_notebook_runs_and_shows_what_it_holds() -> None:
     if "CI" not in os.environ:
         pytest.importorskip("nbclient")

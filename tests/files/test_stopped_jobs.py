@@ -51,7 +51,7 @@ def check_whole(folder: Path) -> bool:
 @pytest.mark.parametrize(
     ("how", "after"),
     [
-        (raise_ctrl_c, False),
+        pytest.param(raise_ctrl_c, False, marks=pytest.mark.nightly),
         pytest.param(raise_ctrl_c, True, marks=pytest.mark.nightly),
         (lambda: signal.raise_signal(signal.SIGINT), True),
     ],

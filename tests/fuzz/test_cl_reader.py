@@ -47,6 +47,7 @@ def test_random_letters_of_the_language_are_read_or_refused(folder: Path, text: 
     oracle.judge_cl(HEAD + text.encode() + b"\n" + FOOT, folder)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("seed", range(20))
 def test_mangled_files_are_read_or_refused(folder: Path, seed: int) -> None:
     rng = random.Random(seed)
@@ -84,6 +85,7 @@ NASTY = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("data", NASTY.values(), ids=NASTY.keys())
 def test_nasty_files_are_read_or_refused(folder: Path, data: bytes) -> None:
     oracle.judge_cl(data, folder)
@@ -95,6 +97,7 @@ CONSTANT = 40 << 20
 EACH_BYTE = 400
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("data", NASTY.values(), ids=NASTY.keys())
 def test_memory_grows_with_the_file_and_no_faster(folder: Path, data: bytes) -> None:
     tracemalloc.start()

@@ -28,6 +28,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("machines")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("seed", range(15))
 def test_a_mangled_definition_is_a_machine_or_refused(folder: Path, seed: int) -> None:
     rng = random.Random(seed)

@@ -81,6 +81,7 @@ ENDLESS = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("text", ENDLESS.values(), ids=ENDLESS.keys())
 def test_a_program_without_end_is_stopped_with_a_message(folder: Path, text: str) -> None:
     path = folder / "MAIN.H"
@@ -126,6 +127,7 @@ BOUNDED = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("text", BOUNDED.values(), ids=BOUNDED.keys())
 def test_numbers_and_depths_without_sense_are_named(folder: Path, text: str) -> None:
     run = klartext.judge(text.encode(), folder, "dmu65", limit=5000)
@@ -144,6 +146,7 @@ LARGE = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("data", LARGE.values(), ids=LARGE.keys())
 def test_memory_grows_with_the_program_and_no_faster(folder: Path, data: bytes) -> None:
     klartext.judge(data[:100], folder, "dmu65")
@@ -156,6 +159,7 @@ def test_memory_grows_with_the_program_and_no_faster(folder: Path, data: bytes) 
     assert peak <= (40 << 20) + 400 * len(data)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("seed", range(10))
 def test_a_program_runs_twice_alike(folder: Path, seed: int) -> None:
     rng = random.Random(seed)

@@ -60,11 +60,13 @@ def test_mangled_programs_are_run_or_refused(folder: Path, seed: int) -> None:
         oracle.judge_program(mangle(rng.choice(seeds.programs()), seeds.programs(), rng), folder)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("data", sorted(set(seeds.programs()) - {seeds.SUBPROGRAMS["SELF.SPF"]}))
 def test_what_is_mangled_is_read_when_it_is_whole(folder: Path, data: bytes) -> None:
     assert oracle.judge_program(data, folder) is not None
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("seed", range(30))
 def test_a_program_runs_twice_alike(folder: Path, seed: int) -> None:
     rng = random.Random(seed)
@@ -101,6 +103,7 @@ ENDLESS = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("text", ENDLESS.values(), ids=ENDLESS.keys())
 def test_a_program_without_end_is_stopped_with_a_message(folder: Path, text: str) -> None:
     path = folder / "MAIN.MPF"
@@ -122,6 +125,7 @@ TALKATIVE = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("text", TALKATIVE.values(), ids=TALKATIVE.keys())
 def test_what_a_loop_says_is_bounded(folder: Path, text: str) -> None:
     assert oracle.judge_program(text.encode(), folder, limit=3000) is None
@@ -161,6 +165,7 @@ BOUNDED = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("text", BOUNDED.values(), ids=BOUNDED.keys())
 def test_numbers_and_depths_without_sense_are_named(folder: Path, text: str) -> None:
     run = oracle.judge_program(text.encode(), folder, limit=5000)
@@ -227,6 +232,7 @@ LARGE = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("data", LARGE.values(), ids=LARGE.keys())
 def test_memory_grows_with_the_program_and_no_faster(folder: Path, data: bytes) -> None:
     oracle.judge_program(data[:100], folder)

@@ -52,6 +52,7 @@ def test_random_bytes_are_run_or_refused(folder: Path, language: Language, data:
     language.judge(data, folder)
 
 
+@pytest.mark.third
 @languages
 @pytest.mark.parametrize("seed", range(6))
 def test_mangled_programs_are_run_or_refused(folder: Path, language: Language, seed: int) -> None:
@@ -150,6 +151,7 @@ LARGE_IN_LANGUAGES = [
 ]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("language", "data"), LARGE_IN_LANGUAGES)
 def test_memory_grows_with_the_program_and_no_faster(folder: Path, language: Language, data: bytes) -> None:
     language.judge(data[:100], folder)

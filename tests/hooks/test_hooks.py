@@ -207,6 +207,7 @@ def test_files_of_hooks_are_called_one_after_the_other(part: Path) -> None:
     assert ";check the clamps (3x)21" in (posted(part, *files[::-1]).text or "")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("text", "line", "what"),
     [

@@ -113,6 +113,7 @@ def test_only_the_steps_that_are_asked_for_are_made(impeller: Impeller) -> None:
     assert [one.names for one in step_paths(impeller, None, ["STOCK_ROUGHING"])] == [("STOCK_ROUGHING",)]
 
 
+@pytest.mark.nightly
 def test_stages_within_a_step_tell_how_far_they_are(impeller: Impeller) -> None:
     told: dict[str, list[int]] = {}
 
@@ -196,6 +197,7 @@ def test_flanks_are_milled_from_both_sides_with_the_blade_on_the_right(
         list(step_paths(load_impeller(file), up_to_tilt))
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("change", "message"),
     [

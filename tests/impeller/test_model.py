@@ -48,6 +48,7 @@ def test_the_published_impeller_is_a_closed_solid_within_its_tolerance_and_stock
     assert (body - body.rotate([0.0, 0.0, 60.0])).volume() < 1e-3 * found.volume
 
 
+@pytest.mark.nightly
 def test_splitters_round_trailing_edges_and_a_bore(tmp_path: Path) -> None:
     changes = (
         ('trailing_edge = "cut"', 'trailing_edge = "round"\nsplitter_start = 0.5'),
@@ -60,6 +61,7 @@ def test_splitters_round_trailing_edges_and_a_bore(tmp_path: Path) -> None:
     assert found.volume == pytest.approx(81580.0, rel=5e-2)
 
 
+@pytest.mark.nightly
 def test_a_mixed_flow_impeller_of_three_sections_with_splitters_has_no_holes_beside_its_fillets() -> None:
     found = modelled(FOLDER / "mixed_flow.toml")
     assert found.deviation <= 0.05
@@ -99,6 +101,7 @@ def test_the_blade_of_others_is_where_its_published_flanks_are() -> None:
     assert np.max(off) < 0.06
 
 
+@pytest.mark.nightly
 def test_facets_are_as_fine_as_a_small_fillet_wants(tmp_path: Path) -> None:
     found = modelled(written(tmp_path, ("fillet_mm = 2.0", "fillet_mm = 0.05")), 0.3)
     assert found.volume == pytest.approx(83_210.0, abs=40.0)  # its fillets are half a mm³

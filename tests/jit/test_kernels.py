@@ -173,6 +173,7 @@ def test_what_a_process_left_unfinished_is_compiled_again_without_a_word_about_d
     assert not [line for line in found if "damaged" in line]
 
 
+@pytest.mark.nightly
 def test_a_second_process_compiles_from_the_back(folder: Path) -> None:
     modules = (folder / "some_kernels.py").read_text(encoding="utf-8")
     third = modules[modules.index('@kernel(writes="out")\ndef fold') :].replace("def fold", "def fold_again")
@@ -199,6 +200,7 @@ compile_ahead([k.double, k.fold, k.fold_again])
     ]
 
 
+@pytest.mark.nightly
 def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(folder: Path) -> None:
     path = os.pathsep.join((str(folder), str(ROOT / "src")))
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "kept"), "PYTHONPATH": path}
@@ -213,6 +215,7 @@ def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(f
         assert sum(lines[1].split()[which] == "False" for lines in printed) == 1
 
 
+@pytest.mark.nightly
 def test_what_another_checkout_compiled_meanwhile_is_completed_and_nothing_waits_for_itself(
     compiled: Compiled, kept: Path
 ) -> None:
@@ -268,6 +271,7 @@ print(store.cache_folder())
     assert run(folder, script) == [str(own)]
 
 
+@pytest.mark.nightly
 def test_without_a_folder_that_can_be_written_to_kernels_are_compiled_and_it_is_said_once(folder: Path) -> None:
     nowhere = folder / "some_inner.py" / "below"
     script = f"""

@@ -52,6 +52,7 @@ def options(settings: dict[str, str]) -> list[str]:
     return [f"--set={key}={value}" for key, value in settings.items()]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", CASES)
 def test_a_program_is_the_same_and_so_is_its_proof(name: str, tmp_path: Path, capfdbinary: Capture) -> None:
     case = CASES[name]
@@ -111,6 +112,7 @@ def test_a_verification_is_the_same(with_cl: bool, capfdbinary: Capture) -> None
     assert (code, found.passed) == (1, False)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", ["1_contour_rough", "2_hub_rough", "3_blade_finish"])
 @pytest.mark.parametrize("to_machine", [None, "yl569", "generic_head_head_ca", "dmu65"])
 def test_a_conversion_is_the_same(name: str, to_machine: str | None, capfdbinary: Capture) -> None:

@@ -126,6 +126,7 @@ def both(
     return got, joints_of(path, roomy(at)), 2.0 * (other.tip + _PRINTED) + turned
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("family", "asked"), WRITTEN, ids=[" ".join((name, *words)) for name, words in WRITTEN])
 @settings(max_examples=examples(8))
 @given(name=st.sampled_from(sorted(MODULES)), path=st.one_of(paths(), paths().map(still)))

@@ -136,6 +136,7 @@ def test_slides_solved_for_given_angles_are_those_of_the_branch(machine: Machine
         np.testing.assert_allclose(again[slides], branch[slides], rtol=0, atol=tolerance)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("key", shipped_machines())
 def test_a_tool_axis_along_the_table_axis_leaves_its_angle_free(key: str) -> None:
     machine = load_machine(key)
@@ -152,6 +153,7 @@ def test_a_tool_axis_along_the_table_axis_leaves_its_angle_free(key: str) -> Non
     np.testing.assert_allclose(forward(machine, out[None], 80.0)[0], tip, rtol=0, atol=TIP_MM)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("key", shipped_machines())
 @pytest.mark.parametrize("tilt", [2e-7, 1e-6, 1e-5, 1e-3])
 def test_a_tilt_far_too_small_for_an_arc_cosine_keeps_its_digits(key: str, tilt: float) -> None:
@@ -167,6 +169,7 @@ def test_a_tilt_far_too_small_for_an_arc_cosine_keeps_its_digits(key: str, tilt:
         np.testing.assert_allclose(np.abs(seconds), tilt, rtol=0, atol=1e-15)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("key", [key for key in shipped_machines() if key != "generic_nutated_b45_c"])
 def test_branch_0_is_the_positive_tilt_and_branch_1_the_negative_one(key: str) -> None:
     machine = load_machine(key)
@@ -216,6 +219,7 @@ def test_slides_that_a_rotary_axis_has_laid_in_one_plane_are_reported() -> None:
     assert np.isnan(out).any(axis=1).all()
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("key", shipped_machines())
 def test_a_winding_of_a_hundred_turns_costs_no_digits(key: str) -> None:
     machine = load_machine(key)

@@ -139,6 +139,7 @@ def test_every_third_party_machine_has_a_known_pose() -> None:
     assert set(THIRD_PARTY) == set(ROWS) - set(CONTRADICTIONS)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", sorted(THIRD_PARTY))
 def test_a_third_party_machine_puts_its_tool_where_it_is_known_to_be(name: str, tmp_path: Path) -> None:
     row, machine = THIRD_PARTY[name], load(ROWS[name], tmp_path)

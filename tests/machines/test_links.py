@@ -28,6 +28,7 @@ def test_spindle_and_workpiece_give_tip_and_tool_axis(machine: Machine, values: 
     np.testing.assert_allclose(found_axis, axis[0], atol=1e-12)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", shipped_machines())
 def test_links_of_shipped_machines_agree_with_the_forward_map(name: str) -> None:
     machine = load_machine(name)

@@ -85,6 +85,7 @@ def posted(control: str, folder: Path, text: str, units: str) -> tuple[Path, tru
     return program, trunnion.post(cl, machine=pair.file, output=program, settings={**words, "units": units})
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("control", IN_INCHES)
 def test_all_units_of_path_and_program_are_proven_and_move_alike(control: str, folder: Path) -> None:
     @settings(parent=FEW, deadline=None)
@@ -131,6 +132,7 @@ def test_every_family_of_paths_is_proven_in_inches(machine: str, control: str, p
     every()
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("control", IN_INCHES)
 @pytest.mark.parametrize("units", [MM, INCH])
 def test_verify_notices_the_wrong_unit(units: str, control: str, folder: Path) -> None:
@@ -152,6 +154,7 @@ def test_verify_notices_the_wrong_unit(units: str, control: str, folder: Path) -
         assert not trunnion.verify(edited, machine=pair.file, cl=folder / "part.cls").passed
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("control", IN_INCHES)
 @pytest.mark.parametrize(("source", "target"), [(MM, INCH), (INCH, MM), (INCH, INCH)])
 def test_programs_are_converted_from_unit_to_unit(source: str, target: str, control: str, folder: Path) -> None:

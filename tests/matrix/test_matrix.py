@@ -80,6 +80,7 @@ def test_all_cycles_that_a_control_has_are_proven(name: str, control: str, path:
     every()
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("mode", CYCLES)
 @pytest.mark.parametrize("control", CONTROLS)
 def test_cycles_are_refused_for_the_reason_that_is_said(control: str, mode: str, folder: Path) -> None:
@@ -90,6 +91,7 @@ def test_cycles_are_refused_for_the_reason_that_is_said(control: str, mode: str,
         check_refused(done, reasons[mode] if reasons is not None else "")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("control", ["heidenhain_tnc640", "linuxcnc", "sinumerik_840d"])
 @pytest.mark.parametrize("name", [name for name in MACHINES if load_machine(name).has_rotary_head] + ["dmu65", "yl569"])
 def test_where_a_head_turns_the_tool_a_program_without_tcp_is_for_one_length(

@@ -5,17 +5,17 @@ from pathlib import Path
 import pytest
 
 from tests.support.cures import ledger
-from tests.support.cures.cure import messages
+from tests.support.cures.cure import Cure, messages
 from tests.support.cures.tables import TABLES
 
+ROWS = [
+    (f"{name}-{k}-{cure.code}-{cure.variant}", cure) for name, cures in TABLES.items() for k, cure in enumerate(cures)
+]
 
-@pytest.mark.parametrize("name", sorted(TABLES))
-def test_cures_end_in_what_they_promise(name: str, tmp_path: Path) -> None:
-    faults = []
-    for k, cure in enumerate(TABLES[name]):
-        folder = tmp_path / str(k)
-        folder.mkdir()
-        faults += list(cure.faults(folder))
+
+@pytest.mark.parametrize("cure", [cure for _, cure in ROWS], ids=[name for name, _ in ROWS])
+def test_a_cure_ends_in_what_it_promises(cure: Cure, tmp_path: Path) -> None:
+    faults = list(cure.faults(tmp_path))
     assert not faults, "\n".join(faults)
 
 

@@ -36,6 +36,7 @@ def unjudged(found: trunnion.SimulationResult) -> list[tuple[int, str]]:
     return [(each.line, each.what.split(" ")[0]) for each in found.remarks if "not judged" in each.what]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", shipped_machines())
 def test_a_sound_bevel_has_no_finding_on_any_machine(tmp_path: Path, machine: str) -> None:
     """Plane on, X and Y at the height of home, then Z: the tool comes from above, and the height was never stated."""

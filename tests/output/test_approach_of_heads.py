@@ -38,6 +38,7 @@ def post(machine: str | Path, cl: Path, **settings: SettingValue) -> PostResult:
     return trunnion.post(cl, machine=machine, settings={k: v for k, v in settings.items() if v is not None})
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("cl", [POCKET, CASES / "tilted_flood.cls", CASES / "holes.cls"], ids=lambda cl: cl.stem)
 @pytest.mark.parametrize(("control", "plane"), PLANES)
 def test_every_chain_goes_to_every_plane(control: str, plane: str | None, cl: Path, tmp_path: Path) -> None:

@@ -86,6 +86,7 @@ def places(run: Run, skipped: set[int]) -> Ints:
     return np.flatnonzero(goes & kept & ~run.machine_frame)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
 def test_blocks_behind_skipped_ones_do_the_same(
@@ -169,6 +170,7 @@ END-OF-PATH
 """
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("axis", ["0,1", "-0.5,0.8660254"])
 @pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "dmu65", "yl569", "hs664rt", "xyzac_trt"])
 def test_a_hole_by_motion_that_may_be_skipped_passes_with_the_way_to_it(
@@ -208,6 +210,7 @@ END-OF-PATH
 """
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("height", "skipped", "axis"), [
     (50, "0,0,0", "0,1"), (50, "0,0,0", "-0.5,0.8660254"), (5, "-10,0,0", "0,1"), (50, "20,0,0", "0,1"),
 ])  # fmt: skip

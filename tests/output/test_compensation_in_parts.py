@@ -24,6 +24,7 @@ LANGUAGES = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("skipped", SKIPPED.values(), ids=SKIPPED.keys())
 @pytest.mark.parametrize("machine", LANGUAGES)
 def test_no_part_ends_within_compensation(machine: str, skipped: str, tmp_path: Path) -> None:

@@ -60,6 +60,7 @@ def test_feeds_are_held_against_their_digits(
     assert (f"part.cls:10: {told} [CTL320]\n" in err) if told else "a feed of" not in err
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("feed", ["0.025", "0.015", "0.005", "0.0143", "0.0125"])
 @pytest.mark.parametrize("machine", ["yl569", "matsuura_mx330", "xyzac_trt", "dmu65", "hs664rt"])
 @pytest.mark.parametrize("form", ["modal", "cycle", "modal in a cycle"])

@@ -29,6 +29,7 @@ def cycles(lines: list[str]) -> list[str]:
     return [line for line in lines[at[0] : at[-1] + 1] if not line.startswith(";")]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("words", "call"),
     [
@@ -135,6 +136,7 @@ def test_compensation_in_holes_is_refused_with_its_line(lines: str, post: Post) 
         post(HEAD + lines + "GOTO/20,0,0\nCUTCOM/OFF\nCYCLE/OFF\n" + FOOT)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("words", "what"),
     [

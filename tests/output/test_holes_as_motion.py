@@ -68,6 +68,7 @@ def failed(lines: Sequence[str], cl: Path, folder: Path) -> list[str]:
     return [check.key for check in failures(proof(lines, cl, folder))]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("control", CONTROLS)
 def test_every_control_makes_holes_as_motion_if_that_is_wished(control: str, tmp_path: Path) -> None:
     pair = pair_of(control, "generic_head_table_bc", tmp_path)
@@ -77,6 +78,7 @@ def test_every_control_makes_holes_as_motion_if_that_is_wished(control: str, tmp
         assert "2 holes, 2 of them by motion" in done.err
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("control", ["fidia_nc15", "heidenhain_tnc640", "sinumerik_840d"])
 @pytest.mark.parametrize("settings", [("cycles=off",), ("mode=tcp",)])
 @pytest.mark.parametrize("back", [True, False])
@@ -243,6 +245,7 @@ def test_the_cl_files_own_plunges_are_no_holes(tmp_path: Path) -> None:
             assert failed(lines[:k] + lines[k + 1 :], cl, tmp_path), line
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "xyzac_trt", "dmu65", "yl569", "hs664rt"])
 @pytest.mark.parametrize("tool", [1, 4])
 def test_the_next_operation_may_begin_where_the_last_hole_ends(tool: int, machine: str, tmp_path: Path) -> None:

@@ -92,6 +92,7 @@ def test_a_tool_axis_that_hardly_leans_is_proven(
         assert mode is not MachiningMode.THREE_AXIS
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", sorted(MACHINES))
 @pytest.mark.parametrize("tilt", [2e-5, 3e-3, 0.5])
 def test_a_tilt_that_is_another_one_is_found(name: str, tilt: float, folder: Path) -> None:

@@ -128,7 +128,9 @@ def written(
         parse_plan_options({}, control),
         control_capabilities(control, {}),
     )
-    program = Program(model, control, planned.motions, {"tool": "7", "standing_spindle": "allowed"}, toolpath.file)
+    # Rotary axes that turn before any work offset, as in published programs, are elsewhere than behind one.
+    given = {"tool": "7", "standing_spindle": "allowed", "safe_start": "all"}
+    program = Program(model, control, planned.motions, given, toolpath.file)
     if any(problem.severity is Severity.ERROR for problem in check_program(program)):
         return None
     one = folder / f"one{control.extension}"

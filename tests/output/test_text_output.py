@@ -39,6 +39,7 @@ def warnings(result: trunnion.PostResult) -> list[str]:
     return [each.what for each in result.problems if each.severity is Severity.WARNING and "is written" in each.what]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", ANY)
 @pytest.mark.parametrize("encoding", ["utf-8", "ascii", "latin-1", "gbk"])
 def test_a_program_is_written_and_read_in_its_encoding(machine: str, encoding: str, tmp_path: Path) -> None:

@@ -126,6 +126,7 @@ END-OF-PATH
 """
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("more", ["", ",0.6,0,0.8"])
 def test_the_tool_leaves_along_its_axis_before_it_goes_home(machine: str, more: str, tmp_path: Path) -> None:
@@ -176,6 +177,7 @@ CYCLE/OFF
 """
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("end", ["", "SPINDL/OFF\nCOOLNT/OFF\n"])
 @pytest.mark.parametrize("machine", [*MACHINES, "generic_head_head_ca", "haas_umc750"])
 def test_after_a_hole_there_is_no_retract_and_no_second_hole(machine: str, end: str, tmp_path: Path) -> None:

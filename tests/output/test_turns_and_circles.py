@@ -67,6 +67,7 @@ def blocks(text: str, machine: str, folder: Path) -> tuple[list[str], int]:
     return [line for line in lines if re.search(r"\b(?:G1|G2|G3|C|CP|L)? ?[XI]\S*", line)], circles
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("tilt", [0.0, 35.0])
 @pytest.mark.parametrize(
@@ -94,6 +95,7 @@ def test_an_arc_that_rises_by_a_last_digit_stays_one(machine: str, rise: float, 
     assert not [line for line in lines if "CP " in line]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("tilt", [0.0, 35.0])
 @pytest.mark.parametrize("off", [0.0003, 0.001, 0.0029, 0.0035, 0.015, -0.0195])

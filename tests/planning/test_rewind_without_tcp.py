@@ -107,6 +107,7 @@ FAULTS: dict[str, Callable[[list[str], int, int], list[str]]] = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("fault", sorted(FAULTS))
 @pytest.mark.parametrize("asked", [True, False], ids=["with a tolerance of the tip", "without"])
 def test_the_proof_checks_the_tip_during_a_turn(fault: str, asked: bool, tmp_path: Path) -> None:

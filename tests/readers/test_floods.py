@@ -69,6 +69,19 @@ def test_the_rest_of_many_kinds_is_counted() -> None:
     assert first_of_kinds(problems[:3], 3) == (problems[:3], 0)
 
 
+def test_other_words_are_other_kinds() -> None:
+    def unknown(line: int, variant: str, **parameters: object) -> Problem:
+        return Problem("a.nc", line, Wording("NC211", variant, **parameters))
+
+    problems = [unknown(k, "unknown_g_word", code=f"9{k % 3}.1") for k in range(1, 13)]
+    problems += [unknown(k, "unknown_word", word=f"V{k}.5") for k in range(20, 30)]
+    found, left = first_of_kinds(problems, 10)
+    assert [each.line for each in found] == [1, 2, 3, 20]
+    assert left == 0
+    assert "the first of 4 of this kind" in found[0].what
+    assert "the first of 10 of this kind" in found[3].what
+
+
 def test_a_program_in_place_of_a_cl_file_is_named(program: Path, capsys: Capture) -> None:
     for command in (["info"], ["post", "--machine", "yl569", "--output", "-"]):
         assert main([*command[:1], str(program), *command[1:]]) == 2

@@ -182,6 +182,27 @@ def test_words_that_no_key_has_are_mistakes(machine: str, tmp_path: Path) -> Non
             read(tmp_path, machine, "M30\n", keys)
 
 
+@pytest.mark.parametrize("machine", [FANUC, LINUXCNC, FIDIA, SINUMERIK, KLARTEXT])
+def test_a_list_of_other_things_is_told_what_it_may_have(machine: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError) as found:
+        read(tmp_path, machine, "M30\n", "block_ends = [1]")
+    assert 'block_ends is [1]; write a list of some of "*", ";", "$", "LF", "EOB"' in str(found.value)
+
+
+@pytest.mark.parametrize("machine", [FANUC, LINUXCNC, FIDIA, SINUMERIK, KLARTEXT])
+def test_one_sign_is_no_comment_and_end_of_block_at_once(machine: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match='block_ends has ";", with which more_comments begins comments; leave it in'):
+        read(tmp_path, machine, "M30\n", 'more_comments = [";", "!"]\nblock_ends = [";"]')
+
+
+@pytest.mark.parametrize("sign", ["O", ":", "%"])
+def test_a_number_by_another_sign_begins_a_subprogram(sign: str, tmp_path: Path) -> None:
+    text = f"%\n{sign}1\nG21 G90 G94 G1 X5. F9.\nM98 P77\nX6.\nM30\n{sign}77 (SUB)\nX9.\nM99\n%\n"
+    run = read(tmp_path, FANUC, text, 'program_numbers = ["%"]')
+    assert run.errors == ()
+    assert (run.xyz[1:, 0] - run.xyz[0, 0]).tolist() == [4.0, 1.0]
+
+
 def test_each_family_has_its_keys_only(tmp_path: Path) -> None:
     assert {key.name for key in keys_of("heidenhain_tnc640")} == {"more_comments", "block_ends"}
     with pytest.raises(InputError, match="start_plane"):

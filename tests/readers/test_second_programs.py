@@ -47,6 +47,7 @@ def test_an_o_number_begins_the_next_program_also_behind_one_without_number(mach
     assert _codes(machine, f"{_HEADS[machine]}{_CUT}M98 P5\nM30\nO5\nX20.\nM99\n%\n", tmp_path) == []
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "xyzac_trt", "hs664rt"])
 def test_a_text_of_many_lines_is_not_read_to_its_end(machine: str, tmp_path: Path) -> None:
     letters = random.Random(5)

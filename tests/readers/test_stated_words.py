@@ -75,6 +75,13 @@ def test_a_definition_that_states_it_is_named_too_and_strict_takes_it(tmp_path: 
     found = trunnion.verify(program, machine=str(ours), strict=True)
     assert found.standing.stated == ("G65 P9810 comes back (stated)", "#100 = 2 (stated)")
     assert "only this call" not in next(check.summary for check in found.checks if check.key == "basis")
+    other = trunnion.verify(program, machine=str(ours), settings={variable: 3}, assume={word: "moves nothing"})
+    assert other.standing.stated == (
+        "G65 P9810 moves nothing (stated; the definition has comes back)",
+        "#100 = 3 (stated; the definition has 2)",
+    )
+    same = trunnion.verify(program, machine=str(ours), settings={variable: 2})
+    assert same.standing.stated == found.standing.stated
 
 
 @pytest.mark.parametrize(
@@ -169,6 +176,19 @@ def test_what_a_call_states_for_nothing_is_warned_of(machine: str, tmp_path: Pat
     assert told == [unknown, other]
     assert found.standing.warnings == 2
     assert found.standing.stated == (f"{word} moves nothing (stated)", f"{variable} = 2 (stated)")
+
+
+def test_a_comparison_names_what_neither_program_needs(tmp_path: Path) -> None:
+    text, variable, word = PROGRAMS["matsuura_mx330"]
+    program, other = tmp_path / "a.nc", tmp_path / "b.nc"
+    program.write_text(text)
+    other.write_text(text.replace(variable, "2."))
+    settings = {variable: 2.0, "#107": 3.0}
+    found = trunnion.diff(program, other, machine="matsuura_mx330", settings=settings, assume={word: "moves nothing"})
+    assert found.same, found.first
+    assert found.not_needed == ("#107",)
+    assert next(iter(found.lines())).startswith("same")
+    assert "#107 is stated, and neither program needs it" in list(found.lines())[-1]
 
 
 def test_a_call_may_be_stated_without_a_blank(tmp_path: Path) -> None:

@@ -51,6 +51,7 @@ ENDLESS = {
 TO_THE_END = "loop"
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", ENDLESS)
 def test_what_never_ends_is_ended_with_its_line(name: str, tmp_path: Path) -> None:
     machine, text = ENDLESS[name]

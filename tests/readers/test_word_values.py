@@ -42,7 +42,7 @@ WORDS = [
     ("matsuura_mx330", ["G43 H1 Z9.\nG69"], [f"{PLANE}\nG43 H1 Z9.\nG69", "G43 H1 Z9.\nG68.2 X0 Y0 Z0 I0 J0 K0"]),
     ("matsuura_mx330", ["M29 S99"], ["G84 X1. Z-9. R1. J2", "G33 Z-9. F1.", "G31 Z-9. F9.", f"{PLANE} P1"]),
     ("haas_umc750", ["G187", "G187 E.02", "M83"], ["G187 P", "M39", "M41", "M50", "M82", "M86", "M138", "G60 X5."]),
-    ("xyzac_trt", ["M52 P0", "G92 X5\nG92.3", "M110"], ["M52", "M52 P1", "G92.3", "M129", "G38.2 Z0 F9", "G33 Z0 K1"]),
+    ("xyzac_trt", ["M52", "M52 P1", "G92 X5\nG92.3", "M110"], ["G92.3", "M129", "G38.2 Z0 F9", "G33 Z0 K1"]),
     ("dmu65", ["M103", "M110", "M111", "M124", "M124 T.1", "M138", "M138 A C"], ["M103 F20", "M109", "M138 A"]),
     ("dmu65", ["FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"], ["M98", "M112 T.5", "M144", "M150", "LN X+1 TX+0 TZ+1"]),
     ("dmu65", ["CYCL DEF 251"], ["CYCL DEF 239 Q570=+0", "CYCL DEF 220", "FUNCTION TCPM F CONT AXIS POS"]),

@@ -37,6 +37,7 @@ def everything(run: Run) -> str:
     return repr(([column.tolist() for column in columns], events, [error.text for error in run.errors]))
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("base", "block"), [(base, block) for base, own in BLOCKS.items() for block in own[1]])
 def test_a_word_without_effect_takes_only_itself_out_of_a_block(base: str, block: str, tmp_path: Path) -> None:
     word = BLOCKS[base][0]

@@ -166,6 +166,7 @@ def mutants(kind: str, content: Json, within: str) -> Iterator[tuple[str, Json]]
         table.update(before)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("kind", NAMES)
 def test_the_file_of_a_schema_is_what_its_loader_asks_for(kind: str) -> None:
     """``python -m tests.support.schemas`` writes them."""
@@ -173,6 +174,7 @@ def test_the_file_of_a_schema_is_what_its_loader_asks_for(kind: str) -> None:
     Draft7Validator.check_schema(json.loads(text_of(kind)))
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("kind", "file"), [(kind, file) for kind in NAMES for file in KINDS[kind].files])
 def test_a_schema_takes_what_is_shipped(kind: str, file: str) -> None:
     path = Path(file) if file.endswith(".toml") else Path(str(KINDS[kind].library)) / f"{file}.toml"
@@ -180,6 +182,7 @@ def test_a_schema_takes_what_is_shipped(kind: str, file: str) -> None:
     assert [error.message for error in Draft7Validator(schema(kind)).iter_errors(own)] == []
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("kind", "file", "within"), [(kind, *each) for kind in NAMES for each in DOCUMENTS[kind]])
 def test_schema_and_loader_refuse_the_same(kind: str, file: str, within: str) -> None:
     content, path = document(kind, file), Path(file)
@@ -201,6 +204,7 @@ def test_schema_and_loader_refuse_the_same(kind: str, file: str, within: str) ->
 EXTENDS = 'extends = "yl569"\nname = "Ours"\n'
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("text", "good"),
     [
@@ -231,6 +235,7 @@ def test_a_machine_that_extends_another_is_judged_alike(text: str, good: bool) -
 PART = 'machine = "yl569"\ncl = ["a.cls"]\noutput = "a.mpf"\n'
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("text", "good"),
     [

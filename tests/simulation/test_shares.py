@@ -76,6 +76,7 @@ def test_a_part_that_is_clamped_otherwise_than_it_is_drawn_is_divided_too(
     assert facts(joined(nc, turned, shares_of(nc, turned, 2))) == facts(found)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("sizes", [(1, 1, 1), (64, 64, 64), (65, 200, 700), (1000, 130, 10)])
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 50])
 def test_each_tile_is_dealt_out_once_and_evenly(sizes: tuple[int, int, int], count: int) -> None:
@@ -240,6 +241,7 @@ _SOUND = {
 }  # fmt: skip
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("wrong", [
     {"count": _npy((4_000_000_000, 30), np.int32)},
     {"ends": _npy((4_000_000_000,), float)},
@@ -284,6 +286,7 @@ def _chunk(blocks: list[list[int]], rows: list[int], values: int, places: int) -
     return content.getvalue()
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("wrong", [
     ([[3, REMOVED, 2]], [5, 6], 2, 0),
     ([[-1, REMOVED, 2]], [5, 6], 2, 0),

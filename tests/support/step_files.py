@@ -162,9 +162,13 @@ class StepFile:
         """The shape of the product that was added last."""
         return self._shape
 
+    def text(self) -> str:
+        """The whole file."""
+        return _HEAD + "\n".join(self._lines) + "\nENDSEC;\nEND-ISO-10303-21;\n"
+
     def save(self, path: Path) -> Path:
         """Write the file."""
-        path.write_text(_HEAD + "\n".join(self._lines) + "\nENDSEC;\nEND-ISO-10303-21;\n", encoding="ascii")
+        path.write_text(self.text(), encoding="ascii")
         return path
 
 

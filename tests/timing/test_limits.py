@@ -134,6 +134,7 @@ def test_the_passes_find_what_lowering_without_order_finds(path: Path) -> None:
     np.testing.assert_allclose(piece_seconds(path, EVEN), naive_seconds(path, EVEN), rtol=1e-7, atol=1e-10)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("length", [1e-4, 0.01, 0.3, 2.0, 20.0, 300.0])
 @pytest.mark.parametrize("feed", [60.0, 6000.0, math.inf])
 def test_one_straight_move_under_jerk_is_that_of_the_textbook(length: float, feed: float) -> None:

@@ -170,6 +170,7 @@ def posted(tmp_path_factory: pytest.TempPathFactory) -> Posted:
     return post
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("machine", "written", "becomes", "check"), FAULTS)
 def test_a_fault_made_by_hand_is_caught(
     machine: str, written: str, becomes: str, check: str, posted: Posted, capsys: pytest.CaptureFixture[str]

@@ -101,6 +101,7 @@ class _Holes:
         return {check.key for check in found.checks if check.state == "FAIL"}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("retract", ["RTRCTO,10,", ""])
 @pytest.mark.parametrize("machine", _MACHINES)
 def test_a_rapid_between_holes_may_be_made_in_pieces(machine: str, retract: str, tmp_path: Path) -> None:
@@ -114,6 +115,7 @@ def test_a_rapid_between_holes_may_be_made_in_pieces(machine: str, retract: str,
     assert holes.failing_with(across, "X-15", f"X-1{point} Z+1{point}")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", _MACHINES)
 def test_a_line_into_a_hole_may_be_made_in_pieces(machine: str, tmp_path: Path) -> None:
     holes = _Holes(machine, PATHS["two_holes"], tmp_path)

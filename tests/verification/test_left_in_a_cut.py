@@ -77,3 +77,27 @@ def test_a_simulation_refuses_cuts_from_where_nobody_knows() -> None:
     assert [(remark.code, remark.severity) for remark in found.remarks if remark.code == "SIM143"] == [
         ("SIM143", Severity.ERROR)
     ]
+
+
+@pytest.mark.parametrize(
+    ("first", "fault"),
+    [
+        ("", False),  # where the program begins
+        ("G0 X1. Y1. Z5.\nG1 Z-1. F100.\nX2.\nG0 Z5.\n", False),
+        ("G0 X1. Y1. Z5.\nG1 Z-1. F100.\nX2.\nZ5. F8000.\n", False),  # its rapids are feeds
+        ("G0 X1. Y1. Z5.\nG1 Z-1. F100.\nX2.\n", True),  # in the midst of a cut
+        ("G0 X1. Y1. Z5.\nG1 Z-1. F100.\n", True),
+    ],
+)
+@pytest.mark.parametrize(
+    ("home", "is_home"), [("G53 G0 Z0.", True), ("G91 G28 Z0.\nG90", True), ("G53 G0 Z-9.", False)]
+)
+def test_a_feed_along_the_table_at_home_is_none(
+    first: str, fault: bool, home: str, is_home: bool, tmp_path: Path
+) -> None:
+    """A post whose rapids are written as feeds goes above the part so."""
+    program = tmp_path / "a.nc"
+    head = "%\nO1\nG21 G90 G54 G94\nS100 M3\n"
+    program.write_text(f"{head}{first}{home}\nG1 X9. Y9. F8000.\nZ5.\nZ-1. F100.\nX12.\nZ5. F8000.\nM30\n")
+    found = check(verify(program, machine="matsuura_mx330"), "modal")
+    assert any("cuts from a position of the machine" in place.text for place in found.places) is (fault or not is_home)

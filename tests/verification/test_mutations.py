@@ -76,6 +76,7 @@ def test_every_fault_that_changes_the_work_is_reported_at_its_block(name: str, t
     assert caught > 0.9 * told  # of a third of the faults; 0.95 of all of them
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("line", "new", "verdict", "what"),
     [

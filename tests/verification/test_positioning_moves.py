@@ -36,8 +36,10 @@ def run_of(rows: list[tuple[int, bool, bool, bool]]) -> Any:
         def __len__(self) -> int:
             return len(rows)
 
+    machine = SimpleNamespace(linear=(), workpiece_zero=None, tool_length=None)
     return Run(
-        machine=SimpleNamespace(linear=(), workpiece_zero=None, tool_length=None),
+        machine=machine,
+        machine_at=lambda _: machine,
         programmed=np.array([words for words, *_ in rows], np.uint8),
         kind=np.where([rapid for _, rapid, *_ in rows], Kind.RAPID, Kind.LINEAR).astype(np.uint8),
         state=SimpleNamespace(machine_frame=frame.steps(len(rows), np.bool_), tcp=tcp),

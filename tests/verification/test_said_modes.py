@@ -8,6 +8,8 @@ import pytest
 
 import trunnion
 from tests.support.locations import TESTS
+from trunnion.readers.families.heidenhain import words as klartext
+from trunnion.readers.families.sinumerik import unseen_modes, words
 
 CASES = TESTS / "data" / "cases"
 
@@ -24,11 +26,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("posted")
 
 
-def compared(folder: Path, machine: str, one: str, two: str) -> trunnion.Comparison:
+def compared(folder: Path, machine: str, one: str, two: str, *, path: bool = False) -> trunnion.Comparison:
     paths = folder / "one.nc", folder / "two.nc"
-    for path, text in zip(paths, (one, two), strict=True):
-        path.write_text(text, encoding="utf-8")
-    return trunnion.diff(*paths, machine=machine)
+    for file, text in zip(paths, (one, two), strict=True):
+        file.write_text(text, encoding="utf-8")
+    return trunnion.diff(*paths, machine=machine, path=path)
 
 
 #: Machine, CL file, what is found, what takes its place the first time, what the difference says.
@@ -53,6 +55,24 @@ FAULTS = [
     ("dmu65", "tilted_flood", r"(M9\n\d+ L Z\+560 R0 FMAX M91\n\d+) PLANE RESET STAY", r"\1 M9", "plane is on"),
     ("dmu65", "contour", "PLANE RESET STAY", "M9", "tilted plane stated against not stated"),
     ("dmu65", "tilted_flood", "HSC-MODE:1", "HSC-MODE:0", "HSC-MODE 1 against 0"),
+    ("yl569", "tilted_flood", r"\bM30\b", "M2", "end of the program by M30 against end of the program by M2"),
+    ("dmu65", "tilted_flood", r"\bM30\b", "M2", "end of the program by M30 against end of the program by M2"),
+    ("matsuura_mx330", "tilted_flood", r"\bM30\b", "M2", "end of the program by M30 against end of the program by M2"),
+    ("haas_umc750", "tilted_flood", r"\bM30\b", "M2", "end of the program by M30 against end of the program by M2"),
+    ("xyzac_trt", "tilted_flood", r"\bM2\b", "M30", "end of the program by M2 against end of the program by M30"),
+    ("hs664rt", "tilted_flood", r"\bM02\b", "M30", "end of the program by M2 against end of the program by M30"),
+    ("dmu65", "contour", r"(TOOL CALL \d+) Z", r"\1", "tool axis stated against not stated"),
+    ("yl569", "contour", r"(N\d+) (G1 )", r"\1 G9 \2", "exact stop in one block not stated against 1"),
+    ("matsuura_mx330", "contour", r"(N\d+) (G1 )", r"\1 G9 \2", "exact stop in one block not stated against 1"),
+    ("haas_umc750", "contour", r"(N\d+) (G1 )", r"\1 G9 \2", "exact stop in one block not stated against 1"),
+    ("yl569", "contour", " FNORM", " FNORM WALIMOF", "limits of the working area not stated against WALIMOF"),
+    ("yl569", "contour", " FNORM", " FNORM ACC[X]=50", "ACC[X] not stated against 50"),
+    ("yl569", "contour", r"(N\d+) (G1 )", r"\1 STOPRE\n\2", "STOPRE not stated against 1"),
+    ("yl569", "contour", r"(N\d+) (G41)", r"\1 G451 \2", "corners of the contour not stated against G451"),
+    ("xyzac_trt", "contour", " G91.1", " G91.1 M49", "override of the feed not stated against P0"),
+    ("xyzac_trt", "contour", r"\nN\d+ G1 ", r"\nM62 P1\g<0>", "digital output 1 not stated against M62"),
+    ("dmu65", "contour", r"\n(\d+) L ([^\n]* F\d)", r"\n\1 M94 C\n\1 L \2", "M94 C not stated against 1"),
+    ("dmu65", "contour", r"\n(\d+) L ([^\n]* F\d)", r"\n\1 M108\n\1 L \2", "oversize not stated against M108"),
     ("matsuura_mx330", "contour", r"(G41 D2\n[^\n]*\n)", r"\1M8\nM8\n", "2 blocks without motion within radius comp"),
 ]  # fmt: skip
 
@@ -79,3 +99,62 @@ def test_a_mode_said_again_is_none(machine: str, folder: Path) -> None:
     old, new = again.get(machine, (" PLANE RESET STAY", " PLANE RESET STAY\n3 PLANE RESET STAY"))
     assert old in text
     assert compared(folder, machine, text, text.replace(old, new, 1)).same
+
+
+#: Control, what stands before the first work offset, and behind it, in place of the other order.
+TURNS_BEFORE = [
+    ("yl569", r"(N\d+ G0 B[^\n]*\n)((?:N\d+ [^\n]*\n){3})(N\d+ G54\n)"),
+    ("matsuura_mx330", r"()(N\d+ G54\n)(N\d+ G0 A[^\n]*\n)"),
+    ("haas_umc750", r"()(N\d+ G54\n)(N\d+ G0 B[^\n]*\n)"),
+]
+
+
+@pytest.mark.parametrize(("machine", "order"), TURNS_BEFORE)
+def test_rotary_axes_before_any_work_offset_are_elsewhere_than_behind_it(
+    machine: str, order: str, folder: Path
+) -> None:
+    text = posted(machine, "contour", folder)
+    changed = re.sub(order, r"\3\1\2", text, count=1)
+    assert changed != text
+    result = compared(folder, machine, text, changed)
+    assert result.first is not None
+    assert "stated before any work offset" in result.first.text
+
+
+def test_every_word_of_a_sinumerik_without_effect_on_the_path_has_a_mode_or_does_nothing() -> None:
+    # Those that show in tolerances, tools and feeds, or are errors.
+    elsewhere = words.TOLERANCES | words.TOOL_DELTAS | {"OTOL", "FB", "FD", "FDA", "FZ", "FP", "G9"}
+    g_words = {f"G{code}" for code in words.G_WITHOUT_PATH_EFFECT}
+    known = words.WITHOUT_PATH_EFFECT | words.WITHOUT_PATH_EFFECT_VALUES | words.WITHOUT_PATH_EFFECT_CALLS | g_words
+    tables = (elsewhere, unseen_modes.MODES.keys(), unseen_modes.VALUES, unseen_modes.ONCE, unseen_modes.NOTHING)
+    assert known == set().union(*tables)
+    assert sum(len(each) for each in tables) == len(known)
+
+
+def test_every_m_function_of_klartext_without_effect_on_the_path_has_a_mode_or_acts_once() -> None:
+    warned = {code for code, (_, error) in klartext.M_NOT_SIMULATED.items() if not error}
+    known = {*klartext.M_WITHOUT_PATH_EFFECT, *warned}
+    of_display, refused = {145}, {150}
+    assert known - of_display == (klartext.M_UNSEEN_MODES.keys() | klartext.M_UNSEEN_ONCE) - refused
+
+
+#: The first leg of an approach, by machine, and the same place in two legs or from a greater height.
+APPROACHES = [
+    ("yl569", r"(N\d+ G0 X\S+ Y\S+) (Z)(\S+)", [r"\1\n\2\3", r"\1 Z99.\nZ\3"]),
+    ("matsuura_mx330", r"(N\d+ G43 H\d+) (Z)(\S+)", [r"\1 Z99.\nZ\3"]),
+    ("dmu65", r"(\n\d+ L X\S+ Y\S+) (Z)(\S+) FMAX", [r"\1 FMAX\1 \2\3 FMAX", r"\1 Z+99 FMAX\1 \2\3 FMAX"]),
+]
+
+
+@pytest.mark.parametrize(("machine", "leg", "others"), APPROACHES)
+def test_a_path_may_be_approached_from_home_in_more_legs(
+    machine: str, leg: str, others: list[str], folder: Path
+) -> None:
+    text = posted(machine, "contour", folder)
+    low = re.sub(r"Z\+?99\.?", "Z-99", others[-1])
+    for each, is_same in [*((other, True) for other in others), (low, False)]:
+        changed = re.sub(leg, each, text, count=1)
+        assert changed != text
+        assert compared(folder, machine, text, changed, path=True).same is is_same, each
+        if is_same and "99" not in each:
+            assert not compared(folder, machine, text, changed).same

@@ -29,6 +29,7 @@ def skipping(program: Path, word: str) -> Path:
     return other
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("word", [" M9", r" Z\+?2\.?0*( R0)?( FMAX)?"])
 def test_a_program_whose_blocks_may_be_skipped_is_another_one(machine: str, word: str, tmp_path: Path) -> None:
@@ -101,6 +102,7 @@ CL = (
 )
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", [*MACHINES, "generic_head_head_ca"])
 def test_what_a_cl_file_lets_skip_is_sound_when_it_is_skipped(machine: str, tmp_path: Path) -> None:
     """Words that the block behind repeats are needed once the blocks before it are skipped."""
@@ -279,6 +281,7 @@ def test_an_opskip_of_which_no_block_may_be_skipped_fails(machine: str, within: 
     assert abs(place.nc_line - first - 1) <= 12  # of holes: the block behind them
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 def test_one_of_two_opskip_may_not_be_lost(machine: str, tmp_path: Path) -> None:
     cl, program = tmp_path / "p.cls", tmp_path / "p.nc"
@@ -319,6 +322,7 @@ _ON = "GOTO/-30,30,-5\nRAPID\nGOTO/-30,30,40\nEND-OF-PATH\n"
 _AGAIN = "RAPID\nGOTO/20,40,2\nFEDRAT/MMPM,500\nGOTO/20,40,-5\n"
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize(
     ("rest", "said"),

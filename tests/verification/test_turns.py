@@ -59,6 +59,7 @@ def between_planes(lines: list[str], retract: str) -> list[int]:
     return [k for k in at if holes[0] < k < at[-1]]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", sorted(RETRACTS))
 @pytest.mark.parametrize("with_cl", [True, False])
 def test_a_retract_missing_before_the_tilt_is_found(
@@ -76,6 +77,7 @@ def test_a_retract_missing_before_the_tilt_is_found(
         assert "at the part" in summary
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", sorted(RETRACTS))
 def test_a_retract_to_another_place_is_no_retract(program: Programs, turns: Turns, machine: str) -> None:
     """The tool goes up by a little instead, in the workpiece's coordinates."""

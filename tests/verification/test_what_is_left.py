@@ -29,6 +29,7 @@ def another(folder: Path, lines: list[str]) -> Path:
     return file
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("machine", "word"), LEFT)
 def test_what_a_program_leaves_on_is_a_difference(machine: str, word: str, tmp_path: Path) -> None:
     lines = posted(machine, tmp_path)
@@ -91,6 +92,7 @@ CONDITIONS = [
 ]  # fmt: skip
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("source", "machine", "words", "others", "what"), CONDITIONS)
 def test_conditions_that_the_path_does_not_show_are_differences(
     source: Path, machine: str, words: str, others: str, what: str, tmp_path: Path

@@ -40,6 +40,7 @@ def changed(machine: str, old: str, new: str, folder: Path) -> Verification:
     return trunnion.verify(program, machine=machine, cl=SOURCE)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("machine", "blocks"), TURNS)
 def test_a_whole_turn_in_the_cut_is_a_fault(machine: str, blocks: str, tmp_path: Path) -> None:
     cut = BLOCKS[machine][0]

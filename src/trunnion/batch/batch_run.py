@@ -194,19 +194,9 @@ def _team(
         for name, value in (("tls", tls), ("wait", wait)):
             if value is not None:
                 raise InputError(argument_problem(name, Wording("ARG130", "scheduler")))
-        if workers is not None and not 1 <= workers <= _MOST_WORKERS:
-            raise InputError(
-                argument_problem(
-                    "workers", Wording("ARG140", "no_number_of_workers", workers=workers, most_workers=_MOST_WORKERS)
-                )
-            )
-        if timeout is not None and not timeout > 0.0:
-            raise InputError(argument_problem("timeout", Wording("ARG140", "no_timeout", timeout=timeout)))
         return lambda _: local_workers(workers, timeout)
     for name, local in (("workers", workers), ("timeout", timeout)):
         if local is not None:
             raise InputError(argument_problem(name, Wording("ARG130", "processes_computer_workers")))
-    if wait is not None and not wait > 0.0:
-        raise InputError(argument_problem("wait", Wording("ARG140", "no_wait", wait=wait)))
     dask = Scheduler(scheduler, tls or Tls(), wait=wait)
     return lambda store: lambda _: DaskWorkers(dask, work, writing=store.worker_url, observer=observer)

@@ -264,6 +264,8 @@ def _refuse_no_word(statement: Statement) -> None:
     name = statement.major
     if _BLOCK_NUMBER.match(name):
         raise StatementError(Wording("CL110", "begins_block_number", name=name[:20]))
+    if name.startswith("#"):
+        raise StatementError(Wording("CL110", "begins_variable", name=name.partition("=")[0][:20]))
     if "=" in name:
         raise StatementError(Wording("CL120", "defined_here_apt", name=name.partition("=")[0]))
     if name.startswith("IF("):

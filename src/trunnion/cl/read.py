@@ -118,10 +118,6 @@ def read_source(
     """Read one CL file, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
     units, dialect = how.units, how.dialect
     diagnostics = Diagnostics(source.name)
-    if units is not None and units.lower() not in ("mm", "inch"):
-        raise diagnostics.fatal(0, Wording("ARG140", "units", units=repr(units)))
-    if dialect is not None and dialect not in DIALECTS:
-        raise diagnostics.fatal(0, Wording("ARG140", "dialect", dialect=repr(dialect), dialects=tuple(DIALECTS)))
     try:
         survey = _survey(source, diagnostics)
         if dialect is None:

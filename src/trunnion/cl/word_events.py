@@ -28,6 +28,8 @@ def events_of(text: str) -> tuple[Event, ...]:
     handler = CLSF.handlers.get(statement.major)
     if handler is None:
         raise StatementError(Wording("DEF550", "not_statement_known", text=text))
+    if statement.major == "GOTO":
+        raise StatementError(Wording("DEF550", "not_event_itself", text=text))
     handler(state, statement)
     events = state.builder.events
     if diagnostics.has_errors or not events or any(isinstance(event, _ABOUT_ROWS) for event in events):

@@ -34,8 +34,8 @@ def run(given: Given) -> int:
         raise InputError(argument_problem("live", Wording("ARG130", "live_is_served")))
     shown = given.arguments("output", *_LIVE)
     if given.output is not None:
-        write_view(**shown, output=given.output, observer=Terminal())
-        print_result(f"{given.output}: written")
+        standing = write_view(**shown, output=given.output, observer=Terminal())
+        print_result(f"{given.output}: written", standing)
         return 0
 
     with listen(given.host, given.port) as listening:
@@ -44,7 +44,12 @@ def run(given: Given) -> int:
             content = prepare_view(**shown, observer=Terminal())
         else:
             content, live = _live(given, shown)
-        print(counted(len(content.scene["findings"]), "finding"), file=sys.stderr)
+        print(
+            counted(len(content.scene["findings"]), "finding"),
+            *filter(None, [content.scene["standing"]]),
+            sep="\n",
+            file=sys.stderr,
+        )
         serve(lambda access: view_application(content, access, live), listening, announce(browser=given.browser))
     return 0
 

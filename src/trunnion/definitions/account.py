@@ -69,6 +69,10 @@ class TableAccount:
         content = self._values.get(key, self.content)
         return content.file, content.line
 
+    def replaced(self, key: str) -> object:
+        """Return the value of the definition that a call has replaced by another; None: it has replaced none."""
+        return self._values[key].instead if key in self._values else None
+
     def text_location(self, key: str) -> tuple[str, int]:
         """File and line of the first line of a text; the line is 0 if it has none."""
         content = self._values.get(key, self.content)

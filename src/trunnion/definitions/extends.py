@@ -162,11 +162,9 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
     location = child.folder / pure
     # A link may lead out of the folder although its name does not.
     if not is_within(location, child.folder):
-        variant = "extends_leads_out" if in_capitals else "extends_leads_out_folder"
-        raise InputError(Problem(file, line, Wording("DEF210", variant, name=name)))
+        raise InputError(Problem(file, line, Wording("DEF210", "extends_leads_out_folder", name=name)))
     if not _is_file(location):
-        variant = "extends_no_file" if in_capitals else "extends_no_file_beside"
-        raise InputError(Problem(file, line, Wording("DEF210", variant, pure=pure)))
+        raise InputError(Problem(file, line, Wording("DEF210", "extends_no_file_beside", pure=pure)))
     return _DefinitionFile(location, str(location), location.parent)
 
 

@@ -36,6 +36,7 @@ class LocatedValue:
 
     value         a scalar, a list of scalars or of lists, a dict of located values (a table), or a list of located
                   tables
+    instead       the value of the definition that this one, of a call, stands for
     begins_below  the first line of a text stands in the line below that of its key and its opening quotation marks
     """
 
@@ -43,6 +44,7 @@ class LocatedValue:
     file: str
     line: int
     begins_below: bool = False
+    instead: object = None
 
 
 def _is_tables(value: object) -> bool:

@@ -268,14 +268,19 @@ class Table(TableAccount):
         return low, high
 
     @overload
-    def texts(self, key: str, default: Sequence[str] | Required = ...) -> tuple[str, ...]: ...
+    def texts(
+        self, key: str, default: Sequence[str] | Required = ..., *, allowed: Wording | None = ...
+    ) -> tuple[str, ...]: ...
     @overload
-    def texts(self, key: str, default: None) -> tuple[str, ...] | None: ...
-    def texts(self, key: str, default: Sequence[str] | Required | None = REQUIRED) -> tuple[str, ...] | None:
-        """Return a list of texts."""
+    def texts(self, key: str, default: None, *, allowed: Wording | None = ...) -> tuple[str, ...] | None: ...
+    def texts(
+        self, key: str, default: Sequence[str] | Required | None = REQUIRED, *, allowed: Wording | None = None
+    ) -> tuple[str, ...] | None:
+        """Return a list of texts; ``allowed`` says which, by default any."""
+        allowed = allowed or phrase("list_of_texts")
         fallback = () if isinstance(default, Required) else None if default is None else tuple(default)
         expected = Expected(Form.TEXTS, isinstance(default, Required), _told(default))
-        value = self._get(key, expected, lambda: phrase("list_of_texts"))
+        value = self._get(key, expected, lambda: allowed)
         if value is None:
             return fallback
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
@@ -284,7 +289,7 @@ class Table(TableAccount):
                 key,
                 Wording("DEF330", "text_for_list", value=shown)
                 if isinstance(value, str)
-                else Wording("DEF330", "not_allowed", value=shown, allowed=phrase("list_of_texts")),
+                else Wording("DEF330", "not_allowed", value=shown, allowed=allowed),
             )
             return fallback
         return tuple(str(item) for item in value)

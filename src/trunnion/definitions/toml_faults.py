@@ -20,6 +20,9 @@ _LEADING_ZERO: Final = re.compile(r"([-+]?)0+([1-9][0-9]*(?:\.[0-9]+)?|0)$")
 _WITH_UNIT: Final = re.compile(rf"({_SIGNED}(?:\.[0-9]+)?)[ \t]*([A-Za-zµ°%/\"']+[A-Za-z0-9²/]*)$")
 _UNIT_IN_LIST: Final = re.compile(rf"({_SIGNED}(?:\.[0-9]+)?)[ \t]*(mm|cm|in|inch|deg|rad|[°%\"'])(?![A-Za-z0-9])")
 _ANSWERS: Final = {"true": "true", "yes": "true", "on": "true", "false": "false", "no": "false", "off": "false"}
+#: Ends of the names of tables whose keys are words of programs and statements, in quotation marks.
+_OF_WORDS: Final = ("known", "statements", "cl.words")
+
 _SECOND_KEY: Final = re.compile(r"[\s,;][ \t]*[A-Za-z0-9_-]+[ \t]*=")
 _SHOWN: Final = 60
 
@@ -112,7 +115,7 @@ def _of_line(content: str, message: str, table: str = "") -> Wording | None:
         return _without_equals(content)
     if not _KEY.fullmatch(key):
         shown = key[:_SHOWN]
-        if table.endswith("known") and not {'"', "'"} & set(key):
+        if table.endswith(_OF_WORDS) and not {'"', "'"} & set(key):
             return Wording("DEF130", "key_without_quotation_marks", key=shown, value=value[:_SHOWN])
         return Wording("DEF130", "no_key", key=repr(shown))
     return _of_value(key, _without_comment(value), message)
@@ -156,6 +159,8 @@ def _of_value(key: str, value: str, message: str) -> Wording | None:
         return Wording("DEF130", "unit_behind_number", unit=found[2], wanted=f"{key} = {found[1]}")
     if answer := _ANSWERS.get(value.lower()):
         return Wording("DEF130", "other_word_for_flag", value=value, wanted=f"{key} = {answer}")
+    if value.startswith("{") and not value.endswith("}"):
+        return Wording("DEF130", "table_does_not_end_in_line")
     if _SECOND_KEY.search(value):
         return Wording("DEF130", "two_keys_in_line")
     if value[0].isalpha() and _WORD.fullmatch(value):

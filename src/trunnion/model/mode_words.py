@@ -6,6 +6,15 @@ from typing import Final
 #: The mode that says where cycles end, which counts for a cycle alone.
 END_OF_CYCLES: Final = "end of cycles"
 
+#: Modes that count within radius compensation alone.
+WAY_TO_CONTOUR: Final = "way to the contour"
+CORNERS: Final = "corners of the contour"
+BOTTLENECKS: Final = "bottlenecks of the contour"
+FEED_ALONG: Final = "where the feed counts"
+CONSTANT_FEED: Final = "constant compensation"
+DIMENSIONS: Final = "dimensions of compensation"
+OF_COMPENSATION: Final = frozenset({WAY_TO_CONTOUR, CORNERS, BOTTLENECKS, FEED_ALONG, CONSTANT_FEED, DIMENSIONS})
+
 
 @dataclass(frozen=True, slots=True)
 class ModeWord:

@@ -4,10 +4,10 @@ In:     a run.
 Out:    ``StatedTips``: which rows begin and end at a known place of the workpiece, and how the tool leaves and comes.
 Units:  mm, unit vectors, workpiece frame.
 
-Without workpiece zero and tool length nobody knows where a machine position (G53, SUPA, M91) is in the workpiece frame,
-nor where the part is after rotary axes have turned without TCP. What is not known of a tip is a set of directions: a
-retract of Z leaves one, and in a tilted plane X and Y alone do not end it. A block ends the directions of the
-coordinates that it names, in the axes in which it names them.
+Without workpiece zero and tool length, of all tools or of one, nobody knows where a machine position (G53, SUPA, M91)
+is in the workpiece frame, nor where the part is after rotary axes have turned without TCP. What is not known of a tip
+is a set of directions: a retract of Z leaves one, and in a tilted plane X and Y alone do not end it. A block ends the
+directions of the coordinates that it names, in the axes in which it names them.
 """
 
 from dataclasses import dataclass
@@ -18,8 +18,10 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Mount, forward
+from trunnion.model.machine_slides import at_machine
 from trunnion.model.run import NO_OFFSET, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
+from trunnion.model.unknown_setups import stated_rows
 
 #: Smaller rotary motion, degrees, is none; coordinates that differ by less, mm, are the same.
 _STILL: Final = 1e-3
@@ -36,6 +38,7 @@ _TURNS: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWor
 class StatedTips:
     """What a program of n rows states of its tips.
 
+    placed         (n,)    zero and length are stated: positions of the machine are some of the workpiece too
     before, after  (n,)    the whole tip is known where a row begins, and where it ends
     ways           rows in which the tool leaves for, or comes from, a place that nobody knows, and in which unit
                    vector that place is, far from the part
@@ -44,6 +47,7 @@ class StatedTips:
     lost_feeds     (m,)    those of them at feed that no motion follows which makes the tip known
     """
 
+    placed: Flags
     before: Flags
     after: Flags
     ways: dict[int, Floats]
@@ -80,10 +84,9 @@ class _Walk:
     def __init__(self, run: Run) -> None:
         machine, n = run.machine, len(run)
         self.run = run
-        zero, length = machine.workpiece_zero is not None, machine.tool_length is not None
-        self.placed = zero and length
-        heads = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in machine.axes)
-        self.turns_in_place = self.placed or (zero and not heads)
+        zero, length = stated_rows(run)
+        self.placed = zero & length
+        self.turns_in_place = zero & (length | np.bool_(not machine.has_rotary_head))
         self.tip_words = run.state.xyz_is_tip.column()
         self.plane = run.state.plane.column()
         self.words = run.programmed & np.uint8(_XYZ)
@@ -91,18 +94,20 @@ class _Walk:
         means_tip = self.tip_words | upright | self.turns_in_place
         self.of_machine = run.machine_frame | (run.work_offset == NO_OFFSET)
         #: Rows whose words are positions of slides that nobody can place in the workpiece frame.
-        self.unplaced = np.asarray((self.of_machine | ~means_tip) & (not self.placed) & (self.words != 0))
-        self.turned = turns_without_tcp(run, np.arange(n)) & (not self.placed)
+        self.unplaced = np.asarray((self.of_machine | ~means_tip) & ~self.placed & (self.words != 0))
+        self.turned = turns_without_tcp(run, np.arange(n)) & ~self.placed
         self.unnamed = np.asarray((run.programmed & np.uint8(_XYZ | _TURNS)) == 0)
         self.lifts, self.relative = _event_rows(run, ("retract",)), _event_rows(run, ("leave",))
-        if not length:
-            self.lifts |= _tool_changes(run)
+        #: Rows before which another tool comes, not both of known lengths, or another zero, not both known.
+        self.changes = {row for row in _tool_changes(run) if not length[row - 1 : row + 1].all()}
+        self.shifts = set((np.flatnonzero(zero[1:] != zero[:-1]) + 1).tolist())
         self.before, self.after = np.ones(n, np.bool_), np.ones(n, np.bool_)
         self.ways: dict[int, Floats] = {}
         self.aside: list[int] = []
         self.unjudged: list[int] = []
         self.lost_feeds: list[int] = []
         self._waiting: list[int] = []
+        self._found_at_machine: Flags | None = None
 
     def result(self) -> StatedTips:
         """Walk through all rows."""
@@ -112,21 +117,22 @@ class _Walk:
             self._end_stretch()
         feeds = np.array(self.lost_feeds, np.int64)
         return StatedTips(
-            self.before, self.after, self.ways, np.array(self.aside, np.int64),
+            self.placed, self.before, self.after, self.ways, np.array(self.aside, np.int64),
             np.array(self.unjudged, np.int64), feeds[run.kind[feeds] != Kind.RAPID],
         )  # fmt: skip
 
     def _walk(self, n: int) -> None:
         loses = self.unplaced | self.turned
-        loses[list(self.lifts)] = True
+        special = list(self.lifts | self.changes | self.shifts)
+        loses[special] = True
         losing = np.flatnonzero(loses)
         same = np.zeros(n, np.bool_)
         for column in (self.words, self.plane, self.tip_words, self.unplaced, self.turned):
             same[1:] |= column[1:] != column[:-1]
         same = ~(same | self.unnamed | self.turned)
-        same[list(self.lifts)] = False
+        same[special] = False
         other = np.append(np.flatnonzero(~same), n)
-        unknown = np.zeros((3, 0)) if self.placed else np.eye(3)
+        unknown = np.zeros((3, 0)) if self.placed[0] else np.eye(3)
         row = 0
         while row < n:
             if not unknown.shape[1]:
@@ -149,6 +155,9 @@ class _Walk:
         if row in self.lifts:
             unknown = _span(unknown, self._axis(row - 1)[:, None])
             self._end_stretch()
+        if row in self.changes or row in self.shifts:
+            unknown = self._changed(row, unknown)
+            self._end_stretch()
         begin = unknown
         if self.turned[row]:
             unknown = self._turned(row, unknown)
@@ -167,6 +176,22 @@ class _Walk:
             if is_known:
                 self._come(row, begin)
         return unknown
+
+    def _changed(self, row: int, unknown: Floats) -> Floats:
+        """Return what is not known after another tool or work offset has come into force."""
+        unknown = np.eye(3) if row in self.shifts else _span(unknown, self._axis(row - 1)[:, None])
+        if not self.placed[row]:
+            return unknown
+        # Linear axes that stand at positions of the machine still do.
+        others = self._slides(row - 1)[:, ~self._at_machine()[row - 1]]
+        return _common(unknown, _span(others))
+
+    def _at_machine(self) -> Flags:
+        """Which of X, Y and Z stand where coordinates of the machine, or the way home, have put them, (n, 3)."""
+        if self._found_at_machine is None:
+            home = np.ones(3, np.bool_)
+            self._found_at_machine = at_machine(self.run.programmed, self.run.machine_frame, self.tip_words, home)
+        return self._found_at_machine
 
     def _leave(self, row: int) -> None:
         """Note how a row leaves a known place."""
@@ -209,10 +234,10 @@ class _Walk:
         old = run.rotary[row - 1] if row else run.start[rotary]
         turned = [k for k, way in zip(rotary, np.abs(run.rotary[row] - old), strict=True) if way > _STILL]
         if any(run.machine.axes[k].mount is Mount.TOOL for k in turned):
-            return unknown if self.turns_in_place else np.eye(3)
+            return unknown if self.turns_in_place[row] else np.eye(3)
         turn = self._slides(row) @ np.linalg.inv(self._slides(row - 1))
         unknown = turn @ unknown
-        if self.turns_in_place or np.abs(turn - np.eye(3)).max() < _SAME:
+        if self.turns_in_place[row] or np.abs(turn - np.eye(3)).max() < _SAME:
             return unknown
         if len(turned) > 1:
             return np.eye(3)
@@ -269,6 +294,13 @@ def _span(*columns: Floats) -> Floats:
         return np.zeros((3, 0))
     vectors, sizes, _ = np.linalg.svd(np.hstack(columns), full_matrices=False)
     return np.asarray(vectors[:, sizes > 1e-6])
+
+
+def _common(one: Floats, two: Floats) -> Floats:
+    """Orthonormal columns of what lies in both spans, (3, k)."""
+    outside = np.vstack((np.eye(3) - one @ one.T, np.eye(3) - two @ two.T))
+    _, sizes, vectors = np.linalg.svd(outside)
+    return np.asarray(vectors[sizes < 1e-6].T)
 
 
 def _same_span(one: Floats, two: Floats) -> bool:

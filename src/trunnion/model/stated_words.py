@@ -12,13 +12,17 @@ class StatedWord:
     word      as it was stated: ``G65 P9810``, ``Q13``
     says      what it does or holds, as it was stated
     is_given  it was stated for this run only; else the definition states it
+    instead   what the definition states, where a call has stated something else; empty: nothing else
     """
 
     word: str
     says: str
     is_given: bool
+    instead: str = ""
 
     @property
     def wording(self) -> Wording:
         """What a verdict says of it."""
+        if self.instead:
+            return phrase("stated_word_instead", word=self.word, says=self.says, instead=self.instead)
         return phrase("stated_word", word=self.word, says=self.says)

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording, phrase
 from trunnion.model.programmed_words import ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
@@ -33,6 +33,15 @@ def tools_without_length(run: Run) -> tuple[str, ...]:
     if run.setups is None or all(setup.machine.tool_length is None for setup in used):
         return ()
     return tuple(dict.fromkeys(_tool_name(setup.tool) for setup in used if setup.machine.tool_length is None))
+
+
+def stated_rows(run: Run) -> tuple[Flags, Flags]:
+    """Return in which rows the zero is stated, and in which the length of the tool, (n,) each."""
+    machines = [run.machine] if run.setups is None else [setup.machine for setup in run.setups.each]
+    number = np.zeros(len(run), np.int64) if run.setups is None else run.setups.number.column()
+    zero = np.array([machine.workpiece_zero is not None for machine in machines])
+    length = np.array([machine.tool_length is not None for machine in machines])
+    return zero[number], length[number]
 
 
 def rows_without_values(run: Run) -> Iterator[tuple[int, Wording]]:

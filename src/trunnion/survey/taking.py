@@ -7,7 +7,7 @@ from typing import Final, TypedDict, Unpack
 
 from trunnion.batch.local import LocalWorkers
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES
 from trunnion.files import check_outputs
 from trunnion.jobs.arguments import taken
@@ -85,8 +85,6 @@ def take_survey(
     root = check_path("folder", folder)
     if not root.is_dir():
         raise InputError(Problem(str(root), 0, Wording("FIL110", "no_such_folder")))
-    if timeout is not None and not timeout > 0.0:
-        raise InputError(argument_problem("timeout", Wording("ARG140", "no_timeout", timeout=timeout)))
     if written := found["written"]:
         check_outputs(written, (each.path for each in found_files(root)))
     others = [] if machine else [name for name in shipped_machines() if name not in MACHINES]

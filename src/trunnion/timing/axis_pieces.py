@@ -19,14 +19,11 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.machines.links import link_chain
 from trunnion.messages import Wording
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.machine_slides import at_machine
+from trunnion.model.run import Run
 from trunnion.model.stated_tips import StatedTips, turns_without_tcp
+from trunnion.model.unknown_setups import stated_rows
 from trunnion.timing.row_interpolation import RowInterpolation
-
-_POSITION_WORDS: Final = int(
-    ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.FIRST | ProgrammedWord.SECOND
-)
-
 
 #: Pieces of a program that is kept whole, as who keeps it says: some 2 GB of motion in time. A loop of ten lines may
 #: make hundreds of millions; those of programs for parts have about one for each block.
@@ -87,6 +84,7 @@ class _Motion:
         self.joints = np.array(run.start, np.float64)
         self.from_machine = np.ones(3, np.bool_)
         self._inside = RowInterpolation(run)
+        self._stated_length = stated_rows(run)[1]
         self._slides = np.array([run.machine.column(name) for name in "XYZ"])
         chain = link_chain(run.machine)
         # What moves the gauge point along the spindle, all rotary axes at zero.
@@ -106,7 +104,7 @@ class _Motion:
         if run.machine.workpiece_zero is None:
             known &= ~turns_without_tcp(run, np.arange(first, end))
         else:  # with its real length, the tool's place follows from the slides
-            known |= ~xyz_is_tip
+            known |= ~xyz_is_tip & self._has_length(first, end, tool)
         before = np.concatenate((self.joints[None], joints))
         for lost in np.flatnonzero(~np.isfinite(joints).all(axis=1)).tolist():
             before[lost + 1] = before[lost]  # the reader has said that no position is known there
@@ -128,6 +126,11 @@ class _Motion:
                 Problem(file, int(self.run.lines[row]), Wording("TWN112", "where_program_makes", most=self._most))
             )
 
+    def _has_length(self, first: int, end: int, tool: Ints) -> Flags:
+        """Which rows have a tool of which somebody has stated the length, (n,)."""
+        given = np.array([bool(self.lengths.get(int(k))) for k in tool.tolist()], np.bool_)
+        return given | self._stated_length[first:end]
+
     def _row_joints(self, first: int, end: int, xyz_is_tip: Flags, length: Floats, machine: Flags) -> Floats:
         """Axis values at the end of rows, with the real lengths of tools."""
         run = self.run
@@ -143,14 +146,8 @@ class _Motion:
 
     def _from_machine(self, first: int, end: int, xyz_is_tip: Flags) -> Flags:
         """Which slides stand where coordinates of the machine have put them, (n, 3)."""
-        run = self.run
-        words, frame = run.programmed[first:end], run.state.machine_frame.part(first, end)
-        found = np.empty((end - first, 3), np.bool_)
-        nothing = (words & _POSITION_WORDS) == 0
-        for k, word in enumerate((ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z)):
-            named = ((words & int(word)) != 0) | xyz_is_tip | nothing
-            last = np.maximum.accumulate(np.where(named, np.arange(end - first), -1))
-            found[:, k] = np.where(last >= 0, (frame & ~xyz_is_tip)[last], self.from_machine[k])
+        words, frame = self.run.programmed[first:end], self.run.state.machine_frame.part(first, end)
+        found = at_machine(words, frame, xyz_is_tip, self.from_machine)
         if end > first:
             self.from_machine = found[-1].copy()
         return found

@@ -30,6 +30,7 @@ def fault_of(text: str) -> Fault:
     return fault
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("text", "line", "what", "cure"),
     [

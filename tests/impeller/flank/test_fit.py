@@ -53,6 +53,7 @@ def wavy(seed: int, slope: float = 0.0) -> FlankPath:
     )
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("slope", [0.0, 0.05], ids=["cylinder", "cone"])
 @pytest.mark.parametrize("rails", [cylinder, cone, tangents])
 def test_a_developable_flank_comes_out_exact(rails: Rails, slope: float) -> None:
@@ -137,6 +138,7 @@ def test_a_flank_has_two_sides() -> None:
     np.testing.assert_allclose(flank.normals, -other.normals)
 
 
+@pytest.mark.nightly
 @given(
     st.floats(30.0, 40.0),
     st.floats(0.0, 14.0),

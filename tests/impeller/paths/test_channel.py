@@ -99,6 +99,7 @@ def test_passes_are_dense_without_doubles_and_places_are_within_0_and_1(
     assert layers == sorted(layers)
 
 
+@pytest.mark.nightly
 @settings(max_examples=examples(6), deadline=None)
 @given(mixed_flow_cases(), st.sampled_from([0.8, 1.6]), st.booleans())
 def test_nothing_is_cut_and_nothing_is_left(

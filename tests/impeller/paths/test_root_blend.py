@@ -78,6 +78,7 @@ def test_fillet_and_what_the_ball_of_the_hub_left_keep_no_more_than_a_scallop(
         assert left.min() > -0.01
 
 
+@pytest.mark.nightly
 @settings(max_examples=examples(4))
 @given(mixed_flow_cases(), st.sampled_from(list(Way)))
 def test_balls_as_large_as_the_fillet_stay_clear_in_a_family(case: tuple[ImpellerDefinition, float], way: Way) -> None:

@@ -67,6 +67,7 @@ def test_a_form_that_was_turned_elsewhere_is_the_stock(tmp_path: Path) -> None:
     assert wide[1] < 40.0
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("change", "what"),
     [

@@ -111,7 +111,7 @@ def test_in_a_wedge_axes_turn_where_they_must() -> None:
     assert found.turning < 1.5 * turned / 40.0
 
 
-@pytest.mark.nightly  # a tool too short for the published impeller is refused with the same words
+@pytest.mark.nightly
 def test_a_holder_that_meets_the_plates_is_named() -> None:
     with pytest.raises(InputError, match=r"holder and plate \d do not clear each other at .* mm are missing") as caught:
         choose_axes(floor(1.0), necked(4.0, 25.0, 30.0), slot(6.0, 60.0), Wanted(tilt=60.0))
@@ -132,6 +132,7 @@ def test_fewer_clearances_are_kept_where_not_all_can_be_had() -> None:
     assert 0.05 - 2e-3 <= least["shank"] < 0.5
 
 
+@pytest.mark.nightly
 def test_axes_stay_within_what_a_machine_reaches() -> None:
     def reachable(directions: Floats) -> Flags:
         return np.asarray(directions[:, 0] >= np.sin(np.radians(25.0)))
@@ -217,9 +218,10 @@ def room(impeller: Impeller, family: PassFamily, found: ToolAxes, tool: ToolShap
     return least
 
 
+@pytest.mark.nightly  # test_impeller_cutting says it of posted programs in each run
 @pytest.mark.parametrize(
     ("rows_of", "diameter", "most"),
-    [pytest.param(beside_the_blade, 4.0, 1.5, marks=pytest.mark.nightly), (on_the_hub, 6.0, 0.5)],
+    [(beside_the_blade, 4.0, 1.5), (on_the_hub, 6.0, 0.5)],
 )
 def test_fields_on_the_published_impeller_are_clear_and_smooth(
     published: tuple[Impeller, Obstacles], rows_of: object, diameter: float, most: float
@@ -237,6 +239,7 @@ def test_fields_on_the_published_impeller_are_clear_and_smooth(
         assert part.distance >= {"cutter": 0.06, "shank": 0.5, "holder": 2.0}[part.part] - 2e-3
 
 
+@pytest.mark.nightly
 def test_a_tool_too_short_for_the_published_impeller_is_refused(published: tuple[Impeller, Obstacles]) -> None:
     impeller, obstacles = published
     stub = ball(6.0, flute_length=6.0, length=8.0, holder=(BodyPiece(20, 24, 30), BodyPiece(40, 40, 20)))

@@ -81,6 +81,7 @@ def test_an_impeller_with_splitters_is_written_and_read_back(
     np.testing.assert_allclose(read.bounds, [data["extents"][0], data["extents"][1]], atol=0.03)
 
 
+@pytest.mark.nightly
 def test_the_published_impeller_is_one_solid_of_exact_surfaces(tmp_path: Path) -> None:
     files = [tmp_path / "one.step", tmp_path / "other.stp"]
     found = trunnion.write_impeller_step(EXAMPLES / "impeller.toml", files[0])
@@ -98,7 +99,6 @@ def test_the_published_impeller_is_one_solid_of_exact_surfaces(tmp_path: Path) -
     assert b"CYLINDRICAL_SURFACE(" in step
 
 
-@pytest.mark.nightly
 def test_the_same_order_gives_the_same_bytes(tmp_path: Path) -> None:
     changes = (("number = 6", "number = 2"), ("fillet_mm = 2.0", "fillet_mm = 1.0"))
     impeller = trunnion.load_impeller(changed(tmp_path, "impeller", *changes))

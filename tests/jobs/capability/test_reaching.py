@@ -185,6 +185,7 @@ def test_the_picture_is_drawn_and_data_hold_the_same(tmp_path: Path, capfd: Capt
     assert len(sectors) == 4  # tilts of 0, 30, 60 and 90 degrees, whole rings
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [

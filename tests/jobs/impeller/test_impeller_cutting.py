@@ -271,31 +271,26 @@ def test_a_simulation_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pyt
     assert not (tmp_path / "new").exists()
 
 
-def test_a_cut_is_made_again_over_its_own_files(tmp_path: Path) -> None:
-    path, folder = definition(tmp_path, ROUGHING), tmp_path / "nc"
-    for _ in range(2):
-        assert trunnion.cut_impeller(path, machine="yl569", output=folder, cell=4.0).simulation is not None
-    assert {file.name for file in folder.iterdir()} == {
-        "IMPELLER.mpf", "IMPELLER.html", "IMPELLER_ROUGH.cls", "ROUGH.spf", "IMPELLER_simulation.html",
-        "IMPELLER_stock.png",
-    }  # fmt: skip
-
-
-def test_the_report_of_the_proof_has_the_verdict_of_the_simulation(
+def test_a_cut_is_made_again_over_its_own_files_and_the_report_of_the_proof_has_the_verdict_of_the_simulation(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    simulated = trunnion.simulate
+    path, folder, simulated = definition(tmp_path, ROUGHING), tmp_path / "nc", trunnion.simulate
 
     def gouging(*given: object, **named: object) -> trunnion.SimulationResult:
         found = simulated(*given, **named)  # type: ignore[arg-type]
         finding = SimulationFinding("gouge", ("part", "tool 1"), "a.spf", 1, 1, 1, 1, 1, 0.0, 0.5, (0.0, 0.0, 0.0))
         return replace(found, findings=(finding,))
 
+    assert trunnion.cut_impeller(path, machine="yl569", output=folder, cell=4.0).simulation is not None
     monkeypatch.setattr("trunnion.jobs.impeller.cutting.simulate", gouging)
-    cut = trunnion.cut_impeller(definition(tmp_path, ROUGHING), machine="yl569", output=tmp_path / "nc", cell=4.0)
+    cut = trunnion.cut_impeller(path, machine="yl569", output=folder, cell=4.0)
     assert not cut.passed
+    assert {file.name for file in folder.iterdir()} == {
+        "IMPELLER.mpf", "IMPELLER.html", "IMPELLER_ROUGH.cls", "ROUGH.spf", "IMPELLER_simulation.html",
+        "IMPELLER_stock.png",
+    }  # fmt: skip
     for name in ("IMPELLER.html", "IMPELLER_simulation.html"):
-        page = (tmp_path / "nc" / name).read_text(encoding="utf-8")
+        page = (folder / name).read_text(encoding="utf-8")
         assert '<div class="verdict bad">' in page
         assert "the program must not run as it is" in page
 

@@ -106,6 +106,7 @@ REFUSED: dict[str, dict[str, list[str | float]]] = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("machine", "key"), [(machine, key) for machine, keys in REFUSED.items() for key in keys])
 def test_what_a_setting_cannot_be_is_refused_before_any_work(machine: str, key: str) -> None:
     for value in REFUSED[machine][key]:

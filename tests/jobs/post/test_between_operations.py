@@ -71,6 +71,7 @@ _CLEARANCE = ("same_tool", "clearance")
 _IN_TURN = ("first_approach", "in_turn")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("base", MACHINES)
 def test_a_tool_that_stays_goes_home_along_the_spindle_alone(base: str, programs: _Programs) -> None:
     lines = programs.post(base, "turned", _RETRACT)
@@ -81,6 +82,7 @@ def test_a_tool_that_stays_goes_home_along_the_spindle_alone(base: str, programs
     assert sum(bool(_TURN.search(line)) for line in between) == 1
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("base", MACHINES)
 def test_a_lost_retract_and_a_turn_before_it_are_faults(base: str, programs: _Programs) -> None:
     lines = programs.post(base, "turned", _RETRACT)
@@ -94,6 +96,7 @@ def test_a_lost_retract_and_a_turn_before_it_are_faults(base: str, programs: _Pr
     assert "turns" in programs.failing(early, base, "turned", _RETRACT)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("path", ["three", "tilted", "tcp"])
 @pytest.mark.parametrize("base", MACHINES)
 def test_at_one_tilt_the_tool_stays_above_all_operations(base: str, path: str, programs: _Programs) -> None:
@@ -109,6 +112,7 @@ def _heights(lines: list[str]) -> tuple[int, int]:
     return moves[1], moves[2]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("path", ["three", "tilted", "tcp"])
 @pytest.mark.parametrize("base", MACHINES)
 def test_a_height_that_is_lost_or_too_low_is_a_fault(base: str, path: str, programs: _Programs) -> None:
@@ -127,6 +131,7 @@ def test_a_height_that_is_lost_or_too_low_is_a_fault(base: str, path: str, progr
     )
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("base", MACHINES)
 def test_a_post_that_stays_at_the_part_fails_its_own_proof(base: str, programs: _Programs) -> None:
     """What a template of the shop takes from the way home, the post itself misses."""
@@ -147,6 +152,7 @@ leave_three_axis = '''
         trunnion.post(programs._source("three"), machine=machine)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("path", ["tilted", "tools"])
 @pytest.mark.parametrize("base", [base for base in MACHINES if base != "hs664rt"])
 def test_rotary_axes_that_keep_their_tilt_do_not_return(base: str, path: str, programs: _Programs) -> None:
@@ -163,6 +169,7 @@ def test_rotary_axes_that_keep_their_tilt_do_not_return(base: str, path: str, pr
     )
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("path", ["three", "tcp"])
 @pytest.mark.parametrize("base", MACHINES)
 def test_the_first_approach_in_turn_is_proven(base: str, path: str, programs: _Programs) -> None:
@@ -175,6 +182,7 @@ def test_the_first_approach_in_turn_is_proven(base: str, path: str, programs: _P
         assert programs.failing(together, base, path, _IN_TURN) == {"modal"}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("base", MACHINES)
 def test_a_first_leg_before_several_holes_is_proven(base: str, programs: _Programs) -> None:
     lines = programs.post(base, "two_holes", _IN_TURN, ("mode", "tcp"))
@@ -213,6 +221,7 @@ def test_operations_of_other_tools_and_tilts_go_home(programs: _Programs) -> Non
     assert any(_HOME.search(_plain(line)) for line in stopping[stop - 4 : stop])
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("height", ["10", "3.5", "25"])
 @pytest.mark.parametrize("base", ["yl569", "dmu65", "xyzac_trt"])
 def test_faults_of_a_way_above_all_operations_name_the_settings_with_which_it_passes(
@@ -275,6 +284,7 @@ def _modal_places(lines: list[str], base: str, way: tuple[tuple[str, str], ...],
     return [place.nc_line for place in modal.places if "together" in place.wording.what]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("base", "way"), _BEHIND_TURNS)
 def test_axes_go_in_turn_behind_a_turn_within_an_operation(
     base: str, way: tuple[tuple[str, str], ...], programs: _Programs
@@ -285,6 +295,7 @@ def test_axes_go_in_turn_behind_a_turn_within_an_operation(
     assert [line for line in _modal_places(joined, base, way, programs) if line > _last_turn(joined)]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("base", "way"), [(base, way) for base, way in _BEHIND_TURNS if way and base != "hs664rt"])
 def test_a_program_that_moves_axes_together_behind_a_turn_is_faulted_where_turns_are_wanted(
     base: str, way: tuple[tuple[str, str], ...], programs: _Programs

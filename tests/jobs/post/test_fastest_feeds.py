@@ -45,6 +45,7 @@ def test_an_arc_has_the_feed_that_the_slides_keep_up_all_the_way(name: str, tmp_
     assert 0.97 * most < feeds[0] <= most
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("speeds", "found"),
     [([1, 2, 3, 2], 3), ([1, 3, 2, 3, 1], 2), ([1, 4, 2, 3, 1, 5, 1], 1), ([2], 2), ([3, 3, 3], 3), ([5, 1, 4], 1)],
@@ -63,6 +64,7 @@ NOT_TOLD = {("linuxcnc_5axis", "on"), ("hs664rt", "off")}
 PLACED: dict[str, SettingValue] = {"zero": (0.0, 0.0, 0.0), "tool_length": 100.0}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("name", "tcp"),
     [(name, tcp) for name in FAMILIES for tcp in ("on", "off") if (name, tcp) not in NOT_TOLD],

@@ -105,6 +105,7 @@ def zero_beyond(machine: Machine, tips: Floats, rotary: Floats, beyond: float) -
     return np.linalg.solve(shifts.T, (goal - bottom)[slides]), column, float(goal[column])
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("key", "axis"), CASES)
 def test_planner_and_proof_refuse_it_in_every_family_and_plane(
     key: str, axis: tuple[float, ...], tmp_path: Path

@@ -60,6 +60,7 @@ def part(folder: Path, *texts: str, head: str = HEAD) -> Path:
     return file
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("machine", "text", "effect"),
     [(machine, text, effect) for machine, texts in BENDING.items() for text, effect in texts.items()],

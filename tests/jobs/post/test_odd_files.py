@@ -70,6 +70,7 @@ def test_what_the_file_never_asks_for_is_still_found(tmp_path: Path, old: str, n
     assert check in {each.key for each in found.checks if not each.passed}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize(
     ("statement", "what"),

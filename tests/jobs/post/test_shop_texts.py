@@ -371,6 +371,7 @@ def test_a_call_in_raw_text_is_told_with_the_cure_that_helps(tmp_path: Path) -> 
     assert "M98 P77" in program(tmp_path, "", cl, more=known, extends="matsuura_mx330")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("time", ["time", "operation.time", "total_time", "(time ~ ' long')", "(time | default('-'))"])
 @pytest.mark.parametrize("use", [" | cut(5)", " | lower", " | replace('s', '')", " == '4 s'", " in ['4 s']"])
 def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: str) -> None:
@@ -392,6 +393,7 @@ def test_a_mode_behind_the_approach_is_refused(tmp_path: Path, extends: str, tex
     assert f"writes {word}," in problem.what
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("place", ["same_tool", "preselect", "stop"])
 @pytest.mark.parametrize(
     ("extends", "text", "word"),
@@ -408,6 +410,7 @@ def test_a_mode_at_places_behind_those_of_the_operation_is_refused(
     assert (problem.code, f"{place} writes {word}," in problem.what) == ("CTL457", True)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("extends", "text"),
     [

@@ -70,6 +70,7 @@ def posted(cl: Path, machine: str, out: Path, **settings: object) -> trunnion.Po
     return trunnion.post(cl, machine=limited(machine), output=out, settings=given)  # type: ignore[arg-type]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 def test_the_travel_of_a_tool_is_that_with_its_own_length(two_tools: Path, tmp_path: Path, machine: str) -> None:
     zero, out = near_low_end(machine), tmp_path / "two.nc"
@@ -83,6 +84,7 @@ def test_the_travel_of_a_tool_is_that_with_its_own_length(two_tools: Path, tmp_p
     assert "no tool length stated for tool 2" in [wording.what for wording in unknown.missing]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 def test_the_travel_in_a_work_offset_is_that_with_its_own_zero(two_tools: Path, tmp_path: Path, machine: str) -> None:
     one, two = offsets(machine)
@@ -101,6 +103,7 @@ def test_the_travel_in_a_work_offset_is_that_with_its_own_zero(two_tools: Path, 
     assert unknown.coverage.checked < unknown.coverage.motions
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 def test_work_offsets_that_are_swapped_fail_with_the_cl_file_and_are_not_checked_without(
     two_tools: Path, tmp_path: Path, machine: str

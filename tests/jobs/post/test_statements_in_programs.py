@@ -106,6 +106,7 @@ def test_a_coolant_without_a_code_names_the_key_to_write(tmp_path: Path, machine
     assert "M88" in words(posted(tmp_path, text, str(own)))
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("tilt", ["0.0,0.0,1.0", "0.6,0.0,0.8"])
 @pytest.mark.parametrize("statement", ["SPINDL/RPM,4000.0000,CLW\n", "COOLNT/ON\n", "CUTCOM/LEFT\n"])

@@ -184,6 +184,7 @@ def test_a_project_is_not_written_over_what_it_extends(tmp_path: Path) -> None:
     assert f'{tmp_path / "part.toml"}:2: error: cl names ""' in problems(project(tmp_path, text))[0]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("name", "words"),
     [

@@ -97,6 +97,7 @@ def test_a_mistake_is_told_where_it_stands(tmp_path: Path, text: str, line: int,
     assert line in [number for number, _ in found]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("key", ["cl", "output", "released", "report", "hooks", "fixtures", "machine", "stock"])
 @pytest.mark.parametrize("value", ["/etc/passwd.toml", "../top.cls", "c:/top.cls", "..\\\\top.cls", "link/top.toml"])
 def test_no_file_outside_of_the_folder_is_named(tmp_path: Path, key: str, value: str) -> None:

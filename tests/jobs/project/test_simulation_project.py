@@ -143,6 +143,7 @@ def test_every_mistake_is_told_at_once_with_its_line(folder: Path) -> None:
     assert "coordinates of this set-up" in wrong(project(folder, first))[0][1]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
@@ -216,6 +217,7 @@ def test_what_is_given_may_be_missing_in_the_project(folder: Path) -> None:
     ).removed == pytest.approx(2500.0, rel=1e-3)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     "value", ["[]", "[[]]", "{}", "[{}]", "[{}, 1]", "1", "-1", "nan", "true", '""', '"x"', '["x", 1]', "2026-01-01"]
 )

@@ -68,6 +68,7 @@ def simulated(machine: str, program: Path, **given: object) -> SimulationResult:
     )  # fmt: skip
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("length", [None, 110.0])
 @pytest.mark.parametrize("machine", MACHINES)
 def test_two_places_of_the_table_are_cut_as_one_program_cuts_them(
@@ -87,6 +88,7 @@ def test_two_places_of_the_table_are_cut_as_one_program_cuts_them(
     assert over_each_other.removed < 0.7 * found.removed
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("machine", MACHINES)
 def test_view_and_twin_stand_where_one_program_stands(machine: str, tmp_path: Path) -> None:
     pairs: list[tuple[Path, ZeroLike]] = [

@@ -48,7 +48,7 @@ def test_a_cell_for_which_there_is_no_memory_is_refused_with_one_that_does(tmp_p
 
 
 def test_a_file_that_is_no_program_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(trunnion.InputError, match="is this a program of xyzac_trt"):
+    with pytest.raises(trunnion.InputError, match="give a program of xyzac_trt"):
         simulate(tmp_path, "".join(f"line {k} of a text\n" for k in range(30)))
 
 

@@ -172,6 +172,7 @@ def test_a_gauge_point_that_is_not_stated_is_told() -> None:
     ]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", shipped_machines())
 def test_the_bodies_of_shipped_machines_are_free_at_home(name: str) -> None:
     machine = replace(load_machine(name), spindle_point_is_stated=True)
@@ -231,6 +232,7 @@ def test_what_is_at_a_nose_of_unknown_place_hits_fixtures_and_no_machine() -> No
     assert any("clamp" not in between for between in hit[True])  # the table, which starts beside the nose there
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("depth", [0.3, 1.9, 2.1, 3.0, 4.2])
 @pytest.mark.parametrize("sideways", [False, True])
 def test_the_block_that_goes_too_far_is_told_with_its_depth(

@@ -137,6 +137,7 @@ def test_steps_of_a_holder_are_pieces_of_their_own() -> None:
     assert {round(float(np.abs(piece.corners[:, 0]).max())) for piece in holder} == {15, 25}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("count", [1, 255, 256, 257, 1000, 4097])
 def test_the_farthest_point_is_that_of_all(count: int) -> None:
     random = np.random.default_rng(count)

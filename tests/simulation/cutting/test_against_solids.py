@@ -56,6 +56,7 @@ def left_by_booleans(name: str) -> tuple[Manifold, float]:
     return whole - gone, float((whole ^ gone).surface_area())
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("cell", CELLS)
 @pytest.mark.parametrize("name", SWEEPS)
 def test_what_is_left_is_what_booleans_leave(name: str, cell: float) -> None:

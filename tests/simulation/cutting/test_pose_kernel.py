@@ -45,6 +45,7 @@ def motion_from(axis: tuple[float, float, float]) -> Motion:
     return Motion(*values.tolist())
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES.keys())
 @pytest.mark.parametrize("axis", AXES, ids=["up", "leans", "nearly level", "level", "down"])
 def test_rays_are_hit_where_the_tool_is(shape: ToolShape, axis: tuple[float, float, float]) -> None:
@@ -85,6 +86,7 @@ def _inside(shape: ToolShape, motion: Motion, s: float, u: float, v: float) -> F
     return np.asarray(heights[within])
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES.keys())
 @pytest.mark.parametrize("axis", AXES, ids=["up", "leans", "nearly level", "level", "down"])
 def test_an_outline_holds_the_tool_and_little_more(shape: ToolShape, axis: tuple[float, float, float]) -> None:

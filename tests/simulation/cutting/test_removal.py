@@ -21,6 +21,7 @@ BODY: BodySizes = {"flute_length": 30.0, "length": 60.0}
 CELLS = [1.0, 0.5, 0.3]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("cell", CELLS)
 @pytest.mark.parametrize(
     ("shape", "section"),

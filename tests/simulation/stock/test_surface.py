@@ -58,6 +58,7 @@ def test_a_ball_leaves_its_sphere() -> None:
     assert mesh.volume == pytest.approx(4000.0 - cap, rel=2e-3)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("cell", [1.0, 0.7, 0.3])
 @pytest.mark.parametrize("depth", [0.05, 0.3, 1.0])
 def test_a_shallow_groove_leaves_the_faces_of_the_stock_where_they_are(cell: float, depth: float) -> None:
@@ -86,6 +87,7 @@ def test_whatever_was_cut_the_surface_is_closed(seed: int) -> None:
     assert mesh.volume == pytest.approx(stock.volume, rel=0.03)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("seed", [9, 32])  # cubes that had the same vertex, one of them by half a nanometre
 @pytest.mark.parametrize("ending", [".stl", ".ply", ".3mf", ".glb"])
 def test_what_is_saved_is_a_solid_for_others_that_make_equal_corners_one(

@@ -36,6 +36,14 @@ _PROGRAM: Final = HEADS["mikron_600u"].format(lines="L X+10 F100")
 
 CURES: Final = (
     Cure("CL110", "is_program", read, _PROGRAM, (), cured_by=verify("mikron_600u")),
+    Cure(
+        "CL110",
+        "begins_variable",
+        read,
+        HEADS["matsuura_mx330"].format(lines="G1 X#1 F100.").replace("%\n", "").replace("O0001", "#1=5"),
+        (),
+        cured_by=verify("matsuura_mx330"),
+    ),
     _said("CL130", "operation_no_end_path", HEAD, ("GOTO/10.0,0.0,5.0\n", "GOTO/10.0,0.0,5.0\nEND-OF-PATH\n")),
     _said("CL130", "operation_no_end", HEAD + "GOTO/20,0", ("GOTO/20,0", "GOTO/20,0,5\nEND-OF-PATH\n")),
     _said("CL140", "file_empty", "", ("", _CUT)),

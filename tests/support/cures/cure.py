@@ -29,11 +29,11 @@ class Outcome:
         return found | {(code, "") for code, _ in found}
 
     def cures(self, code: str, variant: str) -> list[str]:
-        """The cures of a message, as said or as its explanation has them; and the settings that it is with."""
+        """The cures of a message, as said or as its explanation has them, with the settings or arguments concerned."""
         if not variant:
             return [explanations()[code].cure]
         return [
-            f"{problem.setting}: {each.cure}"
+            f"{problem.subject.name if problem.subject else ''}: {each.cure}"
             for problem in self.problems
             for each in _with_parts(problem.wording)
             if (each.code, each.variant) == (code, variant)
@@ -55,6 +55,7 @@ class Cure:
     settings        with which it is drawn
     refuses         the cure promises a refusal
     cured_by        what the cure wants done in place of the trial; None: the same again
+    stays           the cure has something looked at, and nothing changed: the input ends well as it is
     """
 
     code: str
@@ -65,6 +66,7 @@ class Cure:
     settings: Mapping[str, str] = field(default_factory=dict)
     refuses: bool = False
     cured_by: Trial | None = None
+    stays: bool = False
 
     def faults(self, folder: Path) -> Iterator[str]:
         """What is wrong with the cure; nothing where it does what it says."""
@@ -74,6 +76,10 @@ class Cure:
             yield f"{self.code} {self.variant} is not drawn: {sorted(before.said)} {before.problems}"
             return
         said = " / ".join(before.cures(*message))
+        if self.stays:
+            if not before.is_sound or self.changes:
+                yield f"{self.code} {self.variant} does not end well as it is: {said} {before.problems}"
+            return
         text, settings = self.text, dict(self.settings)
         for change in self.changes:
             if isinstance(change, tuple):
@@ -91,6 +97,21 @@ class Cure:
         if after.is_sound == self.refuses:
             rest = "; ".join(map(str, after.problems))
             yield f"{self.code} {self.variant} ends {'well' if after.is_sound else 'badly'}: {said}\n    {rest}"
+
+
+def marked(message: str, trial: Trial, *lines: str, head: str = "", foot: str = "", **settings: str) -> Cure:
+    """Return the cure of a message, "CODE VARIANT", by lines between a head and a foot.
+
+    A line that begins with "- " goes out, one that begins with "+ " comes in; the others stand in both texts. Where
+    there are no such lines, the cure has nothing changed.
+    """
+    code, _, variant = message.partition(" ")
+    wrong, cured = (
+        "".join((head, *(f"{line.removeprefix(own)}\n" for line in lines if not line.startswith(other)), foot))
+        for own, other in (("- ", "+ "), ("+ ", "- "))
+    )
+    changes = ((wrong, cured),) if wrong != cured else ()
+    return Cure(code, variant, trial, wrong, changes, settings, stays=not changes)
 
 
 def read(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:

@@ -40,6 +40,12 @@ CURES: Final = (
     _head("DEF130", "backslash_in_text", '"Ours"', '"C:\\mill"', "'C:\\mill'"),
     _head("DEF330", "not_in_quotes", '"Ours"', "55", '"55"'),
     _line(
+        "DEF330",
+        "sign_of_comments",
+        '[control.reading]\nmore_comments = [";", "!"]\nblock_ends = [";"]',
+        '[control.reading]\nmore_comments = ["!"]\nblock_ends = [";"]',
+    ),
+    _line(
         "NC190",
         "excluding_effects",
         '[control.known]\nM60 = "spindle clockwise, spindle off"',

@@ -21,6 +21,10 @@ _KLARTEXT: Final = HEADS["mikron_600u"].format(lines="L X+10 F100")
 _DRILLING: Final = (
     "CYCL DEF 200 DRILLING Q200=+2 Q201=-5 Q206=+100 Q202=+5 Q210=+0 Q203=+0 Q204=+20 Q211=+0\nL X+5 FMAX M99"
 )
+_PECKING: Final = (
+    "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 DIST +2\nCYCL DEF 1.2 DEPTH -5\nCYCL DEF 1.3 PLNGNG +5\nCYCL DEF 1.4 DWELL +0\n"
+    "CYCL DEF 1.5 F100\nL X+5 FMAX M99"
+)
 _LINUXCNC: Final = HEADS["xyzac_trt"].format(lines="G1 X10 F100")
 
 CURES: Final = (
@@ -57,6 +61,29 @@ CURES: Final = (
     ),
     _line("NC210", "", "G1 X1..5 F100", "G1 X1.5 F100"),
     _line("NC380", "depth_above_surface", _DRILLING.replace("Q201=-", "Q201=+"), _DRILLING, on="mikron_600u"),
+    _line("NC380", "depth_above_surface", _PECKING.replace("DEPTH -", "DEPTH +"), _PECKING, on="mikron_600u"),
+    _line("NC221", "foreign_parameters", _DRILLING.replace("+0\nL", "+0 Q258=+1\nL"), _DRILLING, on="mikron_600u"),
+    _line(
+        "NC343",
+        "side_without_r0",
+        "L X+9 RL F100\nL X+8 RR\nL X+7 R0",
+        "L X+9 RL F100\nL X+8 R0\nL X+7 RR\nL X+6 R0",
+        on="mikron_600u",
+    ),
+    _line(
+        "NC221",
+        "q_without_sign",
+        "G98 G73 X1. Z-10. R2. Q-2. F100.\nG80",
+        "G98 G73 X1. Z-10. R2. Q2. F100.\nG80",
+        on="matsuura_mx330",
+    ),
+    _line(
+        "NC221",
+        "bore_without_shift",
+        "G98 G76 X1. Z-10. R2. F100.\nG80",
+        "G98 G76 X1. Z-10. R2. Q.5 F100.\nG80",
+        on="matsuura_mx330",
+    ),
     _line("NC380", "clearance_below_zero", _DRILLING.replace("Q200=+", "Q200=-"), _DRILLING, on="mikron_600u"),
     _line(
         "NC210", "parameter_of_cycle_twice", _DRILLING.replace("+0\nL", "+0 Q201=-6\nL"), _DRILLING, on="mikron_600u"

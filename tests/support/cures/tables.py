@@ -1,29 +1,18 @@
-"""The tables of cures, by their names."""
+"""The tables of cures, by the names of their modules: each module of this folder that has ``CURES``."""
 
 from collections.abc import Mapping
+from importlib import import_module
+from pkgutil import iter_modules
 from typing import Final
 
-from tests.support.cures import (
-    apt_files,
-    cl_files,
-    conversions,
-    definitions,
-    posts,
-    programs,
-    simulations,
-    stated_words,
-    stocks,
-)
+from tests.support import cures
 from tests.support.cures.cure import Cure
 
-TABLES: Final[Mapping[str, tuple[Cure, ...]]] = {
-    "apt_files": apt_files.CURES,
-    "cl_files": cl_files.CURES,
-    "conversions": conversions.CURES,
-    "definitions": definitions.CURES,
-    "posts": posts.CURES,
-    "programs": programs.CURES,
-    "simulations": simulations.CURES,
-    "stated_words": stated_words.CURES,
-    "stocks": stocks.CURES,
-}
+
+def _tables() -> dict[str, tuple[Cure, ...]]:
+    names = sorted(module.name for module in iter_modules(cures.__path__) if module.name not in ("ledger", "tables"))
+    modules = {name: import_module(f"{cures.__name__}.{name}") for name in names}
+    return {name: tuple(module.CURES) for name, module in modules.items() if hasattr(module, "CURES")}
+
+
+TABLES: Final[Mapping[str, tuple[Cure, ...]]] = _tables()

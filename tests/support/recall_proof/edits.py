@@ -5,7 +5,7 @@ force. They leave out an edit that would change nothing there, such as the other
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from tests.support.recall_proof.languages import LANGUAGES, Language
@@ -25,11 +25,16 @@ _SCALING = {"inches in the cut", "a mirror in the cut", "a scale in the cut"}
 
 @dataclass(frozen=True)
 class Edit:
-    """A kind of edit, the line of the block it is at (from 1), and the text with it."""
+    """A kind of edit, the line of the block it is at (from 1), and what makes the text with it."""
 
     kind: str
     line: int
-    text: str
+    content: str | Callable[[], str]  # few of all edits are judged
+
+    @property
+    def text(self) -> str:
+        """The program with it."""
+        return self.content if isinstance(self.content, str) else self.content()
 
 
 @dataclass
@@ -117,9 +122,10 @@ def harmful(text: str, family: str) -> Iterator[Edit]:
         yield from maker(blocks, language)
 
 
-def with_lines(blocks: list[Block], at: int, *lines: str) -> str:
-    """The text with other lines in place of one."""
-    return "\n".join([*(b.line for b in blocks[:at]), *lines, *(b.line for b in blocks[at + 1 :])]) + "\n"
+def with_lines(blocks: list[Block], at: int, *lines: str, end: int | None = None) -> Callable[[], str]:
+    """What makes the text with other lines in place of one, or of those before ``end``."""
+    after = at + 1 if end is None else end
+    return lambda: "\n".join([*(b.line for b in blocks[:at]), *lines, *(b.line for b in blocks[after:])]) + "\n"
 
 
 def _changed(block: Block, word: re.Match[str], text: str) -> str:
@@ -173,10 +179,8 @@ def _orders(blocks: list[Block], language: Language) -> Iterator[Edit]:
             following = blocks[k + 1] if k + 1 < len(blocks) else None
             centre = " CC " in block.code or (following is not None and " CC " in following.code)
             if following and following.cuts and not centre and _code(following) != _code(block):
-                text = with_lines(blocks, k, following.line)
-                lines = text.splitlines()
-                lines[k + 1] = block.line
-                yield Edit("two cuts exchanged", k + 1, "\n".join(lines) + "\n")
+                text = with_lines(blocks, k, following.line, block.line, end=k + 2)
+                yield Edit("two cuts exchanged", k + 1, text)
         elif block.rapids and moves:
             yield Edit("a rapid left out", k + 1, with_lines(blocks, k))
 

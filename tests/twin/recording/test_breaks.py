@@ -115,6 +115,7 @@ def test_a_cut_cable_loses_nothing_that_was_shown_and_leaves_a_gap(tmp_path: Pat
     assert all(stamps[k] == BEGIN + k * TICK for k in (*range(1, 200), *range(300, 400)))
 
 
+@pytest.mark.nightly
 def test_a_server_that_ends_and_starts_again_is_recorded_on(tmp_path: Path) -> None:
     async def run() -> Recorder:
         async with serving() as (machine, port):

@@ -42,6 +42,7 @@ def test_a_machine_that_does_what_it_should_is_on_the_path(with_lines: bool) -> 
     assert (np.diff(compared.row[at]) >= 0).all()
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("with_lines", [True, False])
 @pytest.mark.parametrize("axis", ["X", "Y", "Z", "B", "C"])
 def test_an_axis_that_is_off_in_one_block_fails_that_block(axis: str, with_lines: bool) -> None:

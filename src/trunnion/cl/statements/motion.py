@@ -149,7 +149,7 @@ def unsupported(state: ReaderState, statement: Statement) -> None:
 def write_row(state: ReaderState, values: tuple[float, ...]) -> None:
     """Write the row that the scan has reserved; the scan has set its axis to NaN, that is "not given"."""
     if not state.has_row:
-        raise StatementError(Wording("CL310", "motion_without_coordinates"))
+        raise StatementError(Wording("CL250", "unreadable_motion").of_key("GOTO"))
     state.columns.tip[state.row] = values[:3]
     if len(values) == 6:
         state.columns.axis[state.row] = values[3:]

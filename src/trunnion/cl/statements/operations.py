@@ -79,19 +79,9 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     if form in _TLDATA_FIELDS and len(given) not in layouts:
         *others, last = map(str, layouts)
         raise StatementError(
-            (
-                Wording(
-                    "CL770", "tldata_number_expected", words=words[0], count=len(given), others=tuple(others), last=last
-                )
-                if others
-                else Wording("CL770", "tldata_number", words=words[0], count=len(given), last=last)
-            )
-            if words
-            else (
-                Wording("CL770", "tldata_of_other_length", count=len(given), others=tuple(others), last=last)
-                if others
-                else Wording("CL770", "tldata_of_one_length", count=len(given), last=last)
-            )
+            Wording("CL770", "tldata_number_expected", words=form, count=len(given), others=tuple(others), last=last)
+            if others
+            else Wording("CL770", "tldata_number", words=form, count=len(given), last=last)
         )
     sizes = zip(layouts.get(len(given), ()), given, strict=False)
     fields: dict[str, Any] = {field: number for field, number in sizes if field}
@@ -152,8 +142,6 @@ def units(state: ReaderState, statement: Statement) -> None:
     if state.length_unit is not None and state.length_unit[0] != LENGTH_UNITS[word]:
         raise StatementError(
             Wording("CL410", "units_after_another", values=statement.values[0], length_unit=state.length_unit[1])
-            if statement.values
-            else Wording("CL410", "units_after_another_unit", length_unit=state.length_unit[1])
         )
     state.length_unit = state.length_unit or (LENGTH_UNITS[word], state.line)
 

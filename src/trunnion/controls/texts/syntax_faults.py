@@ -80,9 +80,8 @@ def syntax_fault(text: str, line: int) -> Fault:
         if fault is not None:
             return fault
     where = next((tag for tag in near if tag.opening != "{#"), None)
-    if where is None:
-        return Fault("not_understood", line)
-    return Fault("tag_not_understood", line, tag=str(where))
+    shown = text.split("\n")[line - 1][:_SHOWN] if where is None else str(where)
+    return Fault("tag_not_understood", line, tag=shown)
 
 
 # Where tags end
@@ -168,9 +167,7 @@ def _slip(tag: _Tag) -> Fault | None:
     unseen = next((sign for sign in _TEXT.sub("", tag.body) if _is_invisible(sign)), "")
     if unseen:
         name = unicodedata.name(unseen, "").lower()
-        if name:
-            return Fault("unseen_sign_by_name", tag.line, tag=str(tag), sign=_code_of(unseen), name=name)
-        return Fault("unseen_sign", tag.line, tag=str(tag), sign=_code_of(unseen))
+        return Fault("unseen_sign_by_name", tag.line, tag=str(tag), sign=_code_of(unseen), name=name)
     slips = (_statement_slip, _sign_slip, _comparison_slip, _bracket_slip, _missing_slip)
     return next((found for slip in slips if (found := slip(tag, bare)) is not None), None)
 

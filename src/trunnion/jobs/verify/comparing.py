@@ -1,6 +1,7 @@
 """Comparison of two NC programs by what they make the tool do."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Final, Unpack
 
@@ -20,6 +21,9 @@ from trunnion.verification.skip_meanings import other_meanings, words_of
 #: How far tips may be apart, mm: the last digit of most programs; and that of programs in inches.
 _DEFAULT_TOLERANCE: Final = 0.001
 _INCH_TOLERANCE: Final = 0.0026
+
+#: What a reader notes of words and values that were stated and that its program does not need.
+_NOT_NEEDED: Final = "NC228"
 
 
 def diff(
@@ -82,11 +86,12 @@ def diff(
     limits = _INCH_TOLERANCE if coarse else tolerance
     blocks = blocks_in_compensation(one), blocks_in_compensation(two)
     compared = partial(compare, tolerance=limits, axis_tolerance=tolerance, path=found["path"], blocks=blocks)
-    result = compared(*runs)
+    result = replace(compared(*runs), not_needed=_not_needed(runs))
     for levels in other_meanings(*runs) if result.same else ():
         others = (_skipping(runs[0], levels), _skipping(runs[1], levels))
         other = compared(*others)
         if not other.same:
+            other = replace(other, not_needed=result.not_needed)
             return other.within("with_meaning", meaning=words_of(levels, *runs))
     return result
 
@@ -94,6 +99,13 @@ def diff(
 def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], names: tuple[str, str]) -> Run:
     """Return the run of a program, with lines at the feed of rapids as rapids."""
     return restore_rapids(as_run(program, machine, subprograms, names), rapid_feed_of(machine))
+
+
+def _not_needed(runs: tuple[Run, Run]) -> tuple[str, ...]:
+    """Return what was stated for both programs and neither needs."""
+    one, two = ([each.wording for each in run.diagnostics if each.code == _NOT_NEEDED] for run in runs)
+    words = [str(each.parameter("word")) for each in one if each in two]
+    return tuple(dict.fromkeys(words))
 
 
 def _skipping(run: Run, levels: frozenset[int]) -> Run:

@@ -120,7 +120,7 @@ def write_view(
     output: FilePath,
     observer: Observer = SILENT,
     **given: Unpack[ViewArguments],
-) -> None:
+) -> str:
     """Show an NC program on its machine, block by block, on a page that works offline.
 
     Parameters
@@ -162,6 +162,11 @@ def write_view(
     observer
         Receives progress and warnings.
 
+    Returns
+    -------
+    str
+        What the proof says of the program, as the page has it.
+
     Raises
     ------
     InputError
@@ -170,7 +175,7 @@ def write_view(
     Examples
     --------
     >>> import trunnion
-    >>> trunnion.write_view("tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569", output="view.html")
+    >>> _ = trunnion.write_view("tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569", output="view.html")
     """
     place = declared_output("view", "output", output)
     content = prepare_view(nc, observer=observer, **given)
@@ -179,6 +184,7 @@ def write_view(
             content.stock.packed(tell)
     with atomic_file(place, inputs=_shown_files(content)) as sink:
         sink.writelines(render_view(content, embedded=True))
+    return str(content.scene["standing"])
 
 
 def _shown_files(content: ViewContent) -> list[Path]:

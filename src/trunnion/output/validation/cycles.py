@@ -46,8 +46,8 @@ def unsupported_cycle_reasons(
     return reason
 
 
-def cycle_problems(program: Program, motion: Motion, spindle: SpindleState) -> list[Problem]:
-    """Return what is wrong with the cycles of a motion; ``spindle``: before it."""
+def cycle_problems(program: Program, motion: Motion, spindle: SpindleState | None) -> list[Problem]:
+    """Return what is wrong with the cycles of a motion; ``spindle``: before it, None if it stands still."""
     operation = motion.as_written() if any(isinstance(e, CycleOn) for e in motion.operation.events) else None
     if operation is None:
         return []

@@ -32,11 +32,13 @@ def check_program(program: Program) -> list[Problem]:
     turns: bool | None = None  # whether the spindle does; None until the first SPINDL
     rpm: float | None = None
     before, number = "", 0  # the operation before, and its tool
-    spindle = SpindleState(1.0, Sense.CLW)  # until the first SPINDL
+    # A spindle that stands is refused by itself, unless it may: what cycles need of it is asked only then.
+    may_stand = program.effective_setting("standing_spindle") == "allowed"
+    spindle = None if may_stand else SpindleState(1.0, Sense.CLW)
     for motion in program.motions:
         operation = motion.operation
         problems += cycle_problems(program, motion, spindle)
-        spindle = SpindleStates(operation.events, spindle).at(len(operation.moves)) or spindle
+        spindle = SpindleStates(operation.events, spindle).at(len(operation.moves)) or (None if may_stand else spindle)
         stands_at = -1  # row before which a STOP has stopped the spindle: it turns again with the motion
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
         registers = {number for load in loads for number in (load.number, load.adjust)}

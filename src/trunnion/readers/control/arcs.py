@@ -93,7 +93,7 @@ def gap_of_turn(start: Floats, arc: Arc) -> float:
     """
     first, chord = start - arc.centre, arc.end - start
     rise = float(chord @ arc.normal)
-    gap = float(np.linalg.norm(chord - rise * arc.normal))
+    gap = math.hypot(*(chord - rise * arc.normal).tolist())
     if arc.turns or not SAME_POINT < gap < _GAP or arc.radius < _GAPS * gap:
         return 0.0
     turns_on = float(np.cross(first, chord) @ arc.normal) > 0.0
@@ -113,8 +113,8 @@ def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise:
     middle[plane] = start[plane]
     first, last = start - middle, end - middle
     first[plane] = last[plane] = 0.0
-    radius = float(np.linalg.norm(first))
-    off = abs(float(np.linalg.norm(last)) - radius)
+    radius = math.hypot(*first.tolist())
+    off = abs(math.hypot(*last.tolist()) - radius)
     if radius < SAME_POINT:
         raise ArcError(Wording("NC320", "circle_no_radius"))
     if off > max(RADIUS_ERROR, RADIUS_RATIO * radius):

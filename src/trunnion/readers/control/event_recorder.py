@@ -1,6 +1,7 @@
 """Events between the rows of a run, the tools, and the modal state."""
 
 import math
+from collections import Counter
 from collections.abc import Callable
 from typing import Final
 
@@ -40,6 +41,7 @@ class EventRecorder:
         self.events: list[RunEvent] = []
         self.mode_words: list[ModeWord] = []
         self._modes_said: dict[str, str] = {}
+        self._times_said: Counter[str] = Counter()
         #: The row from which on the program has said a mode.
         self.said_from: dict[str, int] = {}
         #: The row from which on it relies on one that counts only for some blocks, such as those of cycles.
@@ -86,6 +88,11 @@ class EventRecorder:
         if self._modes_said.get(mode) != word:
             self._modes_said[mode] = word
             self.mode_words.append(ModeWord(self.row, mode, word))
+
+    def say_once(self, word: str) -> None:
+        """Record a word that acts where it stands, and that no path shows: the mode is how often it has been said."""
+        self._times_said[word] += 1
+        self.say_mode(word, f"{self._times_said[word]}")
 
     def add_builders_word(self, letter: str, value: float) -> None:
         """Record an M or H word of the machine's builder, and note the first of each: nobody has said what it does."""
@@ -134,6 +141,8 @@ class EventRecorder:
         ``on``: it stops at each; ``path``: it never leaves the path, and stops where it must; ``off``: as its settings
         say; ``block``: it stops at the end of this block.
         """
+        if mode == "block":
+            self.say_once("exact stop in one block")
         self.add_event("exact_stop", mode)
 
     def add_tool_delta(self, name: str, value: float) -> None:

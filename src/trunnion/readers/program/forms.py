@@ -91,6 +91,9 @@ def read_form(table: Table, family: str) -> Form:
             lists[key.name] = _words(table, key)
         elif text := table.text(key.name, "", one_of=key.words):
             one[key.name] = text
+    for sign in lists.get("more_comments", ()):
+        if sign in lists.get("block_ends", ()):
+            table.add_problem("block_ends", Wording("DEF330", "sign_of_comments", sign=sign))
     return Form(one, lists)
 
 
@@ -101,9 +104,10 @@ def form_of(machine: Machine) -> Form:
 
 
 def _words(table: Table, key: FormKey) -> tuple[str, ...]:
-    found = table.texts(key.name, ())
+    words = tuple(f'"{each}"' for each in key.words)
+    found = table.texts(key.name, (), allowed=phrase("list_of_these", words=words))
     for word in found:
         if word not in key.words:
-            allowed = phrase("one_of", words=tuple(f'"{each}"' for each in key.words))
+            allowed = phrase("one_of", words=words)
             table.add_problem(key.name, Wording("DEF330", "not_allowed", value=f'"{word}"', allowed=allowed))
     return tuple(word for word in key.words if word in found)

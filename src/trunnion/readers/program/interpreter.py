@@ -153,7 +153,7 @@ class Interpreter(ABC, Generic[A]):
 
     def run(self, write_progress: WriteProgress | None = None) -> Run:
         """Execute the program; ``write_progress`` is that of its file if it is still being written."""
-        main = self.source_type(self._path, encoding=self._options.encoding or "")
+        main = self._text_of(self._path)
         if write_progress is not None:
             main.follow(write_progress)
         try:
@@ -325,13 +325,17 @@ class Interpreter(ABC, Generic[A]):
 
     # Subprograms
 
+    def _text_of(self, path: Path) -> SourceText:
+        """Return the text of a program at its first line."""
+        return self.source_type(path, encoding=self._options.encoding or "")
+
     def _open_subprogram(self, path: Path) -> tuple[SourceText, int]:
         """Return the text of a subprogram at its first line, and its index in ``Run.files``."""
         if path not in self._sources:
             if len(self._sources) >= MAX_SUBPROGRAMS:
                 raise self._limit_error(Wording("NC140", "too_many_subprograms", most=MAX_SUBPROGRAMS))
             self._files.append(str(path))
-            self._sources[path] = self.source_type(path, encoding=self._options.encoding or ""), len(self._files) - 1
+            self._sources[path] = self._text_of(path), len(self._files) - 1
             source, file = self._sources[path]
         else:
             # A file may be active more than once: each time with a position of its own.

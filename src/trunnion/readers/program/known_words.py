@@ -50,8 +50,8 @@ _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
 #: A code with a word right behind it: ``G65P9810``.
 _GLUED: Final = re.compile(r"^([GM][0-9]+(?:\.[0-9])?)(?=[A-Z])")
 _CODE: Final = re.compile(r"^[GM](?=[0-9])")
-#: A G code without tenths: one with them is another word.
 _HAS_CODE: Final = re.compile(r"[GM][0-9]")
+#: A G code without tenths: one with them is another word.
 _G_CODE: Final = re.compile(r"G[0-9]+")
 #: Words that may stand among others: a G code, also with a value, or a name with its arguments.
 _BESIDE: Final = re.compile(r"G[0-9]+(?:\.[0-9])?(?: [ELPQ][0-9]+)?|[A-Z]{2}[A-Z0-9_]*|[A-Z][0-9]{2,}")

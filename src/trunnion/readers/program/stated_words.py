@@ -42,11 +42,15 @@ def stated_words(known: Iterable[KnownWord], noted: Iterable[Diagnostic], machin
     noted  its diagnostics, which name the variables that it read
     """
     words = [StatedWord(each.word, each.says, each.is_given) for each in known if each.code is None or each.is_given]
-    values = control_of(machine).table("reading").table("variables")
+    control = control_of(machine)
+    values, effects = control.table("reading").table("variables"), control.table("known")
+    replaced = {normal_word(name): effects.replaced(name) for name in effects.names()}
+    words = [replace(each, instead=str(replaced.get(each.word) or "")) for each in words]
     for each in noted:
         if each.code == OF_VARIABLES:
             name, value = str(each.wording.parameter("name")), each.wording.parameter("value")
-            words.append(StatedWord(name, f"= {value:g}", values.location(name)[0] == GIVEN))
+            is_given, other = values.location(name)[0] == GIVEN, values.replaced(name)
+            words.append(StatedWord(name, f"= {value:g}", is_given, "" if other is None else f"{other:g}"))
     return tuple(dict.fromkeys(words))
 
 
@@ -79,5 +83,7 @@ def _merged_values(own: Mapping[str, LocatedValue], added: Mapping[str, LocatedV
         before = found.get(key)
         if before is not None and isinstance(before.value, dict) and isinstance(each.value, dict):
             each = LocatedValue(_merged_values(before.value, each.value), before.file, before.line)
+        elif before is not None and before.value != each.value:
+            each = replace(each, instead=before.value)
         found[key] = each
     return found

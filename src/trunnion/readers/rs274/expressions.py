@@ -7,8 +7,9 @@ exhaust the stack. A value may be None: that of an unset parameter, in languages
 import math
 import operator
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Final, Protocol
 
 from trunnion.messages import Wording
@@ -22,6 +23,9 @@ MAX_VALUE: Final = 1e300
 
 _NUMBER = re.compile(r"[0-9]+\.?[0-9]*|\.[0-9]+")
 _NAME = re.compile(r"<([^<>#\[\]]{1,80})>")
+
+#: What a number without a sign begins with.
+_FIGURES: Final = frozenset("0123456789.")
 
 Value = float | None
 
@@ -120,6 +124,8 @@ class ExpressionReader:
 
     def signed_value(self) -> tuple[Value, bool]:
         """Read the value of a word; returns it, and whether it is a number without a point."""
+        if self.text[self.at : self.at + 1] in _FIGURES:
+            return self.number()
         self._deeper()
         try:
             if self.accept("-"):
@@ -166,21 +172,17 @@ class ExpressionReader:
         return _or_zero(self.bracket())
 
     def _level(self, level: int) -> Value:
-        levels = self._arithmetic.levels
-        if level == len(levels):
-            return self.signed_value()[0]
-        left = self._level(level + 1)
-        while True:
-            symbol = next((name for name in levels[level] if self.accept_operator(name)), None)
-            if symbol is None:
-                return left
-            left = self._apply(symbol, left, self._level(level + 1))
-
-    def accept_operator(self, name: str) -> bool:
-        """Read an operator if it comes next; ``*`` is not half of ``**``."""
-        if name == "*" and self.text.startswith("**", self.at):
-            return False
-        return self.accept(name)
+        """Read an expression of operators that bind at least as closely as those of a level."""
+        left = self.signed_value()[0]
+        operators, levels = _operators(self._arithmetic)
+        while (match := operators.match(self.text, self.at)) is not None:
+            symbol = match.group()
+            own = levels[symbol]
+            if own < level:
+                break
+            self.at = match.end()
+            left = self._apply(symbol, left, self._level(own + 1))
+        return left
 
     def _apply(self, symbol: str, left: Value, right: Value) -> float:
         compare = self._arithmetic.compare_unset
@@ -191,8 +193,11 @@ class ExpressionReader:
         return _evaluate(lambda: self._arithmetic.operators[symbol](_or_zero(left), _or_zero(right)), symbol)
 
     def _function(self) -> str:
-        names = (*self._arithmetic.functions, *self._arithmetic.pairs, "EXISTS")
-        return next((name for name in names if self.accept(name)), "")
+        match = _functions(self._arithmetic).match(self.text, self.at)
+        if match is None:
+            return ""
+        self.at = match.end()
+        return match.group()
 
     def _call(self, name: str) -> float:
         if name == "EXISTS":
@@ -220,6 +225,24 @@ class ExpressionReader:
         self._depth += 1
         if self._depth > MAX_NESTING:
             raise BlockError(Wording("NC210", "expressions_too_deep", most=MAX_NESTING))
+
+
+@cache
+def _operators(arithmetic: Arithmetic) -> tuple[re.Pattern[str], dict[str, int]]:
+    """Return what finds the next operator, and the level of each; ``*`` is not half of ``**``."""
+    levels = {name: level for level, names in enumerate(arithmetic.levels) for name in names}
+    return _any_of(levels), levels
+
+
+@cache
+def _functions(arithmetic: Arithmetic) -> re.Pattern[str]:
+    """Return what finds the name of a function."""
+    return _any_of((*arithmetic.functions, *arithmetic.pairs, "EXISTS"))
+
+
+def _any_of(names: Collection[str]) -> re.Pattern[str]:
+    """Return what finds the longest of the names that come next; nothing where a language has none."""
+    return re.compile("|".join(re.escape(name) for name in sorted(names, key=len, reverse=True)) or "(?!)")
 
 
 def _or_zero(value: Value) -> float:

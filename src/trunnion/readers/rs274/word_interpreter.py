@@ -69,6 +69,8 @@ class WordInterpreter(Rs274Interpreter[A]):
 
     def _check_groups(self, block: Block) -> None:
         """Report two G codes of a block that set one mode."""
+        if len(block.g) < 2:
+            return
         for fault in same_group(block.g, self.table.groups["G"], lambda code: self.table.words("G", [code])[0].text):
             self._note(fault, Severity.ERROR)
 
@@ -175,7 +177,8 @@ class WordInterpreter(Rs274Interpreter[A]):
             block.take(letter)
         if word.effect in _NOT_SIMULATED:
             severity, code = _NOT_SIMULATED[word.effect]
-            self._note(Wording(word.problem or code, "not_simulated", word=word.text, does=word.does), severity)
+            text = word.text if word.code >= 0 else self.control.own_words.own_text(word.code)
+            self._note(Wording(word.problem or code, "not_simulated", word=text, does=word.does), severity)
         elif word.effect is Effect.UNKNOWN:
             self._execute_unknown(word)
         if word.mode:

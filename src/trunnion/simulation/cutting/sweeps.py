@@ -151,9 +151,9 @@ def unknown_swivels(run: Run, low: Floats, high: Floats) -> Ints:
     Those with the tool farther from a box, (3,) to (3,) mm, than the box is large are left out, and those that begin or
     end at a machine position.
     """
-    if _is_placed(run) or not len(run):
-        return np.zeros(0, np.int64)
-    rows = np.flatnonzero(StatedTips.of(run).before & turns_without_tcp(run, np.arange(len(run))))
+    tips = StatedTips.of(run)
+    rows = np.flatnonzero(tips.before & ~tips.placed)
+    rows = rows[turns_without_tcp(run, rows)]
     to_machine = run.state.machine_frame.at(rows) & ((run.programmed[rows] & _XYZ) != 0)
     rows = rows[~to_machine]
     tip = run.positions(rows - 1).tip
@@ -173,16 +173,11 @@ def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
     return np.asarray(rows[below])
 
 
-def _is_placed(run: Run) -> bool:
-    """Whether positions of the machine are positions of the workpiece too."""
-    return run.machine.workpiece_zero is not None and run.machine.tool_length is not None
-
-
 def _where_stated(run: Run, sweeps: RowSweeps, sizes: SweepSizes) -> RowSweeps:
     """Return the sweeps between known places, and those that leave for unknown ones, or come from them."""
     tips, row = StatedTips.of(run), sweeps.row
     before, after = tips.before[row], tips.after[row]
-    turns = np.zeros(len(row), np.bool_) if _is_placed(run) else turns_without_tcp(run, row)
+    turns = ~tips.placed[row] & turns_without_tcp(run, row)
     keep = before & after & ~turns
     if keep.all():
         return sweeps

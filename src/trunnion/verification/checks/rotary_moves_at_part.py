@@ -13,13 +13,13 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
+from trunnion.machines import SAFE_DISTANCE, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.verification.context import Context
 from trunnion.verification.kinematics.cut_extent import cut_extent
-from trunnion.verification.kinematics.home_tolerance import home_tolerance
+from trunnion.verification.kinematics.home_tolerance import home_tolerance, spindle_slide
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes, rotary_positioning_flags
 from trunnion.verification.results import Place
@@ -88,7 +88,7 @@ class _Judge:
         self._context, self._run = context, context.run
         self._machine = context.run.machine
         self._retracts = np.sort(np.array([e.before_row for e in self._run.events if e.kind == "retract"], np.int64))
-        self._along, self._outward = _spindle_slide(self._machine)
+        self._along, self._outward = spindle_slide(self._machine)
         frame = self._run.state.machine_frame.rows_with(True)
         self._frame = frame[~np.isin(frame, self._retracts)]
         self._machine_positions = MachinePositions.of(self._run)
@@ -183,7 +183,7 @@ class _Judge:
     def _judge_by_number(self, row: int, found: RotaryMovesAtPart) -> None:
         """Judge a turn by the distance between the tool and the turned part."""
         poses = self._run.positions(np.array([row - 1, row])).joints
-        distance = self._distance(poses[0], poses[1])
+        distance = self._distance(row, poses[0], poses[1])
         if distance is not None and distance >= SAFE_DISTANCE:
             found.distances.append(distance)
             return
@@ -193,10 +193,10 @@ class _Judge:
             said = Wording("turns", "near_part", distance=distance, least=SAFE_DISTANCE, cure=cure)
         found.places.append(self._context.place(row, distance or 0.0, said))
 
-    def _distance(self, before: Floats, after: Floats) -> float | None:
-        """Distance of the tool from the turned part, mm; None if it is not known where the part turns to."""
-        machine, slides = self._machine, list(self._machine.linear)
-        if (np.abs(after[slides] - before[slides]) > STILL).any() or not self._knows_the_turn(before, after):
+    def _distance(self, row: int, before: Floats, after: Floats) -> float | None:
+        """Distance of the tool from the part that a row turns, mm; None if it is not known where the part turns to."""
+        machine, slides = self._run.machine_at(row), list(self._machine.linear)
+        if (np.abs(after[slides] - before[slides]) > STILL).any() or not self._knows_the_turn(row, before, after):
             return None
         if not self._part_is_known:
             self._part, self._part_is_known = cut_extent(self._run), True
@@ -204,12 +204,15 @@ class _Judge:
             return None
         return turn_clearance(machine, before, after, self._part)
 
-    def _knows_the_turn(self, before: Floats, after: Floats) -> bool:
-        """Whether it is known where the part, or the head, turns to."""
-        machine = self._machine
+    def _knows_the_turn(self, row: int, before: Floats, after: Floats) -> bool:
+        """Whether it is known where the part, or the head, turns to, and how high the tip is."""
+        machine = self._run.machine_at(row)
         moved = [k for k in machine.rotary if abs(after[k] - before[k]) > STILL]
-        if machine.tool_length is None and any(machine.axes[k].mount is Mount.TOOL for k in moved):
-            return False  # the tip swings by a length that is not known
+        if machine.tool_length is None:
+            if any(machine.axes[k].mount is Mount.TOOL for k in moved):
+                return False  # the tip swings by a length that is not known
+            if self._machine_positions.at(np.array([row - 1]))[0, self._along]:
+                return False  # the tip is below a position of the machine by a length that is not known
         if machine.workpiece_zero is not None:
             return True
         return not len(self._frame) and turns_part_alone(machine, before, after, STILL)
@@ -221,13 +224,6 @@ class _Judge:
             cure = Wording("turns", "retract")
         unplaced = distance is None and self._machine.workpiece_zero is None
         return Wording("turns", "or_say_zero", cure=cure) if unplaced else cure
-
-
-def _spindle_slide(machine: Machine) -> tuple[int, float]:
-    """Column of the slide along the spindle, and whether its growing values lead away from the part (1.0 or -1.0)."""
-    along = {k: float(np.dot(machine.axes[k].direction, machine.spindle_direction)) for k in machine.linear}
-    column = max(along, key=lambda k: abs(along[k]))
-    return column, float(np.copysign(1.0, along[column] * machine.axes[column].sense))
 
 
 def _positioning_rows(run: Run) -> Ints:

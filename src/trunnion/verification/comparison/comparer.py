@@ -42,17 +42,25 @@ _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
 class Comparer:
     """Follows both programs together; ``i`` and ``j`` count their motions.
 
-    blocks  across how many blocks without motion either control finds the next corner within radius compensation
+    blocks    across how many blocks without motion either control finds the next corner within radius compensation
+    left_out  rows of both that go to points that nobody knows; from there both may come in one leg or in several
     """
 
     def __init__(
-        self, one: Run, two: Run, tolerances: PointTolerances, *, path: bool = False, blocks: tuple[int, int]
+        self,
+        one: Run,
+        two: Run,
+        tolerances: PointTolerances,
+        *,
+        path: bool = False,
+        blocks: tuple[int, int],
+        left_out: tuple[Flags | None, Flags | None] = (None, None),
     ) -> None:
         coolants: dict[str, int] = {}
         tools: dict[str, int] = {}
         same_machine = one.machine is two.machine or one.machine.key == two.machine.key
-        self._one = MovingRows(one, same_machine, coolants, tools)
-        self._two = MovingRows(two, same_machine, coolants, tools)
+        self._one = MovingRows(one, same_machine, coolants, tools, left_out=left_out[0])
+        self._two = MovingRows(two, same_machine, coolants, tools, left_out=left_out[1])
         self._states = StateComparison(compared_states(self._one, self._two, path=path))
         programs = () if path else (self._one, self._two)
         self._events = [
@@ -196,6 +204,8 @@ class Comparer:
         """Whether motion ``i`` is an additional point on the path of the other's motion ``j``."""
         if more.run.kind[more.rows[i]] != less.run.kind[less.rows[j]]:
             return False
+        if more.comes_from_above(i, less.run.tip[less.rows[j]], self._tolerances.tip) and less.comes_from_anywhere(j):
+            return True
         return ends_on_path(more, i, less, j, self._tolerances)
 
     def _differ(self, i: int, j: int) -> tuple[int, int]:

@@ -14,6 +14,7 @@ from typing import Final
 
 from trunnion.model.run import Run
 from trunnion.verification.comparison.comparer import Comparer
+from trunnion.verification.comparison.moving_rows import unknown_points
 from trunnion.verification.comparison.nominal_runs import missing_values, with_nominal_values
 from trunnion.verification.comparison.on_path import PointTolerances
 from trunnion.verification.comparison.result import Alignment, Comparison
@@ -44,9 +45,10 @@ def compare(
                     compensation
     """
     tolerances = PointTolerances.of(tolerance, tolerance if axis_tolerance is None else axis_tolerance)
+    left_out = (unknown_points(one), unknown_points(two)) if path else (None, None)
 
     def compared(first: Run, second: Run) -> Comparison:
-        return Comparer(first, second, tolerances, path=path, blocks=blocks).compare()
+        return Comparer(first, second, tolerances, path=path, blocks=blocks, left_out=left_out).compare()
 
     found = compared(one, two)
     return _elsewhere(one, two, compared) or found if found.same else found

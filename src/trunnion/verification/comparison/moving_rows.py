@@ -22,13 +22,25 @@ class MovingRows:
     ``moves`` are those that go elsewhere than the one before. A block that states an axis for the first time counts
     too, as it moves the axis from wherever it has been.
 
+    ``left_out`` are rows that go to points that nobody knows, as ``unknown_points`` has them.
+
     ``coolants`` and ``tools`` give each coolant word and tool the same number in both programs; they are filled in.
     """
 
-    def __init__(self, run: Run, with_machine_frame: bool, coolants: dict[str, int], tools: dict[str, int]) -> None:
+    def __init__(
+        self,
+        run: Run,
+        with_machine_frame: bool,
+        coolants: dict[str, int],
+        tools: dict[str, int],
+        *,
+        left_out: Flags | None = None,
+    ) -> None:
         self.run = run
         in_workpiece = workpiece_rows(run)
         rows = in_workpiece.rows(0, len(in_workpiece))
+        if left_out is not None:
+            rows = rows[~left_out[rows]]
         if with_machine_frame:
             rows = np.union1d(rows, run.state.machine_frame.rows_with(True))
         self.coolant = _coolant_numbers(run, coolants)
@@ -43,6 +55,9 @@ class MovingRows:
         if with_machine_frame:
             moving |= np.isin(rows, first_statements(run))
         self.rows, self.moves = rows[moving], moves[moving]
+        self._from_anywhere = np.zeros(len(self.rows), np.bool_)
+        if left_out is not None:
+            self._from_anywhere = np.concatenate(([True], left_out | run.state.machine_frame.column()))[self.rows]
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -66,6 +81,20 @@ class MovingRows:
         if self._machine_positions is None or self._machine_positions.known:
             return np.zeros(len(rows), np.bool_)
         return np.asarray(self.run.state.machine_frame.at(rows))
+
+    def comes_from_anywhere(self, k: int) -> bool:
+        """Whether nobody knows where motion ``k`` begins."""
+        return bool(self._from_anywhere[k])
+
+    def comes_from_above(self, k: int, tip: Floats, tolerance: float) -> bool:
+        """Whether motion ``k`` comes at rapid from where nobody knows to a point straight above a tip."""
+        row = self.rows[k]
+        if not self._from_anywhere[k] or self.run.kind[row] != Kind.RAPID:
+            return False
+        axis = self.run.axis[row]
+        away = self.run.tip[row] - tip
+        height = float(away @ axis)
+        return height > 0.0 and bool(np.abs(away - height * axis).max() <= tolerance)
 
     def start(self, k: int) -> tuple[Floats, Floats]:
         """Tip and tool axis before motion ``k``."""
@@ -124,6 +153,19 @@ class MovingRows:
         number = int(self.run.block_number[row])
         in_block, at_line = ("in_block", "at_line") if k < len(self.rows) else ("behind_block", "behind_line")
         return Wording("comparison", in_block if number >= 0 else at_line, line=self.run.line[row], number=number)
+
+
+def unknown_points(run: Run) -> Flags:
+    """Return which rows go to points that nobody knows: an axis still stands where the machine's zero alone says.
+
+    Those of the machine's own coordinates are not among them.
+    """
+    found = np.zeros(len(run), np.bool_)
+    positions = MachinePositions.of(run)
+    if not positions.known:
+        slides = [run.machine.column(name) for name in "XYZ"]
+        found = positions.at(np.arange(len(run)))[:, slides].any(axis=1) & ~run.state.machine_frame.column()
+    return found
 
 
 def _tool_name(name: str) -> str:

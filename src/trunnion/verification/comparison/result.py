@@ -65,6 +65,7 @@ class Comparison:
     unknown_words  words of either program that are not understood: then they cannot be called the same
     first_unknown  of each kind of them the first, and how many others there are: what a terminal shows
     stated         words and variables that both stand on, with what somebody has stated of them
+    not_needed     words and variables that were stated for this comparison and that neither program needs
     """
 
     SCHEMA: ClassVar[int] = 1
@@ -79,6 +80,7 @@ class Comparison:
     unknown_words: tuple[str, ...] = ()
     first_unknown: Annotated[tuple[tuple[str, ...], int], NOT_DATA] = ((), 0)
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
+    not_needed: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
 
     @property
     @Figure(after=FIRST)
@@ -101,6 +103,7 @@ class Comparison:
         yield from map(str, self._wordings())
         if self.stated:
             yield str(phrase("stands_on_stated", words=self.stated))
+        yield from (str(Wording("comparison", "not_needed", word=word)) for word in self.not_needed)
 
     def _wordings(self) -> Iterator[Wording]:
         reached = {"points": self.points, "tip": self.tip, "axis": self.axis}

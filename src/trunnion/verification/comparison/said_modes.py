@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
-from trunnion.model.mode_words import END_OF_CYCLES
+from trunnion.model.mode_words import END_OF_CYCLES, OF_COMPENSATION
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.states import ComparedState
@@ -60,6 +60,9 @@ def _state(
 
     def counts(a: Ints, b: Ints) -> Flags:
         cuts = np.asarray((runs[0].kind[a] != Kind.RAPID) & (runs[1].kind[b] != Kind.RAPID))
+        if mode in OF_COMPENSATION:
+            sides = [run.state.compensation for run in runs]
+            return np.asarray(cuts & (sides[0].at(a) != 0) & (sides[1].at(b) != 0))
         return cuts & (columns[0].at(a) >= 0) & (columns[1].at(b) >= 0) if mode in _OF_BOTH else cuts
 
     def name(number: int) -> Wording | str:

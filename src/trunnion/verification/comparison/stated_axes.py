@@ -20,9 +20,9 @@ from trunnion.verification.comparison.states import ComparedState, Values
 
 _PLANES: Final = ("tilt", "plane", "cycle800")
 
-#: Not stated yet; in machine coordinates; in those of the workpiece before the program has selected a work offset: a
-#: program that selects its only one later is as those that ran.
+#: Not stated yet; in machine coordinates; in those of the workpiece before the program has selected a work offset.
 _NOWHERE, _IN_MACHINE, _UNSELECTED = -1, 0, -2
+_ELSEWHERE: Final = {_NOWHERE: "nowhere", _IN_MACHINE: "in_machine", _UNSELECTED: "in_no_offset"}
 
 
 def first_statements(run: Run) -> Ints:
@@ -46,7 +46,7 @@ def _state(name: str, runs: tuple[Run, Run], columns: tuple[StepColumn, StepColu
     def words(run: Run, code: int) -> Wording:
         if code > _IN_MACHINE:
             return Wording("comparison", "in_offset", offset=run.work_offset_name(code))
-        return Wording("comparison", "nowhere" if code == _NOWHERE else "in_machine")
+        return Wording("comparison", _ELSEWHERE[code])
 
     def said(a: int, b: int) -> Wording:
         one, two = (words(run, int(column[row])) for run, column, row in zip(runs, columns, (a, b), strict=True))
@@ -57,8 +57,7 @@ def _state(name: str, runs: tuple[Run, Run], columns: tuple[StepColumn, StepColu
 
     def counts(a: Ints, b: Ints) -> Flags:
         # Another offset is a difference of its own.
-        same = np.asarray(offsets[0].at(a) == offsets[1].at(b))
-        return np.asarray(same & (first.at(a) != _UNSELECTED) & (second.at(b) != _UNSELECTED))
+        return np.asarray(offsets[0].at(a) == offsets[1].at(b))
 
     return ComparedState(counts, lambda a, b: np.equal(*values(a, b)), values, said)
 

@@ -19,6 +19,7 @@ from trunnion.machines import Machine, Mount, forward
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.run_columns import BY_PARAMETER
+from trunnion.model.unknown_setups import stated_rows
 
 #: How much longer the tool is taken to be, mm.
 _LONGER: Final = 100.0
@@ -50,8 +51,8 @@ def moved_tips(run: Run, rows: Ints) -> list[MovedTip]:
     """
     axes, along = run.state.length_axis.at(rows), _along(run.machine)
     counts_somewhere = bool((run.state.length_axis.values >= 0).any())
-    stated = run.machine.tool_length is not None
-    suspects = (axes >= BY_PARAMETER) if stated else (axes != along) & (counts_somewhere | (axes >= 0))
+    elsewhere = (axes != along) & (counts_somewhere | (axes >= 0))
+    suspects = np.where(stated_rows(run)[1][rows], axes >= BY_PARAMETER, elsewhere)
     if not suspects.any():
         return []
     rows, axes = rows[suspects], axes[suspects]
@@ -61,16 +62,14 @@ def moved_tips(run: Run, rows: Ints) -> list[MovedTip]:
 
 def depends_on_length(run: Run, rows: Ints) -> bool:
     """Whether a head turns the tool in one of these rows, and its length is not stated."""
-    if run.machine.tool_length is not None or not run.machine.has_rotary_head:
+    if not run.machine.has_rotary_head:
         return False
-    return _turned(run, rows, Mount.TOOL)
+    return _turned(run, rows[~stated_rows(run)[1][rows]], Mount.TOOL)
 
 
 def depends_on_zero(run: Run, rows: Ints) -> bool:
     """Whether a table turns the part in one of these rows, and the zero is not stated."""
-    if run.machine.workpiece_zero is not None:
-        return False
-    return _turned(run, rows, Mount.PART)
+    return _turned(run, rows[~stated_rows(run)[0][rows]], Mount.PART)
 
 
 def _turned(run: Run, rows: Ints, mount: Mount) -> bool:

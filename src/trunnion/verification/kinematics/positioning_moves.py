@@ -158,7 +158,7 @@ def is_leg_of_axes(run: Run, row: int) -> bool:
 
     The others stay near home, or go on to where the next one leads. That is known with zero and tool length.
     """
-    machine, columns = run.machine, list(run.machine.linear)
+    machine, columns = run.machine_at(row), list(run.machine.linear)
     if machine.workpiece_zero is None or machine.tool_length is None or run.state.plane[row] < 0:
         return False
     if not machine.has_rotary_head:

@@ -335,6 +335,7 @@ def test_a_forced_program_is_told_on_every_paper(tmp_path: Path) -> None:
     assert not any(file.fault for file in found.files)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     "change",
     [
@@ -364,6 +365,7 @@ def _without(what: str) -> Callable[[dict[str, Any]], object]:
     return lambda data: data.update(files=[each for each in data["files"] if each["what"] != what])
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("edit", "words"),
     [

@@ -16,6 +16,7 @@ MACHINE = "haas_umc750"
 SAMPLES = sorted(path.relative_to(GOLDEN).as_posix() for path in GOLDEN.rglob("*.cls"))
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_sample_is_posted_and_proven(name: str) -> None:
     posted = trunnion.post(GOLDEN / name, machine=MACHINE)

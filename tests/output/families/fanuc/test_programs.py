@@ -239,6 +239,7 @@ ALL_CYCLES = {
 }
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("mode", ALL_CYCLES)
 @pytest.mark.parametrize("sense", ["CLW", "CCLW"])
 def test_each_cycle_has_its_words(mode: str, sense: str, folder: Path) -> None:
@@ -332,6 +333,7 @@ def test_euler_angles_make_the_plane_again(first: float, second: float, third: f
     np.testing.assert_allclose(again, matrix, atol=3e-8)  # beside the pole, where two turns become one
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     ("name", "value", "good"),
     [

@@ -106,6 +106,7 @@ PATHS = st.one_of(
 )
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", MACHINES)
 @settings(max_examples=examples(6), suppress_health_check=SLOW, phases=[Phase.generate])
 @given(moves=PATHS)

@@ -44,6 +44,7 @@ def cut(machine: Machine) -> str:
     return operation("CUT", f"RAPID\nGOTO/{words(tips[0] + 50.0 * axes[0], axes[0])}\nFEDRAT/MMPM,800\n{text}")
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("name", MACHINES)
 def test_where_the_definition_says_what_f_counts_programs_are_proven(name: str, rule: str, tmp_path: Path) -> None:

@@ -45,6 +45,7 @@ SAYING = {
 MOVES = {"turn": " TURN FMAX", "move": " MOVE ABST0 FMAX", "stay": " STAY"}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("way", "block"), SAYING.items())
 @pytest.mark.parametrize(("move", "words"), MOVES.items())
 @pytest.mark.parametrize("solution", ["SEQ", "SYM"])

@@ -24,6 +24,7 @@ OFF_AXIS = HEAD.replace("0.0,0.0,50.0,0.0,0.0,1.0", "0.0,0.0,50.0,0.5,0.0,0.8660
 MODES = {57: "XYZ", 27: "ZYX", 39: "ZXY", 45: "XZY", 30: "YZX", 54: "YXZ"}
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(("mode", "letters"), MODES.items())
 def test_the_modes_name_their_axes(mode: int, letters: str) -> None:
     assert "".join("XYZ"[axis] for axis in swivel_axes(mode)) == letters
@@ -40,6 +41,7 @@ def test_three_turns_make_the_matrix_again(order: tuple[int, int, int], a: float
 TIPS = st.tuples(*[st.floats(-80.0, 80.0)] * 3)
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("name", sinumeriks())
 @pytest.mark.parametrize("way", ["cycle800", "frames"])
 @settings(max_examples=examples(6), derandomize=True, suppress_health_check=list(HealthCheck))

@@ -256,7 +256,20 @@ def test_cycles_shift_the_tool_and_wait_where_the_manual_says(block: str, run: R
     close(slides(got)[rows][:, 1], 0.0)
     waited = {float(slides(got)[e.before_row - 1][2]): e.value for e in got.events if e.kind == "dwell"}
     assert waited == dwells
-    assert got.diagnostics == ()
+    assert got.errors == ()
+    assert ["Q without its sign" in each.text for each in got.diagnostics] == [True] * ("Q-" in block)
+
+
+def test_a_q_whose_sign_does_not_count_and_a_bore_without_one_are_named(run: Runner) -> None:
+    head = "G90 G0 X0. Y0. Z30.\n"
+    for block, said in (
+        ("G83 X1. Z-10. R2. Q-3. F100.", "Q-3: the control takes Q without its sign"),
+        ("G76 X1. Z-10. R2. F100.", "G76 without Q: the tool leaves the hole along its wall"),
+        ("G76 X1. Z-10. R2. Q0 F100.", "G76 without Q: the tool leaves the hole along its wall"),
+        ("G76 X1. Z-10. R2. Q.5 F100.", ""),
+    ):
+        texts = [each.text for each in fanuc(run, f"{head}{block}\nX2.\nG80\n").diagnostics]
+        assert [text.startswith(said) for text in texts[:1]] == [True] * bool(said), block
 
 
 def test_back_boring_needs_g98_and_shifts_by_i_and_j_too(run: Runner) -> None:

@@ -195,3 +195,8 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
 def test_a_cut_that_passes_the_end_of_a_turn_is_noted(run: Runner, text: str, lines: list[int]) -> None:
     got = fidia(run, f"G196\n{text}G197\n")
     assert [each.line for each in got.diagnostics if each.code == "NC342"] == lines
+
+
+def test_a_control_without_arithmetic_takes_no_operators(run: Runner) -> None:
+    for block in ("X[1+2]", "X[SIN[3]]", "X[1*2]", "X[[1]"):
+        assert fidia(run, f"G0 {block}\nM30").errors

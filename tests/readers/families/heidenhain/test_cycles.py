@@ -10,7 +10,7 @@ from trunnion.errors import Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.hole_motion import CycleExecutionError, peck_depths
-from trunnion.readers.families.heidenhain.words import CYCLE_LINES, CYCLE_PARAMETERS
+from trunnion.readers.families.heidenhain.words import CYCLE_LINES, CYCLE_OPTIONS, CYCLE_PARAMETERS
 
 BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
 
@@ -23,7 +23,10 @@ def motions(run: Run) -> list[tuple[str, float, float]]:
 
 
 def define(number: int, **values: float) -> str:
-    """A definition, one parameter a line."""
+    """A definition, one parameter a line; those of other cycles are left out."""
+    if number in CYCLE_PARAMETERS:
+        own = {f"Q{each}" for each in (*CYCLE_PARAMETERS[number], *CYCLE_OPTIONS.get(number, ()))}
+        values = {name: value for name, value in values.items() if name in own}
     return f"CYCL DEF {number} NAME ~\n" + " ~\n".join(f"{name}={value:+g}" for name, value in values.items()) + "\n"
 
 
@@ -80,7 +83,7 @@ SOUND: dict[int, dict[str, float]] = {
 
 
 def test_a_definition_without_a_line_that_the_motions_depend_on_is_an_error(run: Runner) -> None:
-    assert SOUND.keys() | {247} == CYCLE_PARAMETERS.keys()
+    assert SOUND.keys() | {220, 221, 247} == CYCLE_PARAMETERS.keys()
     for number, values in SOUND.items():
         needed = {f"Q{parameter}" for parameter in CYCLE_PARAMETERS[number]}
         whole = {name: value for name, value in values.items() if name in needed}
@@ -105,9 +108,17 @@ def test_a_set_up_clearance_below_the_surface_is_an_error(number: int, run: Runn
     assert any("has Q200=-2" in fault.text for fault in found.errors)
 
 
+@pytest.mark.parametrize("number", SOUND)
+def test_a_value_of_another_cycle_is_named(number: int, run: Runner) -> None:
+    text = define(number, **SOUND[number]).rstrip("\n")
+    found = [each.text for each in run(f"{BEFORE}{text} ~\nQ399=+1\nCYCL CALL").diagnostics]
+    assert found[0].startswith(f"cycle {number} has no Q399: the value counts for nothing")
+    assert run(f"{BEFORE}{text}\nCYCL CALL").errors == ()
+
+
 def test_a_value_that_a_definition_has_twice_is_an_error(run: Runner) -> None:
     text = define(200, **SOUND[200]).rstrip("\n")
-    for again in ("Q201=-20", "Q201=-15", "Q208=+0"):
+    for again in ("Q201=-20", "Q201=-15", "Q211=+0"):
         found = run(BEFORE + f"{text} ~\n{again}\nCYCL CALL")
         assert any("stands twice in the definition of cycle 200" in fault.text for fault in found.errors)
 
@@ -223,6 +234,24 @@ def test_pecking_from_where_the_tool_stands(distance: str, depth: str, peck: str
     assert found.diagnostics == ()
     assert " ".join(f"{kind}{height:g}" for kind, height, _ in motions(found)) == expected
     assert {feed for kind, _, feed in motions(found) if kind == "F"} == {364.0}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        PECK.format("+2", "+5", "+5"),
+        "CYCL DEF 2.0 TAP\nCYCL DEF 2.1 DIST 2\nCYCL DEF 2.2 DEPTH 5\nCYCL DEF 2.3 DWELL 0\nCYCL DEF 2.4 F9\n",
+        "CYCL DEF 17.0 RIGID\nCYCL DEF 17.1 DIST 2\nCYCL DEF 17.2 DEPTH +5\nCYCL DEF 17.3 PITCH +1\n",
+    ],
+)
+def test_an_older_cycle_with_a_depth_above_the_surface_is_an_error(text: str, run: Runner) -> None:
+    found = run(BEFORE + text + "CYCL CALL")
+    assert any("has DEPTH +5, a depth above the surface" in fault.text for fault in found.errors)
+
+
+def test_the_clearance_of_an_older_cycle_may_have_the_sign_of_the_depth(run: Runner) -> None:
+    signed, plain = (run(BEFORE + PECK.format(*each) + "L FMAX M99") for each in (("-2", "-9", "-3"), ("2", "-9", "3")))
+    assert motions(signed) == motions(plain)
 
 
 def test_other_cycles_from_where_the_tool_stands(run: Runner) -> None:

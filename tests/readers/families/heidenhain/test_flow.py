@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.support.examples import examples
 from tests.support.reading import Runner
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Severity
 from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
@@ -30,6 +30,21 @@ def test_subprograms_and_repeats(run: Runner) -> None:
     found = run(text)
     assert found.diagnostics == ()
     assert xs(found) == [1, 2, 3, 2, 5, 15, 25, 35, 99]
+
+
+@pytest.mark.parametrize(
+    ("rest", "line"),
+    [
+        ("LBL 7\nL X+2\nLBL 0", 0),
+        ("LBL 7\nL X+2\nLBL 0\n; of another job\nLBL 8\nL X+3\nLBL 0", 0),
+        ("LBL 7\nL X+2\nLBL 0\nL X+5\nLBL 8\nL X+3\nLBL 0\nL X+6", 7),
+        ("L X+4\nLBL 7\nL X+2\nLBL 0\nL X+5", 4),
+    ],
+)
+def test_blocks_between_subprograms_behind_the_end_never_run(rest: str, line: int, run: Runner) -> None:
+    found = run(f"BEGIN PGM T MM\nCALL LBL 7\nM30\n{rest}\nEND PGM T MM")
+    told = [(each.code, each.line, each.severity) for each in found.diagnostics]
+    assert told == ([("NC161", line, Severity.WARNING)] if line else [])
 
 
 def test_repeats_inside_repeats_begin_anew(run: Runner) -> None:

@@ -377,6 +377,7 @@ def test_a_motion_counts_beside_the_end_of_a_cycle(text: str, tmp_path: Path) ->
     agree(run_program(path, MACHINE), canonical(path))
 
 
+@pytest.mark.third
 @pytest.mark.parametrize("text", REFUSED.values(), ids=REFUSED.keys())
 def test_what_linuxcnc_refuses_is_named(text: str, tmp_path: Path) -> None:
     path = tmp_path / "part.ngc"

@@ -41,3 +41,10 @@ def test_a_head_carries_the_length(run: Runner) -> None:
     text = "G21 G90 G54\nT1 M6\nG0 B20\nM428\nG43 H1\nG0 X0 Y0 Z50\nM2\n"
     got = run(text, load_machine("linuxcnc_5axis"))
     assert [each.line for each in got.errors if each.code == "NC364"] == [5]
+
+
+@pytest.mark.parametrize("letter", "ABCUVW")
+def test_an_offset_of_another_axis_than_a_slide_is_an_error(letter: str, run: Runner) -> None:
+    for word in ("G43.1", "G43.2"):
+        got = run(f"{ROUND}{word} {letter}1\nG0 X0 Y0 Z50\nM2\n", load_machine("xyzac_trt"))
+        assert (4, "NC220") in [(each.line, each.code) for each in got.errors]

@@ -31,6 +31,7 @@ def test_parts_within_parts_are_repeated_anew_each_time(tmp_path: Path) -> None:
     assert run.tip[1:, 0].tolist() == [11.0, 12.0, 13.0, 24.0, 25.0, 26.0]
 
 
+@pytest.mark.third
 @pytest.mark.parametrize(
     "text",
     [

@@ -374,3 +374,18 @@ def test_a_look_ahead_for_bottlenecks_warns_and_leaves_the_path(before: str, wit
     assert any("CDON" in each.text for each in found.diagnostics)
     assert not any("CDO" in each.text for each in plain.diagnostics)
     close(found.tip, plain.tip)
+
+
+def test_cycles_that_are_not_followed_are_named_unless_their_file_is_given(run: Runner) -> None:
+    for call, what in (("CYCLE90(9,0,2,-9)", "thread milling"), ("POCKET4(9,0,2,-9)", "circular pocket")):
+        (error,) = run(f"{call}\nX1\nM30").errors
+        assert error.code == "NC220"
+        assert what in error.text
+    own = run("CYCLE90(9)\nM30", files={"CYCLE90.SPF": "PROC CYCLE90(REAL _A)\nX=_A\nRET"})
+    assert not own.errors
+    assert own.joints[-1][own.machine.column("X")] == 9.0
+
+
+def test_points_that_only_the_machine_knows_are_one_error(run: Runner) -> None:
+    for block in ("G74 X1=0 Y1=0 Z1=0", "G75 FP=1 X1=0 Z1=0", "G75 Z1=0"):
+        assert len(run(f"{block}\nM30").errors) == 1

@@ -17,6 +17,7 @@ from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
+from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.expressions import BlockError, Value
 from trunnion.readers.rs274.word_interpreter import WordInterpreter
@@ -45,6 +46,13 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         self._flow = Flow(self._note, self._variables)
         # The program and the line of the present block.
         self._here: tuple[ActiveProgram, int]
+
+    def _text_of(self, path: Path) -> SourceText:
+        text = super()._text_of(path)
+        assert isinstance(text, FanucText)
+        if "%" in self._form.has("program_numbers"):
+            text.number_by_percent()
+        return text
 
     def _lines_of(self, active: ActiveProgram) -> tuple[int, int | None]:
         return active.source.program_lines(max(active.source.line - 1, active.line))

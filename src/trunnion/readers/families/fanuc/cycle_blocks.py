@@ -1,6 +1,7 @@
 """Canned cycles of a Fanuc, block by block."""
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -8,13 +9,14 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic
-from trunnion.readers.control.axis_word import AxisWord
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import cycles, words
 from trunnion.readers.families.fanuc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.word_table import Word
 
 #: More holes of one block are mistakes of the program.
 _MAX_HOLES: Final = 10_000
@@ -66,6 +68,7 @@ class CycleInterpreter(OffsetInterpreter):
         if along in axes:
             given["Z"] = axes[along][0]
         self._modal_words |= given
+        self._warn_of_shift(given)
         repeats = block.take(letter)
         block.take("L")
         self._report_rotary_words(axes)
@@ -76,18 +79,50 @@ class CycleInterpreter(OffsetInterpreter):
         if letter == "L" and holes > 1 and control.absolute:
             raise BlockError(Wording("NC210", "l_repeats_cycle_g91_only"))
         self._withdraw_waiting()
+        in_plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
+        self._drill_at([in_plane] * holes)
+
+    def _drill_at(self, places: Sequence[dict[str, AxisWord]]) -> None:
+        """Execute the cycle in force at places, by the words that lead there."""
+        control = self.control
         self._check_cycle_feed()
         hole = self._hole()
         motions = self._cycle_motions(lambda: cycles.cycle_motions(self.motion_code, hole))
         work = cycles.spindle_work(self.motion_code, hole.peck * control.length_unit)
-        in_plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
         motion = control.motion
-        for _ in range(holes):
+        for place in places:
             self._counter.count_motions(len(motions) + 1)
             control.motion = RAPID
-            control.move(in_plane, None)
+            control.move(place, None)
             control.drill(motions, work)
         control.motion = motion
+
+    def _bolt_holes(self, word: Word, block: Block) -> None:
+        """Execute the cycle in force at holes of a circle or an arc about where the tool is.
+
+        Facts: G71 of a Haas at helmancnc.com/g71-bolt-hole-arc-cnc-mill-programming, which describes G70 with it.
+        """
+        name = self.control.settings.words.own_text(word.code)
+        if self.motion_code not in self.table.cycles or any(code in self.table.cycles for code in block.g):
+            raise BlockError(Wording("NC210", "holes_without_cycle", word=name))
+        self._require_words(self._modal_words)
+        values = {letter: block.take(letter) for letter in word.letters}
+        if missing := tuple(letter for letter, value in values.items() if value is None):
+            raise BlockError(Wording("NC210", "holes_without_words", word=name, missing=missing))
+        radius, begin, count = (values[letter] or 0.0 for letter in "IJL")
+        if not 1.0 <= count <= _MAX_HOLES or count != int(count):
+            raise BlockError(Wording("NC210", "repeats_of_cycle", letter="L"))
+        step = values.get("K") or 0.0 if "K" in values else 360.0 / count
+        control = self.control
+        u, v = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
+        centre = control.programmed_position / control.length_unit
+        places: list[dict[str, AxisWord]] = []
+        for k in range(int(count)):
+            angle = math.radians(begin + k * step)
+            offsets = ((u, radius * math.cos(angle)), (v, radius * math.sin(angle)))
+            places.append({"XYZ"[a]: (float(centre[a]) + d, PositionMode.ABSOLUTE) for a, d in offsets})
+        self._withdraw_waiting()
+        self._drill_at(places)
 
     def _select_without_words(self, repeats: float | None) -> None:
         """Report a cycle that has no words yet, until a block brings them.
@@ -137,6 +172,13 @@ class CycleInterpreter(OffsetInterpreter):
             raise BlockError(Wording("NC217", "p_cycle_without_point_no"))
         if not words.takes_number(block):
             settings.check_dwell(block)
+
+    def _warn_of_shift(self, given: dict[str, float]) -> None:
+        """Warn of a Q whose sign does not count, and of fine boring that no block gives a shift."""
+        if given.get("Q", 0.0) < 0.0:
+            self._note(Wording("NC221", "q_without_sign", value=given["Q"]), Severity.WARNING)
+        if self.motion_code == cycles.FINE_BORE and not any(self._modal_words.get(letter) for letter in "QIJ"):
+            self._note(Wording("NC221", "bore_without_shift"), Severity.WARNING)
 
     def _hole(self) -> cycles.Hole:
         control, given = self.control, self._modal_words

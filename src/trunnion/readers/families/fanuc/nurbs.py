@@ -49,7 +49,7 @@ class NurbsBlocks:
             return self._add(block)
         except (BlockError, SplineError) as error:
             self.is_open = False
-            raise BlockError(error.wording.within("of_curve")) from None
+            raise BlockError(error.wording.within("of_curve", word="G6.2")) from None
 
     def break_off(self) -> None:
         """Report that the program ends, or leaves, before the curve is complete."""

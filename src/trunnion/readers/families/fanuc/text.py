@@ -17,6 +17,8 @@ MAX_NESTING: Final = 64
 
 _START: Final = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?"
 _O_NUMBER = re.compile(rb"^[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9])", re.IGNORECASE | re.MULTILINE)
+#: Where a control numbers programs so: alone in its block, for tape marks are written with the same sign.
+_PERCENT_NUMBER = re.compile(rb"^[ \t]*%[ \t]*([0-9]{1,8})(?=[ \t]*(?:[\r\n(;]|$))", re.MULTILINE)
 _N_NUMBER = re.compile(rb"^[ \t]*(?:/[0-9]?[ \t]*)?N[ \t]*([0-9]{1,15})", re.IGNORECASE | re.MULTILINE)
 _LOOP = re.compile(
     _START + rb"(?:WHILE[ \t]*\[[^\n(]*\][ \t]*)?(DO|END)[ \t]*([0-9]{1,3})[ \t]*(?=[\r\n(;]|$)",
@@ -26,12 +28,16 @@ _LOOP = re.compile(
 
 @dataclass(slots=True)
 class _JumpTargets:
-    """Lines of O numbers, also in order, of block numbers, and of the other ends of DO and END; found on first use."""
+    """Lines of O numbers, also in order, of block numbers, and of the other ends of DO and END; found on first use.
+
+    percent   ``%`` begins a program number too
+    """
 
     programs: dict[int, int] | None = None
     begins: list[int] | None = None
     numbers: dict[int, list[int]] | None = None
     loops: dict[int, int] | None = None
+    percent: bool = False
 
 
 class FanucText(SourceText):
@@ -42,6 +48,10 @@ class FanucText(SourceText):
         self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole, encoding=encoding)
 
+    def number_by_percent(self) -> None:
+        """Take ``%1234`` for a program number too, as the definition states."""
+        self._jump_targets.percent = True
+
     def program(self, number: int) -> int | None:
         """Return the line of an O number, None if the file does not have it."""
         return self._programs().get(number)
@@ -49,8 +59,9 @@ class FanucText(SourceText):
     def _programs(self) -> dict[int, int]:
         if self._jump_targets.programs is None:
             found: dict[int, int] = {}
-            for match in _O_NUMBER.finditer(self.whole_bytes()):
-                found.setdefault(int(match.group(1)), self.line_of(match.start(1)))
+            for sign in (_O_NUMBER, _PERCENT_NUMBER) if self._jump_targets.percent else (_O_NUMBER,):
+                for match in sign.finditer(self.whole_bytes()):
+                    found.setdefault(int(match.group(1)), self.line_of(match.start(1)))
             self._jump_targets.programs = found
         return self._jump_targets.programs
 

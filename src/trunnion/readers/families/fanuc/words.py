@@ -153,6 +153,38 @@ TABLE: Final = WordTable(
         "G: look-ahead", "how many blocks the control reads ahead; 0: as many as it can", effect=_NONE,
         act="look_ahead", letters="P", values={"P": whole(0, 15)}, numbered=True,
     ),
+    Word(
+        "G: bolt hole circle", "the cycle in force at `L` places of a circle of radius `I` about the tool, from the "
+        "angle `J` on", act="bolt_holes", letters="IJL", when=_BEHIND, moves=False,
+    ),
+    Word(
+        "G: bolt hole arc", "the same, with the angle `K` from one to the next", act="bolt_holes", letters="IJKL",
+        when=_BEHIND, moves=False,
+    ),
+    Word(
+        "G: bolt holes on a line", "holes on a line are not simulated: no page of the manual is at hand", effect=_ERROR,
+        letters="XYIJL", moves=False,
+    ),
+    *(
+        Word(
+            f"G: circular pocket, {sense}", "a circular pocket is not simulated: its path depends on the radius in the "
+            "register D", effect=_ERROR, letters="XYZIKLQD", moves=False,
+        )
+        for sense in ("clockwise", "counter-clockwise")
+    ),
+    Word(
+        "G: pocket", "a pocket is not simulated: its path depends on a contour and on the radius in the register D",
+        effect=_ERROR, letters="PXYZRIJKQDL", moves=False, numbered=True,
+    ),
+    Word("G: engraving", "engraving is not simulated", effect=_ERROR, letters="XYZIJEPR", moves=False, numbered=True),
+    Word("G: cylinder", "a path on a cylinder is not simulated", effect=_ERROR, letters="XYZABCQR", moves=False),
+    *(
+        Word(
+            f"G: {meaning} about the work offset", "mirror images about the zero of the work offset are not simulated",
+            effect=_ERROR, letters="XYZABC", moves=False,
+        )
+        for meaning in ("mirror image", "no mirror image")
+    ),
     Word("M29", "stops the spindle for a rigid thread; event `m`", act="stop_for_thread", own=False),
     Word("M98", "calls a subprogram", act="call", letters="PL", when=_AFTER, numbered=True, calls=True),
     Word("M99", "returns from a subprogram", act="return", letters="P", when=_AFTER, numbered=True),

@@ -26,6 +26,8 @@ from trunnion.readers.families.heidenhain.cycles import (
 from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.path_blocks import value_of
+from trunnion.readers.families.heidenhain.patterns import WITH_PATTERNS, Pattern, pattern_of
+from trunnion.readers.families.heidenhain.plane_blocks import store_rotary_angles
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.words import (
@@ -33,11 +35,14 @@ from trunnion.readers.families.heidenhain.words import (
     AXIS_SCALING,
     BORE_MILLING,
     CYCLE_LINES,
+    CYCLE_OPTIONS,
+    CYCLE_PARAMETERS,
     CYCLES_NOT_SIMULATED,
     DATUM,
     DWELL,
     MIRROR,
     ORIENTATION,
+    PATTERNS,
     PRESET,
     ROTATION,
     SCALING,
@@ -74,12 +79,14 @@ class Definitions:
     """Executes CYCL DEF blocks.
 
     defined_cycle   the cycle that CYCL CALL executes
+    pattern         what the last block has defined to be executed at once
     """
 
     def __init__(self, control: HeidenhainControl, note: Note) -> None:
         self._control = control
         self._note = note
         self.defined_cycle: Cycle | None = None
+        self.pattern: Pattern | None = None
         # Number of the older cycle whose lines are being read, and the last of them.
         self._open: tuple[int, int] | None = None
 
@@ -97,6 +104,7 @@ class Definitions:
 
     def define(self, text: str, parameters: Parameters) -> None:
         """Execute a block; ``text`` is what follows CYCL DEF."""
+        self.pattern = None
         match = _NUMBER.match(text)
         if match is None:
             raise KlartextError(Wording("NC210", "cycle_number"))
@@ -254,6 +262,9 @@ class Definitions:
         begin = re.search(r"(?:^|[ \t])Q[0-9]{1,4}[ \t]*=", rest)
         title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
         q_values = self._read_parameters(number, rest, parameters)
+        own = (*CYCLE_PARAMETERS.get(number, q_values), *CYCLE_OPTIONS.get(number, ()))
+        if foreign := tuple(f"Q{each}" for each in q_values if each not in own):
+            self._note(Wording("NC221", "foreign_parameters", names=foreign, number=number), Severity.WARNING)
         if number in CYCLES or number in CYCLES_NOT_SIMULATED:
             if number in ACT_WHEN_DEFINED:
                 self._note(
@@ -264,6 +275,8 @@ class Definitions:
             self.defined_cycle = Cycle(number, q_values=q_values)
             if number == BORE_MILLING:
                 self._note(Wording("NC221", "cycle_208_tool_radius_control"), Severity.WARNING)
+        elif number in PATTERNS:
+            self._pattern(number, q_values)
         elif number == PRESET:
             self._preset(q_values)
         else:
@@ -307,6 +320,20 @@ class Definitions:
             raise KlartextError(Wording("NC215", "preset_does_not_exist", preset=preset))
         self._control.note_preset(int(preset))
         self._control.set_offset(int(preset), f"preset {preset:g}")
+
+    def _pattern(self, number: int, q_values: dict[int, float]) -> None:
+        """Define a pattern, which is executed at once; the cycle before has its clearances and surface from then on."""
+        cycle = self.defined_cycle
+        try:
+            pattern = pattern_of(number, q_values)
+            if cycle is None:
+                raise CycleExecutionError(Wording("NC380", "called_before_any_defined"))
+            if cycle.number not in WITH_PATTERNS:
+                raise CycleExecutionError(Wording("NC380", "not_with_patterns", number=cycle.number))
+        except CycleExecutionError as error:
+            raise KlartextError(error.wording.within("of_cycle")) from None
+        cycle.q_values |= pattern.values
+        self.pattern = pattern
 
     # Calls
 
@@ -369,12 +396,3 @@ def _last(text: str, parameters: Parameters) -> float:
         raise KlartextError(Wording("NC210", "number_missing"))
     value = parameters[canonical(match[2])] if match[2] else float(match[3].replace(",", "."))
     return -value if match[1] == "-" else value
-
-
-def store_rotary_angles(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
-    """Store the rotary position of a plane in Q120 (A), Q121 (B) and Q122 (C)."""
-    if rotary is None:
-        return
-    found = dict(zip(control.rotary_names, rotary, strict=True))
-    for number, name in zip((120, 121, 122), "ABC", strict=True):
-        parameters[f"Q{number}"] = found.get(name, 0.0)

@@ -119,7 +119,7 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
     if values[200] < 0.0:
         raise CycleExecutionError(Wording("NC380", "clearance_below_zero", value=values[200]))
     if values.get(201, 0.0) > 0.0:
-        raise CycleExecutionError(Wording("NC380", "depth_above_surface", value=values[201]))
+        raise CycleExecutionError(Wording("NC380", "depth_above_surface", value=f"Q201={values[201]:+g}"))
     hole = Hole(values, rpm, -abs(values[249]) if number == _BACK_BORING else values[201])
     motions = [
         replace(motion, rapid=True, feed=None) if motion.feed == math.inf else motion for motion in CYCLES[number](hole)
@@ -361,17 +361,18 @@ def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, h
         assert value is not None
         return value
 
+    # Older programs have a clearance and an infeed with the sign of the depth, newer ones without.
     clearance, depth = abs(need("DIST")), need("DEPTH")
     if depth == 0.0:
         raise CycleExecutionError(Wording("NC380", "depth_0"))
-    sign = -1.0 if depth < 0.0 else 1.0
-    total = abs(depth)
-    surface = here + sign * clearance
+    if depth > 0.0:
+        raise CycleExecutionError(Wording("NC380", "depth_above_surface", value=f"DEPTH {depth:+g}"))
+    total, surface = -depth, here - clearance
     if number != 1:
         feed = abs(need("PITCH")) * rpm if number == 17 else need("F")
         if not 0.0 < feed <= MAX_FEED:
             raise CycleExecutionError(Wording("NC380", "no_feed_machine"))
-        bottom = HoleMotion(False, surface + sign * total, feed, dwell=need("DWELL") if number != 17 else 0.0)
+        bottom = HoleMotion(False, surface - total, feed, dwell=need("DWELL") if number != 17 else 0.0)
         return [bottom, HoleMotion(False, here, feed)]
     feed = need("F")
     if not 0.0 <= feed <= MAX_FEED:
@@ -380,7 +381,7 @@ def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, h
     gap = 0.6 if total <= 30.0 else min(total / 50.0, 7.0)
 
     def height(depth: float) -> float:
-        return surface + sign * depth
+        return surface - depth
 
     out, depths = full_retract(here, height, gap), peck_depths(total, abs(need("PLNGNG")))
     return [*descent(depths, height, out, feed, (0.0, need("DWELL"))), HoleMotion(True, here)]

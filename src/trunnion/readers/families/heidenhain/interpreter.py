@@ -263,6 +263,8 @@ class HeidenhainInterpreter(PathInterpreter):
         rest = rest[match.end() :]
         if match[1] == "DEF":
             self._definitions.define(rest, active.parameters)
+            if self._definitions.pattern is not None:
+                self._drill_pattern(active, self._definitions.pattern)
         else:
             self._cycle_call(active, rest)
 

@@ -34,6 +34,8 @@ from trunnion.readers.families.heidenhain.words import (
     M_TCP_OFF,
     M_TILTING_AXES,
     M_TOOL_CHANGE,
+    M_UNSEEN_MODES,
+    M_UNSEEN_ONCE,
     M_VALUES,
     M_WITHOUT_PATH_EFFECT,
     M_WORDS_NOT_SIMULATED,
@@ -86,6 +88,13 @@ class MFunctions:
                 self._note(fault, Severity.ERROR)
         self._words_of_function(code, arguments)
         self._note_modes(code, arguments)
+        said = " ".join(
+            (f"M{code}", *(f"{name}{'' if value is None else f'{value:g}'}" for name, value in arguments.items()))
+        )
+        if code in M_UNSEEN_MODES:
+            control.say_mode(M_UNSEEN_MODES[code], said)
+        elif code in M_UNSEEN_ONCE:
+            control.say_once(said)
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):
@@ -192,6 +201,8 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     if along is not None and abs(control.machine.spindle_direction[along]) < _ALONG:
         control.note(Wording("NC361", "tool_axis_not_spindle", axis=tool_axes[-1]), Severity.ERROR)
     control.call_tool(name, along)
+    if along is not None:
+        control.say_mode("tool axis")
     if "S" in values:
         control.modal.rpm.set(control.row, values["S"])
         control.add_event("speed", values["S"])

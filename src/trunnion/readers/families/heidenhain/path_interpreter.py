@@ -19,6 +19,7 @@ from trunnion.readers.families.heidenhain.lexer import words
 from trunnion.readers.families.heidenhain.machine_functions import MFunctions
 from trunnion.readers.families.heidenhain.parameters import KlartextError
 from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
+from trunnion.readers.families.heidenhain.patterns import Pattern
 from trunnion.readers.families.heidenhain.words import M_CALL, M_MACHINE, M_SECOND_MACHINE
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 
@@ -92,8 +93,11 @@ class PathInterpreter(FlowInterpreter):
         self._m_functions.execute_after_motion(block)
 
     def _set_compensation(self, block: Block) -> None:
+        modal = self.control.modal
+        if block.side in ("RL", "RR") and modal.compensation.current == -_RADIUS_COMPENSATION[block.side]:
+            self._note(Wording("NC343", "side_without_r0", word=block.side), Severity.ERROR)
         if block.side:
-            self.control.modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
+            modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
         if block.side in ("RL", "RR"):
             self._note(Wording("NC221", "radius_compensation", word=block.side), Severity.WARNING)
             self.control.judge_compensation()
@@ -218,12 +222,35 @@ class PathInterpreter(FlowInterpreter):
         length, radius = sizes.get("LEN", 0.0) * unit, sizes.get("R", 0.0) * unit
         return axes, block, LeadWords(word, kind, length, radius, sizes.get("CCA", 0.0), block.rapid)
 
-    def _drill(self, active: ActiveProgram) -> None:
-        """Execute the defined cycle at the present position."""
+    def _drill(self, active: ActiveProgram, stay: float | None = None) -> bool:
+        """Execute the defined cycle at the present position; without its last motion if that leaves a height."""
         try:
             motions = self._definitions.call(active.parameters)
         except CycleExecutionError as error:
             self._note(error.wording.within("cycle_not_executed"), Severity.ERROR)
-            return
+            return False
+        if stay is not None and motions[-1].rapid and motions[-1].height not in (None, stay):
+            motions = motions[:-1]
         self._counter.count_motions(len(motions))
         self.control.drill(motions, self._definitions.spindle_work())
+        return True
+
+    def _drill_pattern(self, active: ActiveProgram, pattern: Pattern) -> None:
+        """Execute the defined cycle at all positions of a pattern.
+
+        The tool goes to the first one where it is above the second clearance, else at that; and from one to the next at
+        the clearance that the pattern states.
+        """
+        control = self.control
+        along = control.plane_axis
+        first, second = "XYZ"[(along + 1) % 3], "XYZ"[(along + 2) % 3]
+        control.motion = RAPID
+        if float(control.programmed_position[along]) < pattern.second_clearance * control.length_unit:
+            control.move({"XYZ"[along]: (pattern.second_clearance, PositionMode.ABSOLUTE)}, None)
+        last = len(pattern.positions) - 1
+        for k, (u, v) in enumerate(pattern.positions):
+            self._counter.count_motions(1)
+            control.motion = RAPID
+            control.move({first: (u, PositionMode.ABSOLUTE), second: (v, PositionMode.ABSOLUTE)}, None)
+            if not self._drill(active, None if pattern.at_second or k == last else pattern.clearance):
+                return

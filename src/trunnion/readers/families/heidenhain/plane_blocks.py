@@ -12,7 +12,6 @@ from trunnion.readers.control.affine_map import rotation_matrix
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
-from trunnion.readers.families.heidenhain.cycle_definitions import store_rotary_angles
 from trunnion.readers.families.heidenhain.lexer import Word
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
 from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, value_of
@@ -129,3 +128,12 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
     control.spatial_angles_active = spatial_angles
     control.angles = [0.0, 0.0, 0.0]
     control.set_orientation(orientation)
+
+
+def store_rotary_angles(parameters: Parameters, control: HeidenhainControl, rotary: tuple[float, float] | None) -> None:
+    """Store the rotary position of a plane in Q120 (A), Q121 (B) and Q122 (C)."""
+    if rotary is None:
+        return
+    found = dict(zip(control.rotary_names, rotary, strict=True))
+    for number, name in zip((120, 121, 122), "ABC", strict=True):
+        parameters[f"Q{number}"] = found.get(name, 0.0)

@@ -12,6 +12,7 @@ from trunnion.readers.program.source_text import SourceText
 
 _UNITS: Final = ("MM", "INCH")
 _LABEL: Final = re.compile(r"[ \t]*(?:/[ \t]*)?(?:[0-9]+[ \t]*)?LBL(?![A-Z])", re.IGNORECASE)
+_LABEL_END: Final = re.compile(rf"{_LABEL.pattern}[ \t]+0(?![0-9])", re.IGNORECASE)
 _SKIPPED: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?/")
 _PROGRAM_END: Final = re.compile(r"(?<![A-Z])M0*(?:2|30)(?![0-9])", re.IGNORECASE)
 _SECOND_END: Final = re.compile(rb"^[^;\n]*?(?<![A-Z])M0*(?:2|30)(?![0-9])", re.IGNORECASE | re.MULTILINE)
@@ -49,10 +50,12 @@ def check_end_of_file(active: ActiveProgram, note: Note) -> None:
 
 
 def check_rest(active: ActiveProgram, source: SourceText, note: Note, last: str) -> None:
-    """Look for END PGM behind the block ``last`` of the run; report blocks before it, up to a label, and behind it."""
+    """Look for END PGM behind the block ``last`` of the run; report blocks that no label begins, and any behind it."""
     # An error ends the run too; what follows it would run if that were not there.
     ends = _PROGRAM_END.search(last) is not None and _SKIPPED.match(last) is None
-    reachable = active.name is None or not ends
+    always = active.name is None or not ends
+    reachable, told = always, False
+    behind_label = False
     while source.fill():
         raw = source.next_line()
         if not active.ended:
@@ -60,12 +63,15 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note, last: str)
             match = _END.match(split_line(raw).statement)
             if match is not None:
                 end(active, match[1].split(), note)
-            if active.ended or reachable or not split_line(raw).statement:
+            if active.ended or not split_line(raw).statement:
                 continue
-            reachable = True
-            if not _LABEL.match(raw):
+            if _LABEL.match(raw):
+                # What stands behind LBL 0 belongs to no subprogram.
+                reachable, behind_label = always or _LABEL_END.match(raw) is None, True
+            elif not reachable and not told:
+                told = True
                 source.load()
-                again = source.search(_SECOND_END, source.line - 1) is not None
+                again = not behind_label and source.search(_SECOND_END, source.line - 1) is not None
                 variant = "another_program" if again else "behind_end"
                 note(Wording("NC161", variant), Severity.ERROR if again else Severity.WARNING)
         elif active.ended and split_line(raw).statement:

@@ -88,6 +88,18 @@ M_WITHOUT_PATH_EFFECT: Final = {
     149: "no lift-off",
 }
 
+#: What those do that no path shows, for comparisons: the mode that each sets.
+M_UNSEEN_MODES: Final = {
+    90: "contour speed", 101: "replacement tools", 102: "replacement tools", 103: "feed downwards",
+    107: "message for oversize", 108: "message for oversize", 110: "feed at arcs", 111: "feed at arcs",
+    115: "tilt by M114", 118: "handwheel", 120: "look-ahead", 124: "points left out", 134: "exact stop of rotary axes",
+    135: "exact stop of rotary axes", 138: "rotary axes that tilt", 148: "lift-off", 149: "lift-off",
+}  # fmt: skip
+
+#: The others act once, where they stand: 94 takes a rotary axis back below 360 degrees, 97 passes small steps, 141
+#: lets a probe go, 143 deletes a rotation, and 145 is of the display.
+M_UNSEEN_ONCE: Final = frozenset({94, 97, 141, 143, *range(200, 205)})
+
 #: Of these, those whose words change what the program does: the message.
 M_WORDS_NOT_SIMULATED: Final = {
     (103, "F"): "moves down have another feed: not simulated",
@@ -172,7 +184,21 @@ CYCLE_PARAMETERS: Final = {
     209: (200, 201, 239, 203, 204, 257, 256),
     240: (200, 343, 201, 206, 211, 203, 204),
     241: (200, 201, 206, 211, 203, 204, 379, 253, 208),
+    220: (216, 217, 244, 245, 246, 247, 241, 200, 203, 204, 301),
+    221: (225, 226, 237, 238, 242, 243, 224, 200, 203, 204, 301),
     PRESET: (339,),
+}
+
+#: Q parameters that newer software has added to cycles, or that some machines leave out. Any other belongs to none.
+CYCLE_OPTIONS: Final = {
+    200: (395,),
+    202: (357,),
+    203: (395,),
+    205: (208, 253, 373, 379, 395),
+    208: (342, 351, 370),
+    209: (336, 403),
+    240: (253, 342, 344),
+    241: (202, 205, 212, 395, 401, 427, 428, 429, 430, 435, 436),
 }
 
 #: Lines of the older cycles that blocks call, by number: the value of each.
@@ -188,7 +214,7 @@ CYCLES_NOT_SIMULATED: Final = {
     15: "pilot drilling", 16: "contour milling", 18: "thread cutting", 20: "contour data", 21: "pilot drilling",
     22: "rough-out", 23: "floor finishing", 24: "side finishing", 25: "contour train", 27: "cylinder surface",
     28: "cylinder surface slot", 29: "cylinder surface ridge", 39: "cylinder surface contour",
-    220: "polar pattern", 221: "linear pattern", 225: "engraving", 230: "multipass milling", 231: "ruled surface",
+    225: "engraving", 230: "multipass milling", 231: "ruled surface",
     232: "face milling", 233: "face milling", 239: "load measuring", 251: "rectangular pocket",
     252: "circular pocket", 253: "slot milling", 254: "circular slot", 256: "rectangular stud", 257: "circular stud",
     258: "polygon stud", 262: "thread milling", 263: "thread milling and countersinking",
@@ -198,7 +224,10 @@ CYCLES_NOT_SIMULATED: Final = {
 }  # fmt: skip
 
 #: Of these, those that act as soon as they are defined.
-ACT_WHEN_DEFINED: Final = frozenset({220, 221, 239})
+ACT_WHEN_DEFINED: Final = frozenset({239})
+
+#: Cycles that execute the cycle before at all positions of a pattern, as soon as they are defined.
+PATTERNS: Final = frozenset({220, 221})
 
 #: FN functions that write system data, those of tools and presets among them, which the path does not show.
 FN_SYSTEM_DATA: Final = frozenset({17, 25})

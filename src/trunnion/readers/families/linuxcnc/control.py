@@ -1,5 +1,6 @@
 """The virtual control of LinuxCNC: its offsets, and machine positions under TCP."""
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -132,7 +133,7 @@ class LinuxcncControl(Rs274Control):
     def check_radii(self, start: Floats, end: Floats, centre: Floats) -> None:
         """Refuse circles whose radii differ more than LinuxCNC allows."""
         first, second = ((self.plane_axis + 1) % 3, (self.plane_axis + 2) % 3)
-        r1, r2 = (float(np.hypot(p[first] - centre[first], p[second] - centre[second])) for p in (start, end))
+        r1, r2 = (math.hypot(p[first] - centre[first], p[second] - centre[second]) for p in (start, end))
         difference = abs(r1 - r2)
         if difference > _COARSE or (difference > _FINE and difference > _RATIO * max(r1, r2)):
             raise arcs.ArcError(Wording("NC320", "radii_differ", start=r1, end=r2))

@@ -2,20 +2,25 @@
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
+from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.readers.control.axis_word import PositionMode
+from trunnion.readers.control.axis_word import AxisWord, PositionMode
+from trunnion.readers.control.iso_m_codes import PROGRAM_ENDS
 from trunnion.readers.families.linuxcnc import words
 from trunnion.readers.families.linuxcnc.control import ORDER
 from trunnion.readers.families.linuxcnc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.linuxcnc.flow import ActiveProgram
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC
+from trunnion.readers.families.linuxcnc.spline_blocks import SplineBlocks
 from trunnion.readers.families.linuxcnc.text import LinuxcncText
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader
 from trunnion.readers.rs274.expressions import BlockError
@@ -37,6 +42,10 @@ class LinuxcncInterpreter(CycleInterpreter):
     semicolon = True
     motion_code = CANCEL
     has_builders_words = False
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
+        self._splines = SplineBlocks(self.control, self._counter.count_motions)
 
     @property
     def _letter_table(self) -> Codes:
@@ -105,9 +114,16 @@ class LinuxcncInterpreter(CycleInterpreter):
         for key, value in block.assignments:
             self._parameters.set(key, value or 0.0)
 
+    def _iso(self, word: Word, block: Block) -> None:
+        if word.code in PROGRAM_ENDS:
+            self._splines.break_off()
+        super()._iso(word, block)
+
     def _check_groups(self, block: Block) -> None:
         """Refuse two G codes or two M codes of one group, also twice the same, as LinuxCNC does."""
         for letter, codes in (("G", block.g), ("M", block.m)):
+            if len(codes) < 2:
+                continue
             for group in self.table.groups[letter]:
                 found = [word.text for word in self.table.words(letter, codes) if word.code in group]
                 if len(found) > 1:
@@ -124,8 +140,8 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     @staticmethod
     def _selected(codes: Sequence[Word]) -> int | None:
-        """Return the cycle that a block selects, or G80, which counts beside no motion; None for neither."""
-        cycles = [word.code for word in codes if word.act == "cycle"]
+        """Return the cycle or spline that a block selects, or G80, which counts beside no motion; None for neither."""
+        cycles = [word.code for word in codes if word.act == "cycle" or word.code in words.SPLINES]
         if any(word.code == CANCEL for word in codes) and not any(word.is_motion for word in codes):
             return CANCEL
         return cycles[-1] if cycles else None
@@ -145,8 +161,8 @@ class LinuxcncInterpreter(CycleInterpreter):
         return ["G43"] if has_length and not control.sets_behind_use("length") else []
 
     def _select_motion(self, code: int) -> None:
-        """Select a motion; cycles, and G80, which may stand beside a motion, are selected when the block moves."""
-        if code not in self.table.cycles and code != CANCEL:
+        """Select a motion; cycles, splines, and G80, which may stand beside one, are selected when the block moves."""
+        if code not in self.table.cycles and code not in words.SPLINES and code != CANCEL:
             self.motion_code = code
 
     def _line(self, word: Word, block: Block) -> None:
@@ -203,6 +219,10 @@ class LinuxcncInterpreter(CycleInterpreter):
                 name = f"{word.text} {letter}"
                 before = control.tool_delta(name) if word.text == "G43.2" else 0.0
                 control.add_tool_delta(name, before + value * control.length_unit)
+        for letter in "ABCUVW":
+            if block.take(letter):
+                does = f"an offset of the axis {letter} is not simulated"
+                self._note(Wording("NC220", "not_simulated", word=f"{word.text} {letter}", does=does), Severity.ERROR)
         if block.take("H"):
             self._note(Wording("NC220", "length_of_other_tool", word=word.text), Severity.ERROR)
 
@@ -218,23 +238,41 @@ class LinuxcncInterpreter(CycleInterpreter):
         if block.words.get("L") is not None and block.words["L"].value:
             seconds = block.words["Q"].value if "Q" in block.words else 0.0
             self.control.note_wait(Wording("NC226", "waits_for_input", duration=format_duration(max(seconds, 0.0))))
-        self._signal(word, block)
+        self._report_signal(word, block)
+        self.control.say_once(" ".join((word.text, *(f"{name}{each.value:g}" for name, each in block.words.items()))))
 
-    def _signal(self, word: Word, block: Block) -> None:
+    def _report_signal(self, word: Word, block: Block) -> None:
         if fault := words.fault_of_signal(word, block):
             self._note(fault, Severity.ERROR)
 
+    def _signal(self, word: Word, block: Block) -> None:
+        self._report_signal(word, block)
+        if "P" in block.words:
+            self.control.say_mode(f"digital output {block.words['P'].value:g}", word.text)
+
     def _analog_output(self, word: Word, block: Block) -> None:
-        self._signal(word, block)
+        self._report_signal(word, block)
+        if "E" in block.words:
+            value = block.words["Q"].value if "Q" in block.words else 0.0
+            self.control.say_mode(f"analog output {block.words['E'].value:g}", f"{word.text} {value:g}")
         if block.take("E") == words.KINEMATICS_OUTPUT:
             self._note(
                 Wording("NC220", "output_switches_kinematics", word=word.text, output=words.KINEMATICS_OUTPUT),
                 Severity.ERROR,
             )
 
+    def _overrides(self, word: Word, block: Block) -> None:
+        for code in ("M50", "M51"):
+            self.control.say_mode(words.OVERRIDES[code], f"P{word.sets:g}")
+
+    def _override(self, word: Word, block: Block) -> None:
+        value = block.words["P"].value if "P" in block.words else 1.0
+        self.control.say_mode(words.OVERRIDES[word.text], f"P{value:g}")
+
     def _adaptive_feed(self, word: Word, block: Block) -> None:
+        self.control.say_mode("adaptive feed", f"P{block.words['P'].value:g}" if "P" in block.words else "on")
         if block.take("P") != 0.0:
-            self._note(Wording("NC220", "m52_lets_signal_scale_feed"), Severity.ERROR)
+            self._note(Wording("NC221", "m52_lets_signal_scale_feed"), Severity.WARNING)
 
     def _rename_tool(self, word: Word, block: Block) -> None:
         """M61: take the tool in the spindle for Q, whatever it is: no tool is changed."""
@@ -261,6 +299,10 @@ class LinuxcncInterpreter(CycleInterpreter):
         if code != CANCEL and code not in self.table.cycles:
             self._initial = None
         axes = self._axis_words(block)
+        if code in words.SPLINES:
+            self._spline(code, block, axes)
+            return
+        self._splines.break_off()
         circle = code in (20, 30) and (explicit or any(letter in block.words for letter in "IJKR"))
         if not axes and not circle:
             if explicit and code in self.table.cycles:
@@ -286,6 +328,16 @@ class LinuxcncInterpreter(CycleInterpreter):
             self._move(block, self._with_rotary_offsets(axes), turns=int(turns) - 1 if turns else 0)
             if self.motion_code == moved:  # no other one holds behind it
                 self.motion_code = here
+
+    def _spline(self, code: int, block: Block, axes: dict[str, AxisWord]) -> None:
+        """Execute a block of a spline: G5.2 stays in force, G5.3 leaves none, and the others the motion before."""
+        if code == words.NURBS and self.motion_code == code and not axes and code not in block.g:
+            return
+        if code in (words.NURBS, words.END_NURBS):
+            self.motion_code = words.NURBS if code == words.NURBS else CANCEL
+        else:
+            self._splines.break_off()
+        self._splines.execute(code, block, axes)
 
     def _check_machine_move(self, block: Block, code: int) -> None:
         if code in (20, 30):

@@ -27,10 +27,10 @@ _WITHIN_COMPENSATION: Final = dict.fromkeys(
 TABLE: Final = WordTable(
     *COMMON_WORDS,
     Word("G4", "dwell, seconds", act="dwell", sets="P", group="non-modal", letters="P", when=_BEHIND),
-    Word("G5", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJPQ", moves=False),
-    Word("G5.1", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJ", moves=False),
-    Word("G5.2", "a NURBS, taken as nothing", effect=_ERROR, group="motion", letters="XYPL", moves=False),
-    Word("G5.3", "a NURBS, taken as nothing", effect=_ERROR, group="motion", moves=False),
+    Word("G5", "a cubic spline", act="motion", group="motion", letters="IJPQ"),
+    Word("G5.1", "a quadratic spline", act="motion", group="motion", letters="IJ"),
+    Word("G5.2", "control points of a NURBS", act="motion", group="motion", letters="PL"),
+    Word("G5.3", "ends the NURBS, and moves along it", act="motion", group="motion"),
     Word("G6.2", "a NURBS, taken as nothing", effect=_ERROR, letters="XYPLDEFIJKQR", moves=False),
     Word("G6.3", "a NURBS, taken as nothing", effect=_ERROR, moves=False),
     Word("G7", "turning is not simulated", effect=_ERROR, group="diameters"),
@@ -113,10 +113,10 @@ TABLE: Final = WordTable(
     Word("M5", "event `spindle`: off", act="iso", group="spindle"),
     Word("M9", "event `coolant`: off", act="iso", group="coolant"),
     Word("M19", "event `spindle`: oriented", act="iso", group="spindle", letters="RQP", values={"P": whole(0, 2)}),
-    Word("M48 M49", effect=_NONE, group="overrides"),
-    Word("M50 M51 M53", effect=_NONE, group="overrides", letters="P", values={"P": _SWITCH}),
-    Word("M52", "with `P0`; else a signal scales the feed: an error", effect=_NONE, act="adaptive_feed",
-         group="overrides", letters="P"),
+    Word("M48 M49", effect=_NONE, act="overrides", sets=(1.0, 0.0), group="overrides"),
+    Word("M50 M51 M53", effect=_NONE, act="override", group="overrides", letters="P", values={"P": _SWITCH}),
+    Word("M52", "off with `P0`; else a signal of the machine scales the feed: a warning", effect=_NONE,
+         act="adaptive_feed", group="overrides", letters="P"),
     Word("M60", "event `stop`", act="change_pallet", group="stop", when=_AFTER),
     Word("M61", "renames the tool in the spindle: an error for another than the one that was loaded", effect=_NONE,
          act="rename_tool", group="tool", letters="Q"),
@@ -138,6 +138,15 @@ TABLE: Final = WordTable(
 
 MACHINE: Final = TABLE.code("G53")
 RIGID_TAP: Final = TABLE.code("G33.1")
+
+#: What the operator may do, by the word that lets him or not.
+OVERRIDES: Final = {"M50": "override of the feed", "M51": "override of the spindle", "M53": "feed hold"}
+
+#: The words of splines. G5 and G5.1 count for their block alone, and leave the motion that was in force.
+CUBIC: Final = TABLE.code("G5")
+NURBS: Final = TABLE.code("G5.2")
+END_NURBS: Final = TABLE.code("G5.3")
+SPLINES: Final = frozenset({CUBIC, TABLE.code("G5.1"), NURBS, END_NURBS})
 
 #: Taps, which without a P of their own dwell as long as the last cycle that dwelled.
 TAPS: Final = frozenset({TABLE.code("G74"), TABLE.code("G84")})

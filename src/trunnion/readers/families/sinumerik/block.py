@@ -31,6 +31,7 @@ class Block:
     interval     of their parameter, PL
     tolerances  within which the control may round off the path
     deltas   what the program adds to length and radius of the tool
+    said     words that no path shows, with what is written behind them
     waits    words with which it waits for another channel
     feed_radius  at which F counts for rotary axes
     orientation_tolerance  OTOL, degrees
@@ -54,6 +55,7 @@ class Block:
     edge: int | None = None
     traori: list[Value | None] = field(default_factory=list)
     deltas: dict[str, float] = field(default_factory=dict)
+    said: list[tuple[str, str]] = field(default_factory=list)
     waits: list[str] = field(default_factory=list)
     tolerances: list[float] = field(default_factory=list)
     feed_radius: float | None = None

@@ -7,6 +7,7 @@ from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.families.sinumerik import fields
 from trunnion.readers.families.sinumerik.block import Block, Call
 from trunnion.readers.families.sinumerik.expressions import OPERATORS, ExpressionError, ExpressionReader, Value, whole
 from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
@@ -19,6 +20,7 @@ from trunnion.readers.families.sinumerik.words import (
     FEED_GROUP,
     FLOW,
     FRAMES,
+    G_NO_MOTION,
     NOT_SIMULATED,
     ORIENTATION,
     POSITION_MODES,
@@ -196,6 +198,8 @@ class BlockReader:
                 pass  # Surface normals are for radius compensation, which is not simulated.
             case (("L" | "P"), ""):
                 self._subprogram_word(reader, block, letter, number)
+            case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), _) if G_NO_MOTION.intersection(block.g):
+                pass  # Those of G74 and G75 are the machine's own axes, as in X1=0.
             case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), ""):
                 self._note(Wording("NC230", "axis_value_not_executed", axis=letter, value=number), Severity.ERROR)
             case _:
@@ -237,10 +241,11 @@ class BlockReader:
         elif name == "PL" and follows == "=":
             block.interval = as_number(self._value(reader)[0])
         elif name in WITHOUT_PATH_EFFECT_VALUES and follows in ("=", "["):
-            if follows == "[":
-                _skip(reader, "[", "]")
+            axis = _skip(reader, "[", "]") if follows == "[" else ""
             if reader.accept("="):
-                keep_value(block, name, self._value(reader)[0])
+                value = self._value(reader)[0]
+                keep_value(block, name, value)
+                block.said.append((name, f"{axis}={value}"))
         elif name == "SPOS" and follows in ("=", "["):
             if follows == "[":
                 _skip(reader, "[", "]")
@@ -258,7 +263,7 @@ class BlockReader:
         elif name == FEED_GROUP and follows == "(":
             self._feed_group(reader)
         elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
-            _skip(reader, "(", ")")
+            block.said.append((name, _skip(reader, "(", ")")))
             if name in WAITS:
                 block.waits.append(name)
         elif name in _MODES:
@@ -319,7 +324,7 @@ class BlockReader:
             raise ExpressionError(Wording("NC220", "system_variable_not_simulated", name=name))
         index = reader.index()
         reader.expect("=")
-        if not variables.assign(name, index, reader.value()):
+        if not fields.assign(reader, variables, name, index):
             self._note(Wording("NC223", "no_definition", name=name), Severity.ERROR)
 
 
@@ -343,8 +348,9 @@ def read_call(reader: ExpressionReader, name: str) -> Call:
         reader.expect(",")
 
 
-def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
-    """Skip brackets and their contents."""
+def _skip(reader: ExpressionReader, opening: str, closing: str) -> str:
+    """Skip brackets and their contents; returns their text, without blanks."""
+    start = reader.at
     reader.expect(opening)
     depth = 1
     while depth:
@@ -352,6 +358,7 @@ def _skip(reader: ExpressionReader, opening: str, closing: str) -> None:
             raise ExpressionError(Wording("NC210", "closing_missing", closing=closing))
         depth += {opening: 1, closing: -1}.get(reader.peek(), 0)
         reader.at += 1
+    return _text(reader.tokens, start, reader.at).replace(" ", "")
 
 
 def _size(number: float, name: str) -> float:

@@ -14,6 +14,7 @@ from trunnion.readers.families.sinumerik.flow import ActiveProgram, Flow, Handle
 from trunnion.readers.families.sinumerik.text import SUFFIXES, SinumerikText
 from trunnion.readers.families.sinumerik.tokens import TokenKind
 from trunnion.readers.families.sinumerik.variables import Variables
+from trunnion.readers.families.sinumerik.words import CYCLES_NOT_SIMULATED
 from trunnion.readers.program.interpreter import Interpreter
 
 #: What the control may put before the name of a program.
@@ -72,6 +73,10 @@ class CallInterpreter(Interpreter[ActiveProgram]):
     def _enter_subprogram(self, call: Call) -> None:
         """Start a subprogram, one of the files given by the user."""
         path = self._subprograms.find(call.name)
+        if path is None and (does := CYCLES_NOT_SIMULATED.get(call.name)):
+            fault = Wording("NC220", "cycle_known_not_simulated", number=call.name, cycle=does)
+            self._note(fault.within("cycle_not_executed"), Severity.ERROR)
+            return
         if path is None:
             self._note(Wording("NC132", "unknown_or_missing", call=call.name[:80]), Severity.ERROR)
             return

@@ -54,6 +54,12 @@ _LEVELS: Final[tuple[frozenset[str], ...]] = (
     frozenset({"*", "/", "DIV", "MOD"}),
 )
 
+#: Tokens that are known by their text.
+_WRITTEN: Final = frozenset({TokenKind.SIGN, TokenKind.NAME, TokenKind.LETTER})
+
+#: The level of each operator.
+_LEVEL_OF: Final = {operator: level for level, names in enumerate(_LEVELS) for operator in names}
+
 #: Names of operators, which are no variables.
 OPERATORS: Final = frozenset({"DIV", "MOD", "AND", "OR", "XOR", "NOT", "B_AND", "B_OR", "B_XOR", "B_NOT"})
 
@@ -106,9 +112,10 @@ class ExpressionReader:
     def peek(self, ahead: int = 0) -> str:
         """Return the text of a sign, name or letter ahead; empty for anything else."""
         at = self.at + ahead
-        if at < len(self.tokens) and self.tokens[at].kind in (TokenKind.SIGN, TokenKind.NAME, TokenKind.LETTER):
-            return self.tokens[at].text
-        return ""
+        if at >= len(self.tokens):
+            return ""
+        token = self.tokens[at]
+        return token.text if token.kind in _WRITTEN else ""
 
     def accept(self, text: str) -> bool:
         """Read a sign or name if it comes next."""
@@ -163,13 +170,11 @@ class ExpressionReader:
         return tuple(found)
 
     def _binary(self, level: int) -> Value:
-        if level == len(_LEVELS):
-            return self._unary()
-        left = self._binary(level + 1)
-        while self.peek() in _LEVELS[level]:
-            operator = self.peek()
+        """Read an expression of operators that bind at least as closely as those of a level."""
+        left = self._unary()
+        while (own := _LEVEL_OF.get(operator := self.peek(), -1)) >= level:
             self.at += 1
-            left = _apply(operator, left, self._binary(level + 1))
+            left = _apply(operator, left, self._binary(own + 1))
         return left
 
     def _unary(self) -> Value:

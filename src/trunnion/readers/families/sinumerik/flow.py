@@ -11,6 +11,7 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.families.sinumerik import fields
 from trunnion.readers.families.sinumerik.block import Call
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
 from trunnion.readers.families.sinumerik.text import SinumerikText
@@ -321,18 +322,9 @@ class Flow:
             raise ExpressionError(Wording("NC210", "not_name_variable", name=name))
         size = reader.index()
         active.variables.define(kind, name, place=(line, reader.at))
-        if not reader.accept("="):
-            return
-        if reader.accept("SET"):
-            for index, element in enumerate(reader.arguments()):
-                if element is not None:
-                    active.variables.assign(name, (index,), element)
-        else:
-            given = reader.value()
-            if size:
-                self._note(Wording("NC215", "field_takes_set", name=name), Severity.ERROR)
-            else:
-                active.variables.assign(name, (), given)
+        active.variables.set_size(name, size)
+        if reader.accept("="):
+            fields.define(reader, active.variables, name, self._note)
 
     def define_parameters(self, reader: ExpressionReader, active: ActiveProgram) -> None:
         """Define the parameters of the PROC line with the arguments of the call."""

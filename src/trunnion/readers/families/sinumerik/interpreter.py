@@ -11,7 +11,7 @@ from trunnion.messages import Wording
 from trunnion.readers.control.arcs import ArcError
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
-from trunnion.readers.families.sinumerik import cycles
+from trunnion.readers.families.sinumerik import cycles, unseen_modes
 from trunnion.readers.families.sinumerik.block import Block, Call
 from trunnion.readers.families.sinumerik.block_reader import BlockReader
 from trunnion.readers.families.sinumerik.control import (
@@ -202,6 +202,8 @@ class SinumerikInterpreter(WordInterpreter):
             self._g_code(code)
         for word in block.words:
             self._word(word, block)
+        for name, written in block.said:
+            unseen_modes.say(self.control, name, written)
         for word in block.waits:
             self.control.note_wait(Wording("NC226", "waits_for_channel", word=word))
         self._corners.begin_block(block.corner)

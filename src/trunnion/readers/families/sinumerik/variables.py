@@ -30,6 +30,7 @@ class Variables:
         self._local: dict[str, Elements] = {}
         self._types: dict[str, str] = {}
         self._places: dict[str, tuple[int, int]] = {}
+        self._sizes: dict[str, tuple[int, ...]] = {}
         self._parameters: dict[int, float] = {} if shared is None else shared._parameters
         self._global: dict[str, Elements] = {} if shared is None else shared._global
         self._assignment_count: list[int] = [0] if shared is None else shared._assignment_count
@@ -58,6 +59,14 @@ class Variables:
         self._types[name] = kind
         self._local[name] = {}
         self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
+
+    def set_size(self, name: str, size: tuple[int, ...]) -> None:
+        """Note how many elements a field has, by index; () for a variable that is none."""
+        self._sizes[name] = size
+
+    def size(self, name: str) -> tuple[int, ...]:
+        """Return how many elements a field of this program has, by index; () if it is none, or not known."""
+        return self._sizes.get(name, ())
 
     def __contains__(self, name: str) -> bool:
         """Whether this program defined the name."""

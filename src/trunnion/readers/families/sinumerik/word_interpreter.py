@@ -8,6 +8,7 @@ from trunnion.model.run import Orientation
 from trunnion.readers.control.iso_m_codes import EVENTS, PROGRAM_ENDS, TOOL_CHANGE
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
+from trunnion.readers.families.sinumerik import unseen_modes
 from trunnion.readers.families.sinumerik.block import Block
 from trunnion.readers.families.sinumerik.calls import CallInterpreter
 from trunnion.readers.families.sinumerik.control import (
@@ -20,12 +21,10 @@ from trunnion.readers.families.sinumerik.control import (
 from trunnion.readers.families.sinumerik.expressions import Value
 from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement, state_of_frame
 from trunnion.readers.families.sinumerik.words import (
-    DRIVING_MODES,
     EXACT_STOPS,
     FRAMES,
     G_FEEDS,
     G_MACHINE,
-    G_MODES,
     G_NOT_SIMULATED,
     G_OFFSETS,
     G_PLANES,
@@ -59,8 +58,7 @@ class WordInterpreter(CallInterpreter):
         control = self.control
         if code in G_SHOWN_MODES:
             control.say_mode(G_SHOWN_MODES[code])
-        elif code in G_MODES:
-            control.say_mode(G_MODES[code], f"G{code}")
+        unseen_modes.say(control, f"G{code}")
         if code in G_RADIUS_COMPENSATION:
             control.compensate(G_RADIUS_COMPENSATION[code])
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER_CLOCKWISE):
@@ -98,8 +96,7 @@ class WordInterpreter(CallInterpreter):
 
     def _word(self, word: str, block: Block) -> None:
         control = self.control
-        if word in DRIVING_MODES:
-            control.say_mode(DRIVING_MODES[word], word)
+        unseen_modes.say(control, word)
         match word:
             case "TRAORI":
                 control.judge_within_compensation(word)

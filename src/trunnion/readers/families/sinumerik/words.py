@@ -84,27 +84,12 @@ G_GROUPS: Final = (
     frozenset({460, 461, 462}),
 )
 
-#: Modes by their G words: those of which the path shows the word, and the others.
+#: Modes of which the path shows the word, by their G words; ``unseen_modes`` has the others.
 G_SHOWN_MODES: Final = {
     **dict.fromkeys(G_PLANES, "plane"),
     **dict.fromkeys((90, 91), "distances"),
     **dict.fromkeys(G_FEEDS, "feed"),
     **dict.fromkeys(G_RADIUS_COMPENSATION, "compensation"),
-}
-G_MODES: Final = {
-    **dict.fromkeys((60, 64, 641, 642, 643, 644, 645), "path control"),
-    **dict.fromkeys((601, 602, 603), "exact stop"),
-}
-
-#: Modes by their other words; those of the tool axis show in its way.
-DRIVING_MODES: Final = {
-    **dict.fromkeys(("SOFT", "BRISK", "DRIVE"), "acceleration"),
-    **dict.fromkeys(("FFWON", "FFWOF"), "feed forward"),
-    **dict.fromkeys(("COMPOF", "COMPON", "COMPCURV", "COMPCAD", "COMPSURF"), "compressor"),
-    **dict.fromkeys(("DYNNORM", "DYNPOS", "DYNROUGH", "DYNSEMIFIN", "DYNFINISH", "DYNPREC"), "dynamics"),
-    **dict.fromkeys(("UPATH", "SPATH"), "path parameter"),
-    **dict.fromkeys(("ORISON", "ORISOF"), "smoothing of the tool axis"),
-    "FNORM": "course of the feed",
 }
 
 #: How the control goes through the ends of blocks, by G code: ``RowRecorder.add_exact_stop``.
@@ -194,7 +179,7 @@ WITHOUT_PATH_EFFECT: Final = _words("""
 #: Words with ``=value`` or ``[axis]=value`` that the path does not depend on.
 WITHOUT_PATH_EFFECT_VALUES: Final = _words("""
     ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC
-    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FD FDA FA DITS DITE FZ
+    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FD FDA FA DITS DITE FZ FP
     """)
 
 #: Those within which the control may round off the path, mm.
@@ -260,12 +245,30 @@ FEED_GROUP: Final = "FGROUP"
 NOT_SIMULATED: Final = _words("""
     ROTS AROTS CROTS CROT CTRANS CSCALE CMIRROR TOFRAMEX TOFRAMEY TOROTX TOROTY PAROT
     TRANSMIT TRACYL TRAANG TRACON
-    BSPLINE ASPLINE CSPLINE POLYPATH PW SD INVCW INVCCW
+    AP RP BSPLINE ASPLINE CSPLINE POLYPATH PW SD INVCW INVCCW
     ORIPATH ORIPATHS ORICURVE ORICONCW ORICONCCW ORICONIO ORICONTO ORIVIRT1 ORIVIRT2 ORIRESET
     TCARR CPON MEAS MEAW POS POSA SPOSA FXS COUPON COUPONC COUPOF DRFOF
     TOFFON
     FLIN FCUB FPO FL SVC LIMS RTLIOF DIAMON DIAM90 SAVE
     """)
+
+#: Cycles of the control that are not simulated: what they do. A file of the name that is given is called all the same.
+CYCLES_NOT_SIMULATED: Final = {
+    "CYCLE60": "engraving", "CYCLE61": "face milling", "CYCLE62": "choice of a contour", "CYCLE63": "contour pocket",
+    "CYCLE64": "pilot holes of a contour pocket", "CYCLE70": "thread milling", "CYCLE71": "face milling",
+    "CYCLE72": "contour milling", "CYCLE73": "pocket with islands", "CYCLE74": "edge of a pocket",
+    "CYCLE75": "edge of an island", "CYCLE76": "rectangular stud", "CYCLE77": "circular stud",
+    "CYCLE78": "drilling and milling of a thread", "CYCLE79": "polygon stud", "CYCLE90": "thread milling",
+    "CYCLE801": "cycle at a grid of positions", "CYCLE802": "cycle at positions", "CYCLE899": "open slot",
+    "CYCLE930": "turned groove", "CYCLE940": "undercut", "CYCLE951": "stock removal", "CYCLE952": "contour turning",
+    "HOLES1": "cycle at a row of positions", "HOLES2": "cycle at a circle of positions",
+    "LONGHOLE": "slots on a circle", "SLOT1": "slots on a circle", "SLOT2": "slots along a circle",
+    "POCKET1": "rectangular pocket", "POCKET2": "circular pocket", "POCKET3": "rectangular pocket",
+    "POCKET4": "circular pocket",
+    "CYCLE971": "measuring of a tool", "CYCLE976": "calibrating of a probe", "CYCLE977": "measuring of a hole or stud",
+    "CYCLE978": "measuring of a surface", "CYCLE979": "measuring of a hole or stud",
+    "CYCLE996": "measuring of the kinematics", "CYCLE997": "measuring of balls", "CYCLE998": "measuring of an angle",
+}  # fmt: skip
 
 #: Words that round or chamfer the corner at the end of their block, and the feed there: RNDM and FRCM until they are 0.
 CORNERS: Final = frozenset({"RND", "RNDM", "CHF", "CHR"})

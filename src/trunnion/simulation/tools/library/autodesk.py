@@ -70,13 +70,7 @@ def _read_tool(file: str, place: str, tool: JsonObject) -> LibraryTool | Unusabl
     if tool.faults or not found:
         shown = " ".join(filter(None, ("" if called is None else str(called), name)))
         problems = (
-            Problem(
-                file,
-                0,
-                Wording("SIM152", "of_library", tool=shown, place=place, fault=fault)
-                if shown
-                else Wording("SIM152", "of_library_nameless", place=place, fault=fault),
-            )
+            Problem(file, 0, Wording("SIM152", "of_library", tool=shown, place=place, fault=fault))
             for fault in tool.faults
         )
         return UnusableTool(called, name, tuple(problems))

@@ -1,0 +1,178 @@
+"""What tries a cure by commands: a script of a few lines, each run in this process, in a folder of its own.
+
+A line is a command of Trunnion; an expression of Python; or one of the words of ``_WORDS``, which change files. The
+files of ``FILES`` that a script names are there before it begins.
+"""
+
+import io
+import re
+import shlex
+import shutil
+import sys
+import tarfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from contextvars import copy_context
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any, Final, Self
+from unittest.mock import patch
+from zipfile import ZipFile
+
+import trunnion
+from tests.support.cures.cure import Cure, Outcome
+from tests.support.posting import FOOT, HEAD
+from tests.support.program_heads import HEADS
+from trunnion.cli import main
+from trunnion.errors import Problem, TrunnionError
+from trunnion.messages import Wording
+
+_PROJECT: Final = 'machine = "yl569"\ncl = ["part.cls"]\noutput = "out.mpf"\n'
+
+#: What scripts may name without writing it first.
+FILES: Final[Mapping[str, str]] = {
+    "part.cls": HEAD + FOOT,
+    "two.cls": HEAD.replace("OP1", "OP2") + FOOT,
+    "stop.cls": HEAD + "STOP/turn the part\nGOTO/20,0,5\n" + FOOT,
+    "part.mpf": HEADS["yl569"].format(lines="G1 X10 F100"),
+    "part.nc": HEADS["matsuura_mx330"].format(lines="G1 X10. F100."),
+    "ours.toml": 'schema = 1\nextends = "yl569"\nname = "Ours"\n',
+    "project.toml": _PROJECT,
+}
+
+
+class _Here:
+    """Workers of a batch that are no processes."""
+
+    def __init__(self, count: int, function: Callable[[Any], Any], timeout: float | None) -> None:
+        self._work = function
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def run(self, tasks: Iterable[tuple[Any, Any] | None]) -> Iterator[tuple[Any, Any]]:
+        """Do one after another."""
+        for place, task in filter(None, tasks):
+            yield place, self._work(task)
+
+
+def _append(name: str, text: str) -> None:
+    with Path(name).open("a", encoding="utf-8") as file:
+        file.write(text.replace("\\n", "\n"))
+
+
+def _write(name: str, text: str) -> None:
+    Path(name).parent.mkdir(parents=True, exist_ok=True)
+    Path(name).write_text(text.replace("\\n", "\n"), encoding="utf-8")
+
+
+def _latin(name: str, text: str) -> None:
+    with Path(name).open("a", encoding="latin-1") as file:
+        file.write(text)
+
+
+def _edit(name: str, pattern: str, new: str) -> None:
+    text = Path(name).read_text(encoding="utf-8")
+    Path(name).write_text(re.sub(pattern, new, text, count=1, flags=re.DOTALL), encoding="utf-8")
+
+
+def _zip(name: str, *files: str) -> None:
+    with ZipFile(name, "w") as archive:
+        for file in files:
+            archive.write(file)
+
+
+def _tar(name: str, *files: str) -> None:
+    with tarfile.open(name, "w") as archive:
+        for file in files:
+            archive.add(file)
+
+
+#: Words of scripts, which change files as those of a shell do.
+_WORDS: Final[Mapping[str, Callable[..., object]]] = {
+    "append": _append,
+    "latin": _latin,
+    "edit": _edit,
+    "zip": _zip,
+    "tar": _tar,
+    "write": _write,
+    "mkdir": lambda name: Path(name).mkdir(parents=True),
+    "rm": lambda name: shutil.rmtree(name) if Path(name).is_dir() else Path(name).unlink(),
+    "mv": lambda old, new: Path(old).rename(new),
+    "cp": lambda old, new: shutil.copy(old, new),
+    "link": lambda old, new: Path(new).symlink_to(old),
+}
+
+
+def run(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Run a script; it is sound if its last command is."""
+    problems: list[Problem] = []
+    is_sound = True
+    with chdir(mkdtemp(dir=folder)), patch("trunnion.batch.running.LocalWorkers", _Here):
+        for name, content in FILES.items():
+            if name in text or (name == "part.cls" and "project.toml" in text):
+                _write(name, content)
+        for line in text.splitlines():
+            word, *words = shlex.split(line) if not line.startswith("trunnion.") else [line]
+            if word == "trunnion":
+                is_sound = _command(words, problems)
+            elif word in _WORDS:
+                _WORDS[word](*words)
+            else:
+                is_sound = _call(line, problems)
+    return Outcome(tuple(problems), is_sound)
+
+
+def _call(expression: str, problems: list[Problem]) -> bool:
+    try:
+        eval(expression, {"trunnion": trunnion, "Path": Path, "io": io})
+    except TrunnionError as error:
+        problems += error.problems
+        return False
+    return True
+
+
+def _command(words: list[str], problems: list[Problem]) -> bool:
+    """Run a command, and note every message that it prints; return whether it ends well."""
+    found: list[tuple[Wording, str]] = []
+    text_of = Wording.text
+
+    def noted(self: Wording, part: Any, *others: Any) -> str:
+        text = text_of(self, part, *others)
+        found.append((self, text))
+        return text
+
+    streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(3)]
+    with (
+        patch.object(Wording, "text", noted), patch.object(sys, "stdin", streams[0]),
+        redirect_stdout(streams[1]), redirect_stderr(streams[2]),
+    ):  # fmt: skip
+        code = copy_context().run(_ended, words)
+    for stream in streams[1:]:
+        stream.flush()
+    printed = _plain(b"".join(stream.buffer.getvalue() for stream in streams[1:]).decode())
+    wordings = dict.fromkeys(wording for wording, text in found if text and _plain(text) in printed)
+    problems += [Problem("", 0, wording) for wording in wordings]
+    if code:
+        problems.append(Problem("", 0, Wording("", "", what=printed, cure="")))
+    return code == 0
+
+
+def _ended(words: list[str]) -> int:
+    try:
+        return main(words)
+    except SystemExit as ended:
+        return int(ended.code or 0)
+
+
+def _plain(text: str) -> str:
+    return "".join(text.split())
+
+
+def script(message: str, text: str, old: str, new: str, *, refuses: bool = False) -> Cure:
+    """A script that draws a message, as ``ARG120 either``, and what its cure puts in place of a part of it."""
+    code, _, variant = message.partition(" ")
+    return Cure(code, variant, run, text, ((old, new),), refuses=refuses)
