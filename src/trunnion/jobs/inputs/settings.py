@@ -36,7 +36,7 @@ Settings: TypeAlias = Mapping[str, SettingValue]
 SINGLE_VALUES: Final = ("zero", "tool_length")
 
 #: Settings of a post that may have a value for each operation.
-_BY_OPERATION: Final = ("mode", "spindle")
+_BY_OPERATION: Final = ("missing_feed", "mode", "spindle")
 
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6
@@ -207,7 +207,6 @@ def check_operation_names(
         setting_problem(key, Wording("ARG230", "cannot_differ", name=key, value=repr(text)))
         for key, text in settings.items()
         if key not in _BY_OPERATION
-        and any(entry.rpartition(":")[0] in known for entry in text.split(",") if ":" in entry)
         and any(entry.rpartition(":")[0] in known for entry in text.split(",") if ":" in entry)
     ]
     if problems:
