@@ -1,24 +1,44 @@
-"""A pile of files through every step: ``python -m benchmarks.acceptance FOLDER [--machine NAME]… [--json]``.
+"""A pile of files through every step: ``python -m benchmarks.acceptance FOLDER [--only cl|nc] [--json]``.
 
-CL files are described, posted on one shipped machine for each control, verified against their CL file as programs of
-someone else, and converted back; NC programs are verified and converted to CL. What it prints is what
-``trunnion survey`` prints, which stops behind the post.
+CL files are described, posted on one shipped machine for each control, posted again with stand-ins for the settings
+that errors ask for, verified against their CL file as programs of someone else, and converted back; NC programs are
+verified and converted to CL. What it prints is what ``trunnion survey`` prints, which stops behind the post, and the
+share of posts that are proven.
 """
 
 import argparse
+from collections import Counter
 
 from trunnion.cli import configure_process
+from trunnion.cli.many_files.counting_terminal import CountingTerminal
 from trunnion.cli.many_files.survey import survey_lines
 from trunnion.results import as_json, to_data
 from trunnion.survey.found_files import FileKind
+from trunnion.survey.result import Became, Survey
 from trunnion.survey.taking import TIMEOUT, take_survey
 from trunnion.survey.trying import Step
 
 #: All that is tried.
 STEPS = {
-    FileKind.CL: (Step.INFO, Step.POST, Step.VERIFY, Step.CONVERT),
+    FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS, Step.VERIFY, Step.CONVERT),
     FileKind.PROGRAM: (Step.VERIFY, Step.CONVERT),
 }
+ONLY = {"cl": FileKind.CL, "nc": FileKind.PROGRAM}
+
+
+def shares(found: Survey) -> str:
+    """Return the shares of posts that are proven as they are, and with settings, of those that the machine can do."""
+    tries = [each for file in found.files if file.kind is FileKind.CL for each in file.tries]
+    became = Counter(each.became for each in tries)
+    beyond = became[Became.BEYOND]
+    own = sum(each.became is Became.PROOF_FAILED and each.step == Step.POST for each in tries)
+    posts = became.total() - beyond
+    proven = became[Became.PROVEN] + became[Became.PROVEN_WARNED]
+    filled = proven + became[Became.PROVEN_FILLED]
+    return (
+        f"{posts} posts, and {beyond} beyond the machine: {proven} proven as they are ({proven / max(posts, 1):.1%}), "
+        f"{filled} after one round of settings ({filled / max(posts, 1):.1%}), {own} own proofs failed"
+    )
 
 
 def main() -> None:
@@ -26,13 +46,18 @@ def main() -> None:
     configure_process()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder")
+    parser.add_argument("--only", choices=sorted(ONLY))
     parser.add_argument("--machine", action="append", default=[])
     parser.add_argument("--timeout", type=float, default=TIMEOUT)
     parser.add_argument("--workers", type=int)
     parser.add_argument("--json", action="store_true")
     said = parser.parse_args()
-    found = take_survey(said.folder, machine=said.machine, timeout=said.timeout, workers=said.workers, steps=STEPS)
-    print(as_json(to_data(found)) if said.json else "\n".join(survey_lines(found)))
+    steps = {kind: tried if said.only in (None, name) else () for name, kind in ONLY.items() for tried in [STEPS[kind]]}
+    found = take_survey(
+        said.folder, machine=said.machine, timeout=said.timeout, workers=said.workers, steps=steps,
+        observer=CountingTerminal(),
+    )  # fmt: skip
+    print(as_json(to_data(found)) if said.json else "\n".join((*survey_lines(found), shares(found))))
 
 
 if __name__ == "__main__":

@@ -18,11 +18,12 @@ from trunnion.cli import main
 from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES
 from trunnion.jobs.inputs.reading import as_machine
-from trunnion.messages import foreign
+from trunnion.messages import Wording, foreign
 from trunnion.readers.program.settings import family_of
 from trunnion.survey import taking
 from trunnion.survey.found_files import FileKind, FoundFile, found_files
 from trunnion.survey.result import Became, Survey, SurveyedMachine, surveyed, trying
+from trunnion.survey.stand_ins import stand_ins
 from trunnion.survey.taking import MACHINES, take_survey
 from trunnion.survey.trying import Step, Trial, try_steps
 
@@ -290,3 +291,23 @@ def test_a_name_that_is_no_text_has_question_marks(tmp_path: Path) -> None:
 def test_there_is_a_machine_for_each_reader() -> None:
     read = {entry.reader for entry in FAMILIES.values()}
     assert {FAMILIES[family_of(as_machine(name))].reader for name in MACHINES} == read
+
+
+def test_a_post_that_lacks_settings_is_proven_with_stand_ins(tmp_path: Path) -> None:
+    sound = (YL569 / "2_hub_rough.cls").read_text()
+    bare = re.sub("(?m)^(SPINDL/RPM|FEDRAT|LOAD/TOOL).*\n", "", sound)
+    assert bare != sound
+    (tmp_path / "bare.cls").write_text(bare)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(taking, "LocalWorkers", Here)
+        (file,) = take_survey(tmp_path, machine=["yl569"]).files
+    assert file.became is Became.PROVEN_FILLED
+    assert {"CTL310", "CTL510"} <= {*file.tries[0].codes}
+    assert not file.passes
+
+
+def test_nothing_is_decided_that_lets_through_what_is_refused() -> None:
+    asks = Problem("part.cls", 3, Wording("CTL510", "operation_cuts_while_spindle", operation="OP1"))
+    speed = Problem("part.cls", 3, Wording("CTL510", "operation_cuts_while", operation="OP1"))
+    assert stand_ins([asks]) == {}
+    assert stand_ins([asks, speed]) == {"spindle": "OP1:1000"}

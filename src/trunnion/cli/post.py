@@ -1,7 +1,7 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from itertools import chain, islice
 from pathlib import Path
 from typing import Final, cast
@@ -9,7 +9,8 @@ from typing import Final, cast
 from trunnion.cli.cl_files import result_stem
 from trunnion.cli.printing import tell
 from trunnion.cli.results import show
-from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place, warn_of_old
+from trunnion.cli.suggest import NotingTerminal, suggestion
+from trunnion.cli.terminal import check_unnamed, output_folder, output_place, warn_of_old
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, TrunnionError, argument_problem
 from trunnion.files import OutputGroup, check_outputs
@@ -45,7 +46,8 @@ def post(
     machine = load_machine(given.machine)
     targets = files_by_target(given, machine)
     papers = {name: getattr(given, name) for name in PAPERS if getattr(given, name) is not None}
-    for name, file in papers.items():
+    alone = papers | ({} if given.suggest is None else {"suggest": given.suggest})
+    for name, file in alone.items():
         if len(targets) > 1:
             raise InputError(
                 Problem(file, 0, Wording("ARG130", "one_paper_for_several_programs", count=len(targets), name=name))
@@ -53,7 +55,7 @@ def post(
     read = list(files_read(given))
     if "-" in targets and given.json == "-":
         raise InputError(argument_problem("json", Wording("ARG140", "data_and_program_to_stdout")))
-    written = [*targets, *papers.values(), *([] if given.json is None else [given.json])]
+    written = [*targets, *alone.values(), *([] if given.json is None else [given.json])]
     check_outputs([file for file in written if file != "-"], read)
     if output_folder(given.output) is not None:
         for target in targets:
@@ -63,15 +65,17 @@ def post(
     stated |= {"columns": False, "simulation": simulation_of(given), "sheet_tools": sheet_tools_of(given)}
     made: list[Path] = []
     results: list[PostResult] = []
+    terminal = NotingTerminal(explain=given.explain, recorded=given.explain or bool(given.report))
     for target, files in targets.items():
         old = [target, *(file for name, file in papers.items() if name != "report")]  # a refusal writes its report
-        with old_files_told(old if observer is None else []):
+        asks = nullcontext() if given.suggest is None else suggestion(given, target, terminal)
+        with asks, old_files_told(old if observer is None else []):
             result = post_beside(
                 chain.from_iterable(islice(toolpaths, len(files))),
                 machine,
                 cast(PostArguments, {**stated, "output": output_place(target)}),
                 Work(read if group is not None else [*read, *made], group),  # a group knows what its jobs write
-                observer or Terminal(explain=given.explain, recorded=given.explain or bool(given.report)),
+                observer or terminal,
             )
         made += [*result.subprograms, *([] if result.output is None else [result.output])]
         results.append(result)

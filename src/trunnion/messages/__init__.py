@@ -168,6 +168,25 @@ def foreign(what: str, cure: str = "", code: str = "") -> Wording:
     return Wording(code, "", what=what, cure=cure)
 
 
+class _Collected(Words):
+    """Collects the settings that a text names."""
+
+    def __init__(self) -> None:
+        self.found: list[tuple[str, str]] = []
+
+    def setting(self, name: str, value: str) -> str:
+        """Keep a setting with its value."""
+        self.found.append((name, value))
+        return ""
+
+
+def settings_in_cure(wording: Wording) -> tuple[tuple[str, str], ...]:
+    """Return the settings that a cure names, in their order: names and values, such as ``OPERATION:RPM``."""
+    words = _Collected()
+    wording.text("cure", words)
+    return tuple(words.found)
+
+
 def filled_in(template: str, words: Words = LIBRARY, parameters: Mapping[str, object] = _NONE) -> str:
     """Return a template with its parameters.
 

@@ -11,7 +11,7 @@ from trunnion.batch.worker_task import Outcome, Status
 from trunnion.errors import Problem, Severity
 from trunnion.results import Figure, OptionalText
 from trunnion.survey.found_files import FileKind, FoundFile
-from trunnion.survey.trying import STEP, Step
+from trunnion.survey.trying import SETTINGS, STEP, Step
 
 
 class Became(StrEnum):
@@ -19,6 +19,7 @@ class Became(StrEnum):
 
     PROVEN        posted, and the program proven
     PROVEN_WARNED  the same, with warnings
+    PROVEN_FILLED  refused as it is; proven with stand-ins for the settings that its errors ask for
     READ          a program: read and run, and no check of it alone fails
     READ_WARNED   the same, with warnings
     BEYOND        understood, and nothing is wrong but that this machine cannot go so far, or turn its spindle so fast
@@ -33,6 +34,7 @@ class Became(StrEnum):
 
     PROVEN = "proven"
     PROVEN_WARNED = "proven with warnings"
+    PROVEN_FILLED = "proven with settings"
     READ = "read"
     READ_WARNED = "read with warnings"
     BEYOND = "beyond the machine"
@@ -56,7 +58,9 @@ class Became(StrEnum):
 
 
 _PASSED: Final = frozenset({Became.PROVEN, Became.PROVEN_WARNED, Became.READ, Became.READ_WARNED})
-_BLOCKED: Final = frozenset({Became.BEYOND, Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN})
+_BLOCKED: Final = frozenset(
+    {Became.PROVEN_FILLED, Became.BEYOND, Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN}
+)
 
 #: The check that fails where something is not understood.
 _WORDS: Final = "words"
@@ -66,6 +70,9 @@ _SEQUELS: Final = frozenset({"CNV130", "CTL940", "PLN160"})
 
 #: Checks and codes of travel and of the spindle's speed.
 _OF_MACHINE: Final = frozenset({"travel", "rpm", "PLN120", "PLN125", "PLN430"})
+
+#: The code of a statement that belongs to turning.
+_TURNING: Final = "CL260"
 
 #: The code of a program of which more is not understood than understood.
 _OTHER_CONTROL: Final = "NC113"
@@ -264,6 +271,8 @@ def _codes(outcome: Outcome, errors: Sequence[Problem]) -> tuple[str, ...]:
 
 
 def _passed(kind: FileKind, outcome: Outcome) -> Became:
+    if kind is FileKind.CL and SETTINGS in outcome.figures:
+        return Became.PROVEN_FILLED
     if kind is FileKind.CL:
         return Became.PROVEN_WARNED if outcome.warnings else Became.PROVEN
     return Became.READ_WARNED if outcome.warnings else Became.READ
@@ -291,11 +300,14 @@ _BECAME: Final[Mapping[Status, Callable[[FileKind, Outcome], Became]]] = {
 def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     """Return what became of a file: of a CL file each try counts, of a program the best."""
     if not tries:
-        became = Became.NOT_OURS if file.is_tried else Became.NOT_TRIED
+        is_other = file.is_tried and file.kind is FileKind.OTHER
+        became = Became.NOT_OURS if is_other else Became.NOT_TRIED
         return SurveyedFile(file.name, file.kind, file.looks, became)
     counted = tuple(tries) if file.kind is FileKind.CL else (min(tries, key=_worth),)
     if not file.looks and _OTHER_CONTROL in counted[0].codes:
         return SurveyedFile(file.name, FileKind.OTHER, "understood by no reader", Became.NOT_OURS)
+    if file.kind is FileKind.CL and all(_TURNING in each.codes for each in counted):
+        return SurveyedFile(file.name, FileKind.OTHER, "CL data of turning", Became.NOT_OURS)
     return SurveyedFile(
         file.name, file.kind, file.looks, max((t.became for t in counted), key=_ORDER.__getitem__), counted
     )

@@ -30,7 +30,7 @@ TIMEOUT: Final = 60.0
 
 #: What is tried of CL files and programs.
 STEPS: Final[Mapping[FileKind, tuple[Step, ...]]] = {
-    FileKind.CL: (Step.INFO, Step.POST),
+    FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS),
     FileKind.PROGRAM: (Step.VERIFY,),
 }
 
@@ -151,7 +151,7 @@ class _Team:
         return [each for _, each in sorted(self.tries[number].items())]
 
     def _machines_for(self, file: FoundFile) -> Iterator[int]:
-        if file.kind is FileKind.OTHER:
+        if file.kind is FileKind.OTHER or not self._steps[file.kind]:
             return
         for on, language in enumerate(self._languages):
             is_cl, languages = file.kind is FileKind.CL, file.languages

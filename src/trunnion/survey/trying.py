@@ -7,7 +7,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cache
 from pathlib import Path, PurePosixPath
@@ -21,8 +21,10 @@ from trunnion.controls import load_control
 from trunnion.errors import Severity, TrunnionError
 from trunnion.jobs.describe.cl_files import describe_cl
 from trunnion.jobs.inputs.reading import as_machine
+from trunnion.options.words import PROOF_SETTINGS
 from trunnion.readers import reader_of
 from trunnion.survey.found_files import MOST_BYTES, is_touchable
+from trunnion.survey.stand_ins import stand_ins
 
 #: Memory that a worker may take, bytes; beyond it the file is given up, and not the computer.
 _MEMORY: Final = 4 << 30
@@ -34,8 +36,9 @@ _NAME: Final = "survey"
 _CALLS_FILE: Final = "NC132"
 _MOST_BESIDE: Final = 50_000_000
 
-#: Of an outcome: the step that it is of.
+#: Of an outcome: the step that it is of, and the settings without which it would not have passed.
 STEP: Final = "step"
+SETTINGS: Final = "filled_in"
 
 
 class Step(StrEnum):
@@ -43,6 +46,7 @@ class Step(StrEnum):
 
     INFO = "info"
     POST = "post"
+    SETTINGS = "settings"
     VERIFY = "verify"
     CONVERT = "convert"
 
@@ -53,7 +57,8 @@ class Trial:
 
     file     its name from the folder on
     machine  name of a shipped one, or an absolute path
-    steps    in their order; ``VERIFY`` and ``CONVERT`` of a CL file are of the program that was posted
+    steps    in their order; ``SETTINGS`` posts again where errors ask for settings, with stand-ins for them;
+             ``VERIFY`` and ``CONVERT`` of a CL file are of the program that was posted
     """
 
     file: str
@@ -64,13 +69,19 @@ class Trial:
 
 @dataclass(slots=True)
 class _Subject:
-    """What the steps work on: files by their logical names, the CL file, and the program with its subprograms."""
+    """What the steps work on: files by their logical names, the CL file, and the program with its subprograms.
+
+    settings  stand-ins with which it was posted
+    asked     the outcome that asked for them
+    """
 
     trial: Trial
     files: dict[str, bytes]
     cl: str = ""
     program: str = ""
     subprograms: tuple[str, ...] = ()
+    settings: Mapping[str, str] = field(default_factory=dict)
+    asked: Outcome | None = None
 
 
 def try_in_worker(trial: Trial) -> Outcome:
@@ -94,11 +105,18 @@ def try_steps(trial: Trial) -> Outcome:
         subject.program = name
     outcome, warnings = Outcome(Status.PASSED), 0
     for step in trial.steps:
+        if step is Step.SETTINGS:
+            continue
         outcome = _DOING[step](subject)
+        if step is Step.POST and Step.SETTINGS in trial.steps and outcome.status is not Status.PASSED:
+            outcome = _with_settings(subject, outcome)
         warnings += outcome.warnings
         outcome = replace(outcome, figures={**outcome.figures, STEP: str(step)})
         if outcome.status is not Status.PASSED:
             break
+    if subject.asked is not None and outcome.status is Status.PASSED:
+        figures = {**subject.asked.figures, **outcome.figures, SETTINGS: dict(subject.settings)}
+        outcome = replace(outcome, problems=subject.asked.problems, figures=figures)
     told = tuple(replace(each, file=_shown(each.file, trial)) for each in outcome.problems)
     return replace(outcome, files={}, warnings=warnings, problems=told)
 
@@ -133,9 +151,16 @@ def _info(subject: _Subject) -> Outcome:
     return Outcome(Status.PASSED)
 
 
+def _with_settings(subject: _Subject, outcome: Outcome) -> Outcome:
+    """Return what comes of a post with stand-ins for the settings that its errors ask for."""
+    subject.settings, subject.asked = stand_ins(outcome.problems), outcome
+    return _post(subject) if subject.settings else outcome
+
+
 def _post(subject: _Subject) -> Outcome:
     machine = subject.trial.machine
-    outcome = _worked(subject, Action.POST, subject.cl, {"machine": machine}, _NAME + _extension(machine))
+    arguments: dict[str, Any] = {"machine": machine, "settings": dict(subject.settings)}
+    outcome = _worked(subject, Action.POST, subject.cl, arguments, _NAME + _extension(machine))
     programs = {FILES + name: data for name, data in outcome.files.items()}
     if programs:
         subject.files |= programs
@@ -169,7 +194,8 @@ def _take_beside(subject: _Subject) -> bool:
 def _verified(subject: _Subject) -> Outcome:
     arguments: dict[str, Any] = {"machine": subject.trial.machine, "subprograms": list(subject.subprograms)}
     if subject.cl:
-        arguments["cl"] = [subject.cl]
+        proven = {name: value for name, value in subject.settings.items() if name in PROOF_SETTINGS}
+        arguments |= {"cl": [subject.cl], "settings": proven}
     return _worked(subject, Action.VERIFY, subject.program, arguments, "")
 
 

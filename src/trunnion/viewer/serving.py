@@ -112,6 +112,8 @@ def listen(host: str, port: int) -> socket.socket:
     Raises ``InputError`` if it is taken, or the address is none of this computer's.
     """
     try:
+        if host:
+            socket.getaddrinfo(host, None)  # create_server gives its errors no class of their own
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except OverflowError:
         wording = Wording("PAG120", "no_port", port=port)

@@ -67,7 +67,7 @@ def test_operations_that_turn_keep_their_speed(tmp_path: Path) -> None:
         ("0", "RPM"),
         ("NO_SPINDL:", "RPM"),
         ("nan", "RPM"),
-        ("1,2", "two speeds"),
+        ("1,2", "two values"),
         ("OTHER:500", "none of that name"),
     ],
 )

@@ -43,7 +43,7 @@ def test_a_program_that_must_not_run_is_shown_with_what_is_wrong() -> None:
 
 
 def test_a_set_up_of_a_project_states_all() -> None:
-    with pytest.raises(InputError, match="choose one of top, bottom"):
+    with pytest.raises(InputError, match="choose one with argument setup=NAME: top, bottom"):
         prepare_view(PLATE)
     content = prepare_view(PLATE, setup="top", cell=4.0)
     assert content.scene["machine"]["key"] == "machine"

@@ -27,25 +27,25 @@ _PROGRAMS: Final = {
     + "".join(f"G1 X70 Y{y} F500\nG1 X-20\n" for y in range(-22, 25, 4))
     + "G0 Z20\nM5\nM30\n",
 }
-_CL: Final = (
+CL: Final = (
     "TOOL PATH/SLOT,TOOL,D10\nTLDATA/MILL,10,0,60,0,0\nLOADTL/1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/-20,0,20,0,0,1\n"
     "FEDRAT/MMPM,500\nGOTO/-20,0,-5\nGOTO/70,0,-5\nRAPID\nGOTO/70,0,20\nEND-OF-PATH\n"
 )
 _SETUP: Final = 'programs = ["one.ngc"]\nmachine = "xyzac_trt"\n'
 _WHOLE: Final = f'stock = "box:50,40,10,0,-20,-10"\ntools = ["{TOOL}"]\ncell_mm = 2\n'
-_ONE: Final = _WHOLE + _SETUP
+ONE: Final = _WHOLE + _SETUP
 _SECOND: Final = f'[[setup]]\nname = "A"\n{_SETUP}[[setup]]\nname = "B"\n{_SETUP}'
 _POSTED: Final = 'cl = ["part.cls"]\noutput = "part.nc"\nmachine = "xyzac_trt"\n'
-_TWO: Final = _WHOLE + _SECOND
+TWO: Final = _WHOLE + _SECOND
 _HIGH: Final = (
     _WHOLE + 'part = "whole.stl"\n' + _SECOND.replace("one.ngc", "high.ngc").replace("high.ngc", "one.ngc", 1)
 ).replace("40,10,", "40,15,")
 
 
-def _written(text: str, folder: Path, name: str = "part.toml") -> Path:
+def project_written(text: str, folder: Path, name: str = "part.toml") -> Path:
     for program, content in _PROGRAMS.items():
         (folder / program).write_text(content, encoding="utf-8")
-    (folder / "part.cls").write_text(_CL, encoding="utf-8")
+    (folder / "part.cls").write_text(CL, encoding="utf-8")
     save_mesh(cuboid((0, -20, -10), (50, 20, -5)), folder / "part.stl")
     save_mesh(cuboid((0, -20, -10), (50, 20, 0)), folder / "whole.stl")
     save_mesh(cuboid((100, -20, -10), (150, 20, -5)), folder / "beside.stl")
@@ -57,7 +57,7 @@ def _simulated(name: str = "part.toml", *others: str, **given: Any) -> Trial:
     """Return what simulates a project of a name, and others with it; settings are further arguments."""
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-        files = [_written(text, folder, name), *(folder / other for other in others)]
+        files = [project_written(text, folder, name), *(folder / other for other in others)]
         try:
             found = trunnion.simulate(files, **given, **settings)  # type: ignore[arg-type]
         except TrunnionError as error:
@@ -72,9 +72,9 @@ def _posted(**given: Any) -> Trial:
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
         file = folder / "part.cls"
-        file.write_text(_CL, encoding="utf-8")
+        file.write_text(CL, encoding="utf-8")
         how: dict[str, Any] = {"machine": "xyzac_trt", **given}
-        project = _written(text, folder) if text else None
+        project = project_written(text, folder) if text else None
         try:
             found = trunnion.post(file, settings=settings, simulation=how.pop("simulation", project), **how)
         except TrunnionError as error:
@@ -88,24 +88,24 @@ def _posted_with(name: str) -> Trial:
     """Return what posts a CL file and simulates with a project of a name."""
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-        return _posted(simulation=_written(text, folder, name))("", settings, folder)
+        return _posted(simulation=project_written(text, folder, name))("", settings, folder)
 
     return tried
 
 
 def _jobs_read(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Read a file of jobs."""
-    return ended(lambda: load_batch(_written(text, folder)))
+    return ended(lambda: load_batch(project_written(text, folder)))
 
 
 def _project_posted(name: str) -> Trial:
     """Return what posts a project of a name, which has a program already."""
-    return lambda text, settings, folder: ended(lambda: trunnion.post_project(_written(text, folder, name)))
+    return lambda text, settings, folder: ended(lambda: trunnion.post_project(project_written(text, folder, name)))
 
 
 def _shared(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Cut one tile of the stock of a project."""
-    return ended(lambda: simulate_share(_written(text, folder), Share(0, 2), dict(settings), SILENT))  # type: ignore[arg-type]
+    return ended(lambda: simulate_share(project_written(text, folder), Share(0, 2), dict(settings), SILENT))  # type: ignore[arg-type]
 
 
 _BODIES: Final = {"stock": "box:50,40,10,0,-20,-10", "cell": 2.0}
@@ -116,12 +116,12 @@ _JOBS: Final = (
     + 'machine = "xyzac_trt"\ntiles = 2\nstop_at = "first"\n'
 )
 CURES: Final = (
-    Cure("SIM111", "project_among_programs", _simulated("part.toml", "one.ngc"), _ONE, (), cured_by=_simulated()),
+    Cure("SIM111", "project_among_programs", _simulated("part.toml", "one.ngc"), ONE, (), cured_by=_simulated()),
     Cure(
         "SIM111",
         "of_all_setups",
         _simulated(zero="0,0,-100"),
-        _TWO,
+        TWO,
         (('[[setup]]\nname = "A"', 'zero_mm = [0, 0, -100]\n[[setup]]\nname = "A"'),),
         cured_by=_simulated(),
     ),
@@ -133,23 +133,21 @@ CURES: Final = (
         (),
         cured_by=_project_posted("part.toml"),
     ),
-    Cure("SIM112", "no_project", _simulated(), 'title = "PART"\n', (('title = "PART"\n', _ONE),)),
-    Cure(
-        "SIM112", "machine_for_project", _simulated(), 'extends = "xyzac_trt"\n', (('extends = "xyzac_trt"\n', _ONE),)
-    ),
-    Cure("SIM112", "several_setups", _posted(), _TWO, ((_TWO, _ONE),)),
-    Cure("SIM113", "other_machine", _posted(machine="yl569"), _ONE, (), cured_by=_posted()),
-    Cure("SIM113", "not_of_the_post", _posted(), _ONE + "tool_length_mm = 60\n", ({"tool_length": "60"},)),
+    Cure("SIM112", "no_project", _simulated(), 'title = "PART"\n', (('title = "PART"\n', ONE),)),
+    Cure("SIM112", "machine_for_project", _simulated(), 'extends = "xyzac_trt"\n', (('extends = "xyzac_trt"\n', ONE),)),
+    Cure("SIM112", "several_setups", _posted(), TWO, ((TWO, ONE),)),
+    Cure("SIM113", "other_machine", _posted(machine="yl569"), ONE, (), cured_by=_posted()),
+    Cure("SIM113", "not_of_the_post", _posted(), ONE + "tool_length_mm = 60\n", ({"tool_length": "60"},)),
     Cure(
         "SIM113",
         "other_than_of_the_post",
         _posted(),
-        _ONE + "tool_length_mm = 60\n",
+        ONE + "tool_length_mm = 60\n",
         ({"tool_length": "60"},),
         {"tool_length": "50"},
     ),
-    Cure("SIM113", "clamped_otherwise", _posted(), _ONE + "turn_deg = 90\n", (), cured_by=_posted(turn=90.0)),
-    Cure("SIM113", "only_to_a_block", _posted(), _ONE + "until = 60\n", (("until = 60\n", ""),)),
+    Cure("SIM113", "clamped_otherwise", _posted(), ONE + "turn_deg = 90\n", (), cured_by=_posted(turn=90.0)),
+    Cure("SIM113", "only_to_a_block", _posted(), ONE + "until = 60\n", (("until = 60\n", ""),)),
     Cure(
         "SIM110",
         "unknown",
@@ -166,42 +164,40 @@ CURES: Final = (
         (),
         cured_by=_posted(simulation=_BODIES),
     ),
-    Cure("SIM116", "several_setups", _shared, _TWO, ((_TWO, _ONE),)),
-    Cure("SIM116", "stops_at_first_finding", _shared, _ONE, ({"stop_at": None},), {"stop_at": "first"}),
+    Cure("SIM116", "several_setups", _shared, TWO, ((TWO, ONE),)),
+    Cure("SIM116", "stops_at_first_finding", _shared, ONE, ({"stop_at": None},), {"stop_at": "first"}),
     Cure(
         "SIM141",
         "cuts_in_other_offset",
         _simulated(),
-        _ONE.replace("one", "other") + 'work_offset = "G54"\n',
+        ONE.replace("one", "other") + 'work_offset = "G54"\n',
         (("other", "one"),),
     ),
     Cure(
         "SIM141",
         "cuts_in_no_offset",
         _simulated(),
-        _ONE.replace("one", "bare") + 'work_offset = "G54"\n',
+        ONE.replace("one", "bare") + 'work_offset = "G54"\n',
         (("bare", "one"),),
     ),
     Cure(
         "SIM141",
         "place_of_offset_unknown",
         _simulated("part.toml"),
-        _ONE.replace("one", "two") + "zero_mm = { G54 = [0, 0, -100] }\n",
+        ONE.replace("one", "two") + "zero_mm = { G54 = [0, 0, -100] }\n",
         (("100] }", "100], G55 = [0, 0, -100] }"),),
     ),
-    Cure(
-        "SIM131", "reaches_mm_beyond", _simulated(), _TWO + 'part = "beside.stl"\n', (('"beside.stl"', '"part.stl"'),)
-    ),
+    Cure("SIM131", "reaches_mm_beyond", _simulated(), TWO + 'part = "beside.stl"\n', (('"beside.stl"', '"part.stl"'),)),
     Cure("SIM132", "missing_before_this_setup", _simulated(), _HIGH, (("one.ngc", "high.ngc"),)),
     Cure(
         "SIM134",
         "turned_through_surface",
         _simulated(),
-        _TWO + "pose = { turn_deg = [0, 0, 30], origin_mm = [50, 0, 0] }\n",
+        TWO + "pose = { turn_deg = [0, 0, 30], origin_mm = [50, 0, 0] }\n",
         ((" 30]", " 180]"),),
     ),
-    Cure("SIM135", "nothing_left_next", _simulated(), _TWO.replace("one.ngc", "all.ngc", 1), (("all.ngc", "one.ngc"),)),
-    Cure("SIM112", "no_project_of_simulation", _posted_with("part.txt"), _ONE, (), cured_by=_posted()),
+    Cure("SIM135", "nothing_left_next", _simulated(), TWO.replace("one.ngc", "all.ngc", 1), (("all.ngc", "one.ngc"),)),
+    Cure("SIM112", "no_project_of_simulation", _posted_with("part.txt"), ONE, (), cured_by=_posted()),
     Cure("SIM116", "no_meaning_stop", _jobs_read, _JOBS, (('stop_at = "first"\n', ""),)),
     Cure("SIM116", "no_meaning_stop", _jobs_read, _JOBS, (("tiles = 2\n", ""),)),
 )

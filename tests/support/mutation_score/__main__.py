@@ -17,8 +17,8 @@ from contextlib import contextmanager
 from importlib.util import cache_from_source
 from math import sqrt
 from pathlib import Path
-from runpy import run_path
 
+from tests.support.durations import SLOW, kept
 from tests.support.locations import ROOT
 from tests.support.mutation_score.mutants import KINDS, Mutant, draw_mutants
 from tests.support.mutation_score.reach import Sources, rounds
@@ -46,7 +46,7 @@ class Trial:
             shutil.copytree(tree, self.root, ignore=ignored, symlinks=True)
             compile_kernels(self.root)
         self.root = self.root.resolve()
-        self.sources = Sources(self.root, run_path(str(self.root / "tests" / "support" / "slow.py"))["SLOW"])
+        self.sources = Sources(self.root, [file for file, taken in kept().items() if taken > SLOW])
         self.fails_anyway, self.excluded = dict[str, bool](), set[str]()
 
     def outcome(self, mutant: Mutant) -> tuple[str, str]:
@@ -108,6 +108,7 @@ def main() -> None:
     """Draw mutants, try them, and print a line of each and the table."""
     parser = argparse.ArgumentParser(description="How many changes of the sources the tests notice.")
     parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--skip", type=int, default=0, help="the first of these that another run has tried")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=20.0, help="processor seconds of one mutant")
     parser.add_argument("--under", default="", help="where to draw from, such as planning or arrays.py")
@@ -120,7 +121,7 @@ def main() -> None:
         under = trial.root / "src" / "trunnion" / arguments.under
         drawn = draw_mutants(under, arguments.count, random.Random(arguments.seed))
         print(f"{len(drawn)} mutants, seed {arguments.seed}", flush=True)
-        for mutant in drawn:
+        for mutant in drawn[arguments.skip :]:
             outcome, test = trial.outcome(mutant)
             outcomes[mutant.kind, outcome] += 1
             place = f"{mutant.file.relative_to(trial.root).as_posix()}:{mutant.line}"

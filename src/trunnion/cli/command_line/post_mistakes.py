@@ -35,6 +35,8 @@ def _mistake_of_project(given: Given) -> Wording | None:
         return Wording("ARG120", "project_among_files", project=project)
     if given.force:
         return Wording("ARG120", "forced_project", project=project)
+    if given.suggest:
+        return Wording("ARG120", "suggested_project", project=project)
     for option in given.job.options:
         if option.key and option.name not in _BESIDE and given.values[option.name]:
             return Wording("ARG120", "not_with_project", option=option.flag, key=option.key)

@@ -60,7 +60,14 @@ _POST: Final = job(
         "manifest", "--manifest", FileOut("FILE", (".json",), phrase("manifest_is_data")),
         "checksums of all files (.json), beside the program", key="manifest",
     ),
-    Option("watch", "--watch", Switch(), "post again whenever a file that is read changes", own=True),
+    Option(
+        "watch", "--watch", Switch(), "post again whenever a file that is read changes", own=True, either="beside"
+    ),
+    Option(
+        "suggest", "--suggest", FileOut("PROJECT", (".toml",), phrase("project_is_toml")),
+        "write a project (.toml) to fill in: what was given, and the settings that the messages ask for",
+        own=True, either="beside",
+    ),
     CLAMPING.but(
         turn={
             "help": "the part is turned so about Z, counter-clockwise seen from +Z, and its toolpath with it; the head"
@@ -83,6 +90,7 @@ _POST: Final = job(
     examples=[
         ("trunnion post part.cls --machine yl569 --output part.mpf", "one proven program"),
         ("trunnion post part.cls --machine dmu65 --set title=BLADE --report part.html", "with a page that proves it"),
+        ("trunnion post part.cls --machine dmu65 --suggest part.toml", "a project for settings that are missing"),
     ],
 )  # fmt: skip
 

@@ -112,6 +112,12 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         form="RPM or OPERATION:RPM",
         example="8000,DRILL:1200",
     ),
+    "missing_feed": RunSetting(
+        "Feed of cuts and holes that have none in the CL file, mm/min; with MMPR behind it mm a revolution, such as "
+        "the pitch of a thread.",
+        form="MM_MIN or OPERATION:MM_MIN",
+        example="300,TAP:1.25MMPR",
+    ),
     "spline_tolerance": RunSetting(
         "How far the points that splines (NURBS) of CL files become may leave them between each other.",
         "the smaller of INTOL and OUTTOL, from 0.0001 to 0.01; 0.001 without them",

@@ -1,6 +1,5 @@
 """The setting ``spindle``: speeds of operations whose CL file turns the spindle on too late, or not at all."""
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import chain
@@ -9,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.errors import InputError, setting_problem
-from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
+from trunnion.jobs.inputs.stated_by_operation import check_operations, stated_by_operation
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Event, Kind, LoadTool, Operation, Sense, SpindleOff, SpindleOn, Toolpath
 
@@ -24,20 +23,15 @@ def stated_speeds(settings: Mapping[str, str]) -> dict[str, float]:
 
     Raises ``InputError`` if the setting is none, or states two speeds of one operation.
     """
-    found: dict[str, float] = {}
-    text = settings.get(_KEY, "")
-    for entry in text.split(",") if text else ():
-        name, _, number = entry.rpartition(":")
-        try:
-            speed = float(number)
-        except ValueError:
-            speed = math.nan
-        if not _BOUNDS[0] <= abs(speed) <= _BOUNDS[1]:
-            raise InputError(setting_problem(_KEY, RUN_SETTINGS[_KEY].fault(_KEY, text)))
-        if name in found:
-            raise InputError(setting_problem(_KEY, Wording("ARG220", "speed_twice", value=repr(text))))
-        found[name] = speed
-    return found
+    return stated_by_operation(_KEY, settings, _speed)
+
+
+def _speed(text: str) -> float | None:
+    try:
+        speed = float(text)
+    except ValueError:
+        return None
+    return speed if _BOUNDS[0] <= abs(speed) <= _BOUNDS[1] else None
 
 
 def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> list[Toolpath]:
@@ -49,12 +43,10 @@ def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str
     speeds, found, turns = stated_speeds(settings), list[Toolpath](), False
     if not speeds:
         return [*toolpaths]
-    left = speeds.keys() - {""}
     for toolpath in toolpaths:
         operations = list[Operation]()
         for operation in toolpath.operations:
             states = operation.name in speeds
-            left.discard(operation.name)
             turns, own = _turning_at_first_cut(operation, turns)
             if states and own:
                 said = Wording("ARG230", "states_own_speed", operation=operation.name)
@@ -66,13 +58,7 @@ def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str
                 if isinstance(event, SpindleOn | SpindleOff):
                     turns = isinstance(event, SpindleOn)
         found.append(replace(toolpath, operations=tuple(operations)))
-    if left:
-        known = tuple(dict.fromkeys(each.name for path in found for each in path.operations))
-        problems = [
-            setting_problem(_KEY, Wording("ARG230", "no_operation_before_colon", name=name, known=known))
-            for name in sorted(left)
-        ]
-        raise InputError(problems)
+    check_operations(_KEY, speeds, found)
     return found
 
 

@@ -15,13 +15,14 @@ from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
+from trunnion.jobs.inputs.stated_feeds import with_stated_feeds
 from trunnion.jobs.inputs.stated_speeds import with_stated_speeds
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.operation_setups import planned_machines, with_operation_setups
 from trunnion.jobs.post.post_job import PostJob, prepare
-from trunnion.jobs.post.settings_to_fill import settings_to_fill
+from trunnion.jobs.post.settings_to_fill import settings_to_fill, with_operations
 from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
 from trunnion.model.motion import Plan
@@ -123,7 +124,7 @@ def load_toolpaths(
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
     toolpaths = replace_unknown_statements(changed(_with_repeated(toolpaths)), job.control, job.machine)
-    toolpaths = with_stated_speeds(toolpaths, job.settings)
+    toolpaths = with_stated_feeds(with_stated_speeds(toolpaths, job.settings), job.settings)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
@@ -214,22 +215,38 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
         job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings, setups=job.setups
     )
     program = with_radius_taken_off(with_place_texts(program))
-    problems = new_problems(program, observer)
+    problems, errors = _of_program(program, observer)
     unproven = _missing_reader(job)
-    by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
-    conflicts = tool_conflicts(program, uses_length_numbers=by_register)
+    conflicts = _tool_conflicts(program, errors)
     leaning = _leaning_operations(planned, number_setting(job.settings, "max_tilt"))
     sideways = sideways_problems(toolpaths) if job.settings.get("drills_sideways") != "allowed" else []
-    ways = way_problems(program, subprograms=job.settings.get("programs") == "operations")
     remarks = merge_repeated((*planned.problems, *unknown_radii(program)))
+    found = [*remarks, *conflicts, *leaning, *sideways]
+    if errors:  # with all else that is wrong, so that one round of answers does
+        raise InputError(_with_settings([*errors, *_errors_of(found), *unproven], program))
+    ways = way_problems(program, subprograms=job.settings.get("programs") == "operations")
     found = [*remarks, *ways, *conflicts, *insert_problems(program), *leaning, *sideways]
-    blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
+    blocking = _errors_of(found) + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, Wording("CTL940", "can_be_forced" if job.can_force else "nothing_written"))
-        raise RefusedError((*found, *unproven, refused))
+        known = with_operations((*found, *unproven), program)
+        raise RefusedError((*known, refused, *settings_to_fill(_errors_of(known), file)))
     observer.problems(found)
     notices = forced_notices(problem.what for problem in blocking)
     return PlannedProgram(replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found])
+
+
+def _tool_conflicts(program: Program, errors: list[Problem]) -> list[Problem]:
+    """Return operations that call one tool and state different ones.
+
+    Where one has nothing to call its tool by, that joins the ``errors``, and nothing is known of the others.
+    """
+    by_register = readers.can_read(program.machine) and readers.reader_of(program.machine).uses_length_numbers
+    try:
+        return tool_conflicts(program, uses_length_numbers=by_register)
+    except InputError as error:
+        errors += [problem for problem in error.problems if problem not in errors]
+        return []
 
 
 def _leaning_operations(planned: Plan, most: float | None) -> list[Problem]:
@@ -260,14 +277,30 @@ def new_problems(program: Program, observer: Observer, known: Sequence[Problem] 
 
     Raises ``InputError`` when the control cannot be told what the program says.
     """
-    problems = [problem for problem in merge_repeated(check_program(program)) if problem not in known]
-    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
-    found = [problem for problem in problems if problem not in errors]
-    observer.problems(found)
+    found, errors = _of_program(program, observer, known)
     if errors:
-        ordered = sorted(errors, key=lambda problem: (problem.file, problem.line))
-        raise InputError((*ordered, *settings_to_fill(ordered, program)))
+        raise InputError(_with_settings(errors, program))
     return found
+
+
+def _of_program(
+    program: Program, observer: Observer, known: Sequence[Problem] = ()
+) -> tuple[list[Problem], list[Problem]]:
+    """Return warnings about a program that are not known yet, which have been reported, and errors."""
+    problems = [problem for problem in merge_repeated(check_program(program)) if problem not in known]
+    found = [problem for problem in problems if problem.severity is not Severity.ERROR]
+    observer.problems(found)
+    return found, _errors_of(problems)
+
+
+def _errors_of(problems: Iterable[Problem]) -> list[Problem]:
+    return [problem for problem in problems if problem.severity is Severity.ERROR]
+
+
+def _with_settings(errors: Iterable[Problem], program: Program) -> list[Problem]:
+    """Return errors in the order of their lines, and the settings that end them."""
+    ordered = with_operations(sorted(errors, key=lambda problem: (problem.file, problem.line)), program)
+    return [*ordered, *settings_to_fill(ordered, program.file)]
 
 
 def _missing_reader(job: PostJob) -> list[Problem]:

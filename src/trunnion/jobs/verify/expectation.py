@@ -22,6 +22,9 @@ from trunnion.messages import Wording
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification import ExpectedValues, PrintedDigits, Tolerances, tolerances_in_planes
 
+#: Added to half a digit, so that a value half-way between two digits is inside.
+_SLACK: Final = 1e-9
+
 #: In a program in inches, half of 0.0001 inch, mm.
 _DEFAULT_INCH_TOLERANCE: Final = 0.0013
 
@@ -94,14 +97,20 @@ def _work_offsets(
 def tolerances(
     on: VerifiedMachine, read: ReadProgram, given: VerifyArguments
 ) -> Tolerances | Callable[[Operation], Tolerances]:
-    """How far the program may be off; by default as much more in tilted planes as is rounded there."""
+    """How far the program may be off; by default as much more in tilted planes as is rounded there.
+
+    Feeds may be off by half of the last digit that the control prints: it is 1 mm/min on some.
+    """
     found = _in_planes(on.control, read, given)
-    if on.control is None or given["feed"] != "fastest":
+    pair = on.control.formats.get("feed") if on.control else None
+    if pair is None:
         return found
-    digit = 0.5 * on.control.formats["feed"].five_axis.digit  # the last one of a feed that the control prints
+    if pair.inch and read.run.state.inches.values.any():
+        pair = pair.inch
+    feed = max(Tolerances().feed, *(0.5 * each.digit + _SLACK for each in (pair.five_axis, pair.three_axis)))
     if isinstance(found, Tolerances):
-        return replace(found, feed=digit)
-    return lambda operation: replace(found(operation), feed=digit)
+        return replace(found, feed=feed)
+    return lambda operation: replace(found(operation), feed=feed)
 
 
 def _in_planes(

@@ -14,6 +14,7 @@ from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import as_texts
+from trunnion.jobs.inputs.stated_feeds import with_stated_feeds
 from trunnion.jobs.inputs.stated_speeds import with_stated_speeds
 from trunnion.jobs.inputs.tool_lengths import with_lengths_of_tools
 from trunnion.jobs.observer import Observer
@@ -65,7 +66,8 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
     if given["hooks"]:
         toolpaths = _changed_by_hooks(toolpaths, on, given)
     toolpaths = replace_unknown_statements(toolpaths, on.control, on.machine)
-    toolpaths = with_stated_speeds(toolpaths, as_texts(given["settings"]))
+    settings = as_texts(given["settings"])
+    toolpaths = with_stated_feeds(with_stated_speeds(toolpaths, settings), settings)
     stated, clamping = stated_clamping(toolpaths), None
     if toolpaths:
         clamping = clamped_after(stated, angles_of(given), toolpaths[0].file)

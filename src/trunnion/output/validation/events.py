@@ -57,6 +57,10 @@ def event_problems(
                 *location, Wording("CTL230", "cutcom_names_register", register=event.register, control=control.name)
             )
         ]
+    if isinstance(event, SpindleOn) and not (
+        printed := control.number_formats(motion.three_axis)["speed"].rounded(event.rpm)
+    ):
+        return [Problem(*location, Wording("CTL320", "speed_below_least", rpm=event.rpm, printed=printed))]
     if isinstance(event, SpindleOn) and _stops_in_cut(program, motion, event, rpm):
         return [warning(*location, Wording("CTL470", "new_speed_in_cut", rpm=event.rpm, before=rpm))]
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):

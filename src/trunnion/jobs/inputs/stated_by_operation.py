@@ -1,0 +1,44 @@
+"""Settings that state one thing of operations whose CL file leaves it out: ``8000,DRILL:1200``."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TypeVar
+
+from trunnion.errors import InputError, setting_problem
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
+from trunnion.messages import Wording
+from trunnion.model.toolpath import Toolpath
+
+_Value = TypeVar("_Value")
+
+
+def stated_by_operation(
+    key: str, settings: Mapping[str, str], value_of: Callable[[str], _Value | None]
+) -> dict[str, _Value]:
+    """Return what a setting states, by operation; that of all others has no name.
+
+    ``value_of`` makes a value of its text, and None of one that is none.
+
+    Raises ``InputError`` if the setting is none, or states two values of one operation.
+    """
+    found: dict[str, _Value] = {}
+    text = settings.get(key, "")
+    for entry in text.split(",") if text else ():
+        name, _, written = entry.rpartition(":")
+        value = value_of(written)
+        if value is None:
+            raise InputError(setting_problem(key, RUN_SETTINGS[key].fault(key, text)))
+        if name in found:
+            raise InputError(setting_problem(key, Wording("ARG220", "value_twice", name=key, value=repr(text))))
+        found[name] = value
+    return found
+
+
+def check_operations(key: str, names: Iterable[str], toolpaths: Iterable[Toolpath]) -> None:
+    """Raise ``InputError`` for operations, named before a colon, that are in none of the toolpaths."""
+    known = tuple(dict.fromkeys(each.name for path in toolpaths for each in path.operations))
+    problems = [
+        setting_problem(key, Wording("ARG230", "no_operation_before_colon", name=name, known=known))
+        for name in sorted({*names} - {"", *known})
+    ]
+    if problems:
+        raise InputError(problems)
