@@ -37,7 +37,7 @@ CURES: Final = (
     _typed("value_of_switch", f"{_POST} --force=yes", "--force=yes", "--force"),
     _typed("either", "trunnion convert part.mpf --machine yl569 --to-cl --to-machine dmu65", " --to-machine dmu65", ""),
     _typed("two_values", f"{_VERIFY} --machine dmu65", " --machine dmu65", ""),
-    _typed("written_twice", f"{_POST} --set tolerance=0.01 --set tolerance=0.02", " --set tolerance=0.02", ""),
+    _typed("setting_twice", f"{_POST} --set tolerance=0.01 --set tolerance=0.02", " --set tolerance=0.02", ""),
     _typed("setting_twice", f"{_POST} --set mode=tcp --set mode=auto", "=tcp --set mode=auto", "=tcp,OP1:auto"),
     script("ARG210 unknown_but_near", f"{_POST} --set tool.mode=tcp", "tool.mode", "mode"),
     _typed("written_twice", f"{_VERIFY} --set R5=1 --set R5=2", " --set R5=2", ""),
