@@ -12,7 +12,6 @@ from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, Problem, TrunnionError
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
-from trunnion.jobs.post.asked_settings import asked_settings, project_text
 from trunnion.machines import shipped_machines
 from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, FileOut
@@ -90,6 +89,8 @@ def _within(name: str, file: Path) -> str:
 
 
 def _write(given: Given, keys: dict[str, object], file: Path, problems: Sequence[Problem]) -> None:
+    from trunnion.jobs.post.asked_settings import asked_settings, project_text
+
     asked = asked_settings(problems)
     own = {each.setting: given.values[each.name] for each in given.job.options if each.setting}
     stated = {name: str(value) for name, value in own.items() if value is not None}
