@@ -132,6 +132,24 @@ def test_a_hole_behind_a_retract_that_may_be_skipped_is_gone_to_from_above(
     assert not ((run.tip[across, 2] < 22.0) & (run.tip[across + 1, 0] > 49.0)).any()
 
 
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize(
+    ("before", "skipped"), [("GOTO/0,0,5", "RAPID\nGOTO/0,0,50"), ("RAPID\nGOTO/0,0,50", "FEDRAT/MMPM,500\nGOTO/0,0,5")]
+)
+def test_a_hole_made_by_motion_beside_a_cut_and_skipped_blocks_is_refused(
+    machine: str, before: str, skipped: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        f"{before}\nOPSKIP/ON\n{skipped}\nOPSKIP/OFF\nCYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100\n"
+        "GOTO/50,0,0\nCYCLE/OFF\nRAPID\nGOTO/50,0,50\n"
+    )
+    path, out = tmp_path / "part.cls", tmp_path / "part.nc"
+    path.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
+    assert main(["post", str(path), "--machine", machine, "--output", str(out), "--set", "cycles=off"]) == 1
+    assert not out.exists()
+    assert "a hole behind blocks that may be skipped" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("machine", ["yl569", "dmu65", "hs664rt", "matsuura_mx330"])
 def test_turns_to_another_plane_are_not_skipped(
     machine: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

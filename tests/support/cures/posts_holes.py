@@ -55,6 +55,8 @@ CURES: Final = (
     _hole("PLN650 cycle_while_tool", "FEDRAT/MMPM,100", "GOTO/50,0,1", "+ RAPID", "+ GOTO/50,0,50",
           f"CYCLE/DRILL,{_HEIGHTS},MMPM,100",
           cycles="off"),
+    _hole("PLN650 cut_beside_skipped", "FEDRAT/MMPM,100", "GOTO/0,0,5", "+ RAPID", "+ GOTO/0,0,50",
+          "OPSKIP/ON", "RAPID", "GOTO/0,0,50", "OPSKIP/OFF", f"CYCLE/DRILL,{_HEIGHTS},MMPM,100", cycles="off"),
     _hole("PLN650 rtrcto_auto_before", "+ RAPID", "+ GOTO/50,0,50,0,0,1",
           f"CYCLE/DRILL,{_HEIGHTS},MMPM,100,RTRCTO,AUTO", head=_NOWHERE),
     _hole("PLN660 cycle_bore_drag", f"+ {_SPINDLE}", f"CYCLE/BORE,DRAG,{_HEIGHTS},MMPM,100", head=_STANDING,

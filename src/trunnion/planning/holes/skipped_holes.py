@@ -14,7 +14,9 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.toolpath import BlockSkip, Kind, Operation
+from trunnion.planning.holes.cycles import HoleCycleError
 from trunnion.planning.holes.pecks import SAME_HEIGHT
 from trunnion.planning.linearization.row_insertion import insert_rows
 
@@ -42,6 +44,8 @@ def level_ways(operation: Operation, before: Floats, from_home: Flags, least: Fl
     before      (n, 3) where the tip is before each row, mm
     from_home   (n,) bool, rows to which the tool comes from home
     least       (n,) height above the point of a hole as motion where its feed begins, mm; NaN at other rows
+
+    Raises ``HoleCycleError`` where a cut ends at the lower height.
     """
     moves, found = operation.moves, LevelWays(before.copy(), np.zeros(len(before), np.bool_), {})
     for first, end in _skipped_rows(operation):
@@ -55,7 +59,8 @@ def level_ways(operation: Operation, before: Floats, from_home: Flags, least: Fl
         level = max(*heights, float(moves.tip[end] @ axis) + float(least[end]))
         lifts = [row for row, height in zip(rows, heights, strict=True) if height < level - SAME_HEIGHT]
         if any(moves.kind[row - 1] != Kind.RAPID for row in lifts):
-            continue  # a cut ends there: nothing says that the tool may leave it upwards
+            # A cut ends there: nothing says that the tool may leave it upwards.
+            raise HoleCycleError(Wording("PLN650", "cut_beside_skipped"), int(moves.line[end]))
         for row, height in zip(rows, heights, strict=True):
             found.before[row] = before[row] + (level - height) * axis
         found.lifts.update((row, found.before[row]) for row in lifts)

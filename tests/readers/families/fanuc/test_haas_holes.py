@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.readers.families.fanuc.test_haas import errors, read
+from tests.support.haas import errors, read
 from tests.support.reading import close
 
 CYCLE = "G98 G81 Z-5. R2. F100. L0\n"

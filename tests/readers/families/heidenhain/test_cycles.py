@@ -5,14 +5,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.examples import examples
+from tests.support.klartext_cycles import BEFORE, DRILL, define
 from tests.support.reading import Runner, close
 from trunnion.errors import Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.hole_motion import CycleExecutionError, peck_depths
-from trunnion.readers.families.heidenhain.words import CYCLE_LINES, CYCLE_OPTIONS, CYCLE_PARAMETERS
-
-BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
+from trunnion.readers.families.heidenhain.words import CYCLE_LINES, CYCLE_PARAMETERS
 
 
 def motions(run: Run) -> list[tuple[str, float, float]]:
@@ -21,16 +20,6 @@ def motions(run: Run) -> list[tuple[str, float, float]]:
     rows = zip(rapid[1:], run.tip[1:, 2].tolist(), run.feed[1:].tolist(), strict=True)
     return [("R" if r else "F", round(z, 6), 0.0 if r else f) for r, z, f in rows]
 
-
-def define(number: int, **values: float) -> str:
-    """A definition, one parameter a line; those of other cycles are left out."""
-    if number in CYCLE_PARAMETERS:
-        own = {f"Q{each}" for each in (*CYCLE_PARAMETERS[number], *CYCLE_OPTIONS.get(number, ()))}
-        values = {name: value for name, value in values.items() if name in own}
-    return f"CYCL DEF {number} NAME ~\n" + " ~\n".join(f"{name}={value:+g}" for name, value in values.items()) + "\n"
-
-
-DRILL: dict[str, float] = {"Q200": 2, "Q201": -15, "Q206": 150, "Q202": 6, "Q210": 0, "Q203": 10, "Q204": 50, "Q211": 0}
 
 DEEP: dict[str, float] = {"Q212": 0, "Q205": 0, "Q258": 0, "Q259": 0, "Q257": 0, "Q256": 0}
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.readers.families.heidenhain.test_cycles import BEFORE, DRILL, define
+from tests.support.klartext_cycles import BEFORE, DRILL, define
 from tests.support.reading import Runner, close
 from trunnion.arrays import Floats
 from trunnion.model.run import Run
@@ -94,6 +94,10 @@ def test_a_pattern_that_is_not_followed_drills_nothing(
     found = run(program(number, CIRCLE if number == 220 else LINES, **values))
     assert what in found.errors[0].text
     assert len(found) == 1
+
+
+def test_straight_on_from_place_to_place_is_a_value_of_the_circle(run: Runner) -> None:
+    assert run(program(220, CIRCLE, Q365=0)).diagnostics == ()
 
 
 def test_it_needs_a_cycle_with_which_the_manuals_combine_it(run: Runner) -> None:
