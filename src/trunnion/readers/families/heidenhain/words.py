@@ -192,7 +192,6 @@ CYCLE_PARAMETERS: Final = {
 #: Q parameters that newer software has added to cycles, or that some machines leave out. Any other belongs to none.
 CYCLE_OPTIONS: Final = {
     200: (395,),
-    220: (365,),
     202: (357,),
     203: (395,),
     205: (208, 253, 373, 379, 395),
