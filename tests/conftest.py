@@ -34,9 +34,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Have the tests, and the processes that they start, remember their outputs apart from those of the user."""
+    """Have the tests, and the processes that they start, remember their outputs apart from those of the user.
+
+    No test waits for the disk: a post would do so five times, and what is lost with the power no test sees.
+    """
     cache = tempfile.TemporaryDirectory(prefix="trunnion-tests-")
     config.add_cleanup(cache.cleanup)
+    without_waiting = pytest.MonkeyPatch()
+    without_waiting.setattr(os, "fsync", lambda descriptor: None)
+    config.add_cleanup(without_waiting.undo)
     os.environ["LOCALAPPDATA"] = cache.name
     if config.getoption("nightly"):
         settings.load_profile("nightly")

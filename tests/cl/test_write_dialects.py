@@ -210,6 +210,19 @@ def test_losses_that_move_nothing_are_remarked_upon(read: Read, tmp_path: Path) 
     assert back.operations[0].tool.tip_angle == pytest.approx(118.0)
 
 
+@pytest.mark.parametrize("dialect", ["catia", "ncl"])
+@pytest.mark.parametrize("load", ["", "LOAD/TOOL,1\n", "LOAD/TOOL,2\n"])
+def test_a_tool_without_a_form_behind_one_with_a_form_keeps_none(
+    dialect: str, load: str, read: Read, tmp_path: Path
+) -> None:
+    first = "TOOL PATH/A,TOOL,T10\nTLDATA/MILL,10,0,50,0,0\nLOAD/TOOL,1\nFEDRAT/MMPM,100\nGOTO/1,2,3\nEND-OF-PATH\n"
+    second = f"TOOL PATH/B,TOOL,T8\n{load}FEDRAT/MMPM,100\nGOTO/2,2,3\nEND-OF-PATH\n"
+    back, _ = again(read(first + second + first.replace("/A", "/C")), dialect, tmp_path)
+    assert [(each.tool.kind, each.tool.diameter) for each in back.operations] == [
+        ("MILL", 10.0), ("UNKNOWN", 0.0), ("MILL", 10.0)
+    ]  # fmt: skip
+
+
 def test_a_second_tool_of_an_operation_is_refused_where_it_would_begin_another(body: Body, tmp_path: Path) -> None:
     operation = body("LOAD/TOOL,1", "FEDRAT/MMPM,100", "GOTO/0,0,0", "LOAD/TOOL,2", "GOTO/1,0,0")
     back, _ = again(Toolpath("a", (operation,)), "clsf", tmp_path)

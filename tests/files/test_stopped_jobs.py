@@ -28,12 +28,6 @@ from trunnion.files.hidden_folders import JOURNAL
 from trunnion.files.locks import hold
 
 
-@pytest.fixture(autouse=True)
-def fast_disk(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing waits for the disk: that is another layer than processes that end."""
-    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
-
-
 def check_whole(folder: Path) -> bool:
     """All is old or all is new, as jobs have recorded it, and nothing else is there; whether it is new."""
     there = left(folder)

@@ -95,8 +95,13 @@ class ClSource:
 
 
 def is_cl_file(path: Path) -> bool:
-    """Whether a file holds CL data, by its content: an archive, or lines of a dialect; False if it cannot be read."""
+    """Whether a file holds CL data, by its content: an archive, or lines of a dialect; False if it cannot be read.
+
+    A pipe is not opened: nobody may ever write into it.
+    """
     try:
+        if not path.is_file():
+            return False
         with path.open("rb") as stream:
             head = stream.read(_HEAD)
     except (OSError, ValueError):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
-from trunnion.cli.serving import announce
+from trunnion.cli.printing import announce
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines

@@ -1,7 +1,7 @@
 """Lines on stdout and stderr."""
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from trunnion.cli.columns import CodeLine, folded, width_of
 from trunnion.cli.terminal_text import severity_painted
@@ -54,3 +54,17 @@ def print_result(*lines: str, end: str = "\n") -> None:
         reason = error.strerror or error
         wording = of_full_disk(error) or Wording("FIL230", "stdout_takes_no_more", strerror=reason)
         raise InputError(Problem("stdout", 0, wording)) from None
+
+
+def announce(*, browser: bool) -> Callable[[str], None]:
+    """Return what to do when a page can be opened: print its address and, unless told not to, open it."""
+
+    def ready(address: str) -> None:
+        print(address, flush=True)
+        print("Ctrl-C ends it", file=sys.stderr)
+        if browser:
+            import webbrowser  # no other command needs it
+
+            webbrowser.open(address)
+
+    return ready

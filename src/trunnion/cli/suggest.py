@@ -14,15 +14,11 @@ from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, Problem, Severity, TrunnionError
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
-from trunnion.jobs.post.asked_settings import asked_settings, project_text
-from trunnion.jobs.post.settings_to_fill import GATHERED
-from trunnion.jobs.project.paths import leads_out
 from trunnion.machines import shipped_machines
 from trunnion.messages import Wording
 from trunnion.options.groups import STOCK
 from trunnion.options.kinds import FileIn, FileOut, Setting, Switch
 from trunnion.options.option import Option
-from trunnion.simulation.stock.solids import is_mesh
 from trunnion.wording import counted
 
 #: A key of a project, where other options have words in place of one.
@@ -59,6 +55,8 @@ def suggestion(given: Given, target: str, terminal: NotingTerminal) -> Iterator[
         problems = [*error.problems, *terminal.found]
         if any(problem.code.startswith(("FIL", "ARG")) for problem in error.problems):
             raise
+        from trunnion.jobs.post.asked_settings import asked_settings  # what only a suggestion needs
+
         if any(each.is_needed for each in asked_settings(problems)):
             _write(given, (keys, unsaid), file, problems)
         else:
@@ -110,6 +108,8 @@ def _unsaid(given: Given) -> list[str]:
 
 def _as_stated(value: object, option: Option, file: Path) -> object:
     """Return a value as a project has it."""
+    from trunnion.simulation.stock.solids import is_mesh
+
     names = isinstance(option.kind, FileIn | FileOut) and not (option.kind == STOCK.kind and not is_mesh(str(value)))
     return _within(str(value), file) if names else value
 
@@ -119,6 +119,8 @@ def _within(name: str, file: Path) -> str:
 
     Raises ``InputError`` if it lies elsewhere, or no project names a file so.
     """
+    from trunnion.jobs.project.paths import leads_out
+
     try:
         path = PurePath(os.path.relpath(name, file.parent))
     except ValueError:  # on another drive
@@ -132,6 +134,9 @@ def _within(name: str, file: Path) -> str:
 
 def _write(given: Given, said: tuple[dict[str, object], list[str]], file: Path, problems: Sequence[Problem]) -> None:
     """Write the project; ``said`` are its keys, and the options that no project states."""
+    from trunnion.jobs.post.asked_settings import asked_settings, project_text
+    from trunnion.jobs.post.settings_to_fill import GATHERED
+
     asked = asked_settings(problems)
     own = {each.setting: given.values[each.name] for each in given.job.options if each.setting}
     stated = {name: str(value) for name, value in own.items() if value is not None}

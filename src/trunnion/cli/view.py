@@ -4,9 +4,8 @@ import sys
 from functools import partial
 from typing import Any, Final
 
-from trunnion.cli.printing import print_result
+from trunnion.cli.printing import announce, print_result
 from trunnion.cli.record import machine_password
-from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.job import Given

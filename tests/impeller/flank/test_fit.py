@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.examples import examples
@@ -65,6 +65,7 @@ def test_a_developable_flank_comes_out_exact(rails: Rails, slope: float) -> None
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.08, -0.05]))
+@example(229, -0.05)  # a point on the axis, where the cutter is 1.4 mm thin
 @settings(max_examples=examples(25), deadline=None)
 def test_deviations_are_those_of_the_slow_twin(seed: int, slope: float) -> None:
     path = wavy(seed, slope)
@@ -72,8 +73,11 @@ def test_deviations_are_those_of_the_slow_twin(seed: int, slope: float) -> None:
     found = deviations_of(path, points)[0][:, 0]
     slow = measured_deviations(path, points, 9001)
     assert np.all(found < slow + 1e-9)
-    # Near the axis, poses that are s apart miss up to s/2; further out s²/8 divided by the distance.
-    assert np.abs(found - slow)[found > -2.0].max() < 1e-4
+    # Near the axis, poses that are s apart miss up to s/2; further out s²/8 divided by the distance, here 1 mm or more.
+    lower, axis = path.poses(np.linspace(0.0, 1.0, 9001))
+    apart = max(np.linalg.norm(np.diff(at, axis=0), axis=1).max() for at in (lower, lower + path.cutter.length * axis))
+    thinnest = path.cutter.radius + min(path.cutter.slope, 0.0) * path.cutter.length
+    assert np.abs(found - slow)[found > 1.0 - thinnest].max() < 0.25 * apart * apart  # twice, since paths are bent
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.08]))

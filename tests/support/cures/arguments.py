@@ -36,6 +36,7 @@ CURES: Final = (
     script("ARG130 hooks_without_cl",
            f"write shop.py 'def on_block(block, context):\\n    return None\\n'\n{_POSTED} --hooks shop.py",
            "--hooks", "--cl part.cls --hooks"),
+    script("ARG120 suggested_project", "trunnion post project.toml --suggest a.toml", " --suggest a.toml", ""),
     script("ARG130 file_jobs_states", f"{_JOBS} --action verify", " --action verify", ""),
     script("ARG130 machine_of_one_program",
            "trunnion fit part.mpf part.mpf --machines yl569 --turns 180 --machine yl569 --tool-length 100",

@@ -87,6 +87,7 @@ CURES: Final = (
            f"rm a.html\nrm b.html\n{_NEXT}"),
     script("FIL280 files_left_over", f"{_OUT} --listing a.html --report b.html\n{_NEXT}", _NEXT,
            f"{_NEXT} --listing a.html --report b.html"),
+    script("FIL320 project_elsewhere", f"mkdir a\n{_OUT} --suggest a/part.toml", "a/part.toml", "part.toml"),
     script("FIL320 manifest_elsewhere", f"mkdir a\n{_OUT} --manifest a/out.json", "a/out.json", "out.json"),
     script("FIL320 never_in_project", f"cp part.cls 'a\\b.cls'\n{_OUT.replace('part.cls', _BACKSLASH)} --suggest a.toml",
            "a\\b.cls", "b.cls"),

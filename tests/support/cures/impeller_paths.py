@@ -68,7 +68,7 @@ def _other(code: str, variant: str, make: Callable[[Impeller], object], better: 
 
 
 def _finish(radius: float, way: Way = Way.ONE_WAY) -> Callable[[Impeller], object]:
-    return lambda one: blade_finish(one, one.blade, BladeFinish(radius, _COARSE, way, tolerance=0.05))
+    return lambda one: blade_finish(one, one.blade, BladeFinish(radius, _COARSE, way, tolerance=0.5))
 
 
 def _hub(radius: float, allowance: float = 0.0) -> Callable[[Impeller], object]:
@@ -80,7 +80,7 @@ def _rough(step_down: float = 6.0, stepover: float = 15.0, allowance: float = 0.
 
 
 def _blend(radius: float) -> Callable[[Impeller], object]:
-    return lambda one: root_blend(one, one.blade, RootBlend(radius, _COARSE, 3.0, radius, tolerance=0.05))
+    return lambda one: root_blend(one, one.blade, RootBlend(radius, _COARSE, 3.0, radius, tolerance=0.5))
 
 
 def _order(variant: str, text: str, *changes: tuple[str, str], code: str = "IMP332") -> Cure:

@@ -178,4 +178,6 @@ CURES: Final = (
     Cure("PLN530", "tools_program_without", post("generic_head_head_ca"), LEANING + FOOT + _LEANING2,
          ((_LEANING2, ""),),
          {"tcp": "off", "zero": "0,0,0", "tool_length": "100"}),
+    _lines("PLN130 axis_turns_over", "GOTO/20,0,5,0,0,1", "CIRCLE/20,10,5,0,0,1,10", "- GOTO/30,10,5,0,0,-1",
+           "+ GOTO/30,10,5,0,0,1"),
 )  # fmt: skip

@@ -1,23 +1,31 @@
 """What tries a cure by commands: a script of a few lines, each run in this process, in a folder of its own.
 
 A line is a command of Trunnion; an expression of Python; or one of the words of ``_WORDS``, which change files. The
-files of ``FILES`` that a script names are there before it begins.
+files of ``FILES`` that a script names are there before it begins. ``set`` and ``fails`` change the computer until the
+script ends: a smaller limit, a function in place of another one, an operation that the system refuses.
 """
 
+import errno
 import io
+import os
 import re
 import shlex
 import shutil
+import socket
 import sys
 import tarfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import chdir, redirect_stderr, redirect_stdout
+from contextlib import ExitStack, chdir, redirect_stderr, redirect_stdout
 from contextvars import copy_context
 from pathlib import Path
+from pkgutil import resolve_name
 from tempfile import mkdtemp
 from typing import Any, Final, Self
 from unittest.mock import patch
+from warnings import catch_warnings, simplefilter
 from zipfile import ZipFile
+
+import pytest
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome
@@ -80,9 +88,30 @@ def _edit(name: str, pattern: str, new: str) -> None:
 
 
 def _zip(name: str, *files: str) -> None:
-    with ZipFile(name, "w") as archive:
+    with ZipFile(name, "w") as archive, catch_warnings():
+        simplefilter("ignore")  # two files of one name
         for file in files:
             archive.write(file)
+
+
+def _listed(name: str, place: str, value: str) -> None:
+    """Change a byte in the entry of the last file in the list of a ZIP archive."""
+    content = bytearray(Path(name).read_bytes())
+    content[content.rindex(b"PK\x01\x02") + int(place)] = int(value)
+    Path(name).write_bytes(content)
+
+
+def _fifo(name: str) -> None:
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("no pipe has a name on this system")
+    os.mkfifo(name)
+
+
+def _socket(name: str) -> None:
+    if not hasattr(socket, "AF_UNIX"):
+        pytest.skip("no socket has a name on this system")
+    with socket.socket(socket.AF_UNIX) as bound:
+        bound.bind(name)
 
 
 def _tar(name: str, *files: str) -> None:
@@ -97,6 +126,8 @@ _WORDS: Final[Mapping[str, Callable[..., object]]] = {
     "latin": _latin,
     "edit": _edit,
     "zip": _zip,
+    "listed": _listed,
+    "socket": _socket,
     "tar": _tar,
     "write": _write,
     "mkdir": lambda name: Path(name).mkdir(parents=True),
@@ -104,14 +135,42 @@ _WORDS: Final[Mapping[str, Callable[..., object]]] = {
     "mv": lambda old, new: Path(old).rename(new),
     "cp": lambda old, new: shutil.copy(old, new),
     "link": lambda old, new: Path(new).symlink_to(old),
+    "fifo": _fifo,
 }
+
+
+def _set(target: str, value: str) -> Any:
+    """What gives a name in a module the value of an expression."""
+    return patch(target, eval(value, _KNOWN))
+
+
+def _fails(target: str, number: str, *parts: str) -> Any:
+    """What has a function raise an error of the system; only for paths with a part, where some are given."""
+    code, real = int(getattr(errno, number)), resolve_name(target)
+
+    def failing(*given: Any, **named: Any) -> Any:
+        if not parts or any(part in str(each) for part in parts for each in given):
+            raise OSError(code, os.strerror(code))
+        return real(*given, **named)
+
+    return patch(target, failing)
+
+
+#: Words of scripts that change the computer, until the script ends.
+_TROUBLES: Final[Mapping[str, Callable[..., Any]]] = {"set": _set, "fails": _fails}
+#: What expressions may name.
+_KNOWN: Final[dict[str, Any]] = {"trunnion": trunnion, "Path": Path, "io": io, "resolve_name": resolve_name}
 
 
 def run(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Run a script; it is sound if its last command is."""
     problems: list[Problem] = []
     is_sound = True
-    with chdir(mkdtemp(dir=folder)), patch("trunnion.batch.running.LocalWorkers", _Here):
+    with (
+        chdir(mkdtemp(dir=folder)),
+        patch("trunnion.batch.running.LocalWorkers", _Here),
+        ExitStack() as troubles,
+    ):
         for name, content in FILES.items():
             if name in text or (name == "part.cls" and "project.toml" in text):
                 _write(name, content)
@@ -121,6 +180,8 @@ def run(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
                 is_sound = _command(words, problems)
             elif word in _WORDS:
                 _WORDS[word](*words)
+            elif word in _TROUBLES:
+                troubles.enter_context(_TROUBLES[word](*words))
             else:
                 is_sound = _call(line, problems)
     return Outcome(tuple(problems), is_sound)
@@ -128,7 +189,7 @@ def run(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 def _call(expression: str, problems: list[Problem]) -> bool:
     try:
-        eval(expression, {"trunnion": trunnion, "Path": Path, "io": io})
+        eval(expression, _KNOWN)
     except TrunnionError as error:
         problems += error.problems
         return False
@@ -170,6 +231,12 @@ def _ended(words: list[str]) -> int:
 
 def _plain(text: str) -> str:
     return "".join(text.split())
+
+
+def looked_at(message: str, text: str) -> Cure:
+    """A script that draws a message whose cure has nothing changed."""
+    code, _, variant = message.partition(" ")
+    return Cure(code, variant, run, text, (), stays=True)
 
 
 def script(message: str, text: str, old: str, new: str, *, refuses: bool = False) -> Cure:

@@ -145,7 +145,7 @@ CURES: Final = (
     _line(
         "SIM143",
         "cuts_from_unknown",
-        SLOT.replace("N60 G1", "G53 G0 Z0\nN60 G1"),
+        SLOT.replace("N60 G1", "G1 X10 F500\nG53 G0 Z0\nN60 G1"),
         ("N60 G1", "G0 X-20 Y0 Z20\nG0 Z-5\nN60 G1"),
     ),
     Cure("SIM219", "", _saved, SLOT, ({"stock": STOCK},), {"stock": "box:9,9,1,0,-4.5,0"}),

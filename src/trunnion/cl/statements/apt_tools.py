@@ -64,9 +64,11 @@ def cutter_in_section(state: ReaderState, statement: Statement) -> None:
 
 
 def _form(statement: Statement) -> Tool:
-    """Return the tool that a CUTTER describes."""
+    """Return the tool that a CUTTER describes; zeros describe none."""
     values = statement.values[:-1] if statement.values[-1:] == ("",) else statement.values
     given = statement._replace(values=values).numbers(1, 2, 7)
+    if not any(given):
+        return Tool()
     d, r, e, f, a, b, h = (*given, *(0.0,) * (7 - len(given)))
     is_drill = r == 0.0 and a > _FLATTEST_DRILL and abs(e - 0.5 * d) <= _AT_EDGE * d
     return Tool(

@@ -66,6 +66,7 @@ class AptWriter(ClWriter):
 
     _title: list[str]
     _rows: int
+    _has_form = False
 
     def prepared(self, toolpath: Toolpath) -> Toolpath:
         """All operations in the coordinate system of the first one, full circles in two halves."""
@@ -234,8 +235,10 @@ class AptWriter(ClWriter):
         """Return the lines that name an operation."""
 
     def tool_lines(self, tool: Tool) -> list[str]:
-        """Return the tool's form and name."""
-        lines = self.cutter([number_text(number, 6) for number in _cutter_numbers(tool)])
+        """Return the tool's form and name; a form that is in force would count for a tool without one, too."""
+        numbers = _cutter_numbers(tool)
+        lines = self.cutter([number_text(number, 6) for number in numbers or [0.0] * self._has_form])
+        self._has_form = bool(numbers)
         names = ",".join(name for name in (tool.name, tool.holder) if name or tool.holder)
         return [*lines, *([f"TPRINT/{names}"] if names else [])]
 

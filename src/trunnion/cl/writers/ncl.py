@@ -49,9 +49,8 @@ class NclWriter(AptWriter):
         """Return a command of Creo's own: the diameter alone for a flat mill."""
         if not numbers:
             return []
-        d, r, _, _, *others = numbers
-        plain = not any(float(number) for number in (r, *others))
-        return self.statement("$$-> CUTTER", *([d] if plain else numbers))
+        plain = not any(float(number) for number in (*numbers[1:2], *numbers[4:]))
+        return self.statement("$$-> CUTTER", *(numbers[:1] if plain else numbers))
 
     def load_tool(self, event: LoadTool) -> list[str]:
         """LOADTL, with the length in the spindle and its register."""

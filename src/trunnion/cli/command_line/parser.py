@@ -234,11 +234,18 @@ class _AddSetting(argparse.Action):
         (key, value), before = values, dict(settings)
         if before.get(key, value) != value:
             said = {"option": self.option_strings[0], "first": repr(before[key]), "second": repr(value)}
-            # Names of settings are in small letters; a variable has one value.
-            if not key.islower():
-                raise _WordedError(self, Wording("ARG120", "variable_twice", name=key, **said))
+            if not _may_differ(key):
+                raise _WordedError(self, Wording("ARG120", "written_twice", name=key, **said))
             raise _WordedError(self, Wording("ARG120", "setting_twice", name=key, value=before[key], **said))
         setattr(namespace, self.dest, [*settings, (key, value)])
+
+
+def _may_differ(key: str) -> bool:
+    """Whether operations may differ in a setting; a variable, whose name has a capital, has one value."""
+    from trunnion.jobs.inputs.run_settings import RUN_SETTINGS  # a command line without mistakes does without them
+    from trunnion.jobs.inputs.settings import BY_OPERATION
+
+    return key in BY_OPERATION or (key.islower() and key not in RUN_SETTINGS)
 
 
 def _with_present_names(words: Iterable[str], job: Job) -> list[str]:

@@ -12,7 +12,7 @@ from trunnion.cl.read import AS_IT_SAYS, ClReading
 from trunnion.controls.definition_files import is_control_file
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.jobs.inputs.arguments import (
     check_choice,
     check_observer,
@@ -208,7 +208,9 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     """
     program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
     on = as_machine(machine)
-    if program.is_file() and not program.stat().st_size:
+    if unusable := unusable_file(program, "an NC program"):
+        raise InputError(unusable)
+    if not program.stat().st_size:
         raise InputError(Problem(str(program), 0, Wording("NC112", "file_empty")))
     try:
         run = readers.run_program(program, on, readers.RunOptions(subprograms=others))

@@ -36,7 +36,7 @@ Settings: TypeAlias = Mapping[str, SettingValue]
 SINGLE_VALUES: Final = ("zero", "tool_length")
 
 #: Settings of a post that may have a value for each operation.
-_BY_OPERATION: Final = ("missing_feed", "mode", "spindle")
+BY_OPERATION: Final = ("missing_feed", "mode", "spindle")
 
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6
@@ -157,7 +157,8 @@ def _no_effect(key: str, control: Control) -> Wording:
 
 def _unknown_setting(key: str, control: Control) -> Problem:
     known = tuple(sorted((*control.settings, *RUN_SETTINGS)))
-    if near := meant_word(key, known):
+    last = key.rpartition(".")[2]
+    if near := last if last in known else meant_word(key, known):
         return setting_problem(key, Wording("ARG210", "unknown_but_near", control=control.name, near=near))
     return setting_problem(key, Wording("ARG210", "unknown", control=control.name, known=known))
 
@@ -206,7 +207,7 @@ def check_operation_names(
     problems += [
         setting_problem(key, Wording("ARG230", "cannot_differ", name=key, value=repr(text)))
         for key, text in settings.items()
-        if key not in _BY_OPERATION
+        if key not in BY_OPERATION
         and any(entry.rpartition(":")[0] in known for entry in text.split(",") if ":" in entry)
     ]
     if problems:

@@ -29,6 +29,9 @@ _DISTINCT: Final = 0.005
 #: what is printed.
 _SAME_RADIUS: Final = 0.003
 
+#: Two tool axes are opposite above this negative cosine: printed decimals would choose the way between them.
+_OPPOSITE: Final = 1.0 - 1e-12
+
 #: Error of an arc's radius if start, end and centre have four decimals, mm.
 _PRINTED_RADIUS_ERROR: Final = 3e-4
 
@@ -169,6 +172,9 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
     kind = moves.kind[source]
     for m in np.flatnonzero(~keep):
         row = arcs.row[m]
+        if float(moves.axis[row - 1] @ moves.axis[row]) < -_OPPOSITE:
+            wording = Wording("PLN130", "axis_turns_over")
+            raise InputError(Problem(operation.file, int(moves.line[row]), wording))
         part = slice(new_row[row] - copies[row] + 1, new_row[row] + 1)
         tip[part], axis[part] = _points_on_arc(operation, int(m), float(sweep[m]), int(copies[row]))
         kind[part] = Kind.LINEAR

@@ -184,8 +184,10 @@ def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wo
 
 
 def _lines(file: Path) -> Iterator[tuple[int, str]]:
-    """Lines of the head of a file that are not empty, with their numbers."""
+    """Lines of the head of a file that are not empty, with their numbers; a pipe is not opened."""
     try:
+        if not file.is_file():
+            return
         with file.open("rb") as opened:
             text = opened.read(_HEAD).decode("utf-8", "replace")
     except OSError:
