@@ -20,6 +20,7 @@ Floats2: TypeAlias = Annotated[Floats, 2]
 Floats3: TypeAlias = Annotated[Floats, 3]
 Ints2: TypeAlias = Annotated[Ints, 2]
 Ints3: TypeAlias = Annotated[Ints, 3]
+Flags2: TypeAlias = Annotated[Flags, 2]
 Codes2: TypeAlias = Annotated[Codes, 2]
 Bytes2: TypeAlias = Annotated[Bytes, 2]
 

@@ -6,6 +6,8 @@ import pytest
 
 import trunnion
 from tests.support.linuxcnc.interpreter import RefusedByLinuxcncError, canonical, needs_linuxcnc
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
 
 #: Machine -> a program with room for a block in the midst of a compensated contour.
 _PROGRAMS = {
@@ -87,3 +89,48 @@ def test_linuxcnc_agrees(tmp_path: Path) -> None:
 
     words = (*_REFUSED["xyzac_trt"], *_TAKEN["xyzac_trt"])
     assert [word for word in words if is_refused(word)] == list(_REFUSED["xyzac_trt"])
+
+
+@pytest.mark.parametrize(
+    ("machine", "block"),
+    [
+        ("matsuura_mx330", "G99 G81 X25. Z-5. R2. F100.\nG80\nG1"),
+        ("haas_umc750", "G99 G81 X25. Z-5. R2. F100.\nG80\nG1"),
+        ("yl569", "MCALL CYCLE81(50,0,2,-5)\nX25\nMCALL"),
+    ],
+)
+def test_a_drilling_cycle_is_a_warning(machine: str, block: str, tmp_path: Path) -> None:
+    assert _drilled(machine, block, tmp_path) == [
+        ("warning", "a drilling cycle while radius compensation is on: where the holes are depends on the control")
+    ]
+
+
+@pytest.mark.parametrize("call", ["CYCL CALL", "L X+25 M99", "L X+25 M89\nM99"])
+def test_a_tnc_refuses_a_drilling_cycle(call: str, tmp_path: Path) -> None:
+    cycle = "CYCL DEF 200 DRILLING Q200=+2 Q201=-5 Q206=+100 Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0\n"
+    found = set(_drilled("dmu65", cycle + call, tmp_path))
+    assert found == {("error", "a drilling cycle while radius compensation is on: the control refuses it")}
+
+
+def _drilled(machine: str, block: str, folder: Path) -> list[tuple[str, str]]:
+    path = folder / "p.nc"
+    path.write_text(_PROGRAMS[machine].format(block), encoding="utf-8")
+    run = run_program(path, load_machine(machine))
+    return [
+        (each.severity.value, each.text.partition(";")[0]) for each in run.diagnostics if each.wording.code == "NC343"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("between", "refused"),
+    [
+        ("L R0", True),
+        ("L Z+5 R0", True),
+        ("L X+30 R0", False),
+        ("L R0\nL Y+4", False),
+        ("L Z+5 R0\nL X+30 FMAX", False),
+    ],
+)
+def test_r0_between_two_sides_moves_in_the_working_plane(between: str, refused: bool, tmp_path: Path) -> None:
+    found = _drilled("dmu65", f"{between}\nL X+33 RR", tmp_path)
+    assert ["on the other side" in text for _, text in found] == [True] * refused

@@ -116,6 +116,12 @@ class ContourControl(SetupControl):
                 return False
         return True
 
+    def moved_in_plane_since(self, row: int) -> bool:
+        """Whether a row from that one on has moved in the working plane."""
+        ways = np.diff(self.columns.xyz[max(row - 1, 0) : self.row], axis=0)
+        along = self.position_map[:, self.plane_axis] / np.linalg.norm(self.position_map[:, self.plane_axis])
+        return bool(np.any(np.abs(ways - np.outer(ways @ along, along)) > arcs.SAME_POINT))
+
     def last_element(self) -> Element | None:
         """Return the element that the last row is; None if it was another motion, or its coordinates are others.
 

@@ -21,7 +21,9 @@ _LONG_DWELL: Final = 60.0
 SPINDLE_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0, "oriented": 0, "axis": 0}
 
 #: What a control does with a word that stands while radius compensation is on: variants of the message NC343.
-_VERDICTS: Final = ("refused", "suspends", "unconfirmed")
+_VERDICTS: Final = {
+    "refused": Severity.ERROR, "suspends": Severity.ERROR, "unconfirmed": Severity.ERROR, "drills": Severity.WARNING
+}  # fmt: skip
 
 #: Reports a diagnostic at the block that is being executed.
 Note = Callable[[Wording, Severity], None]
@@ -32,6 +34,9 @@ class EventRecorder:
 
     #: The word that ends radius compensation.
     compensation_off = "G40"
+
+    #: What it does with a drilling cycle while radius compensation is on.
+    drills_within_compensation = "drills"
 
     def __init__(self, note: Note) -> None:
         self.note = note
@@ -104,9 +109,8 @@ class EventRecorder:
 
     def judge_within_compensation(self, word: str, verdict: str = "refused") -> None:
         """Note a word that stands while radius compensation is on; ``verdict``: what the control does with it."""
-        assert verdict in _VERDICTS
         if self.modal.compensation.current:
-            self.note(Wording("NC343", verdict, word=word, off=self.compensation_off), Severity.ERROR)
+            self.note(Wording("NC343", verdict, word=word, off=self.compensation_off), _VERDICTS[verdict])
 
     # Tools
 

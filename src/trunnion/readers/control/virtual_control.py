@@ -66,6 +66,8 @@ class VirtualControl(ContourControl, ABC):
         self.motion = LINEAR
         self.shortest = shortest
         self.compensates_in_space = False
+        # Where the last drilling cycle was judged: it is called for each hole of a block.
+        self._drilled_line = 0
         self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
 
     def _fault_at(self, fault: Wording, line: int) -> None:
@@ -320,6 +322,9 @@ class VirtualControl(ContourControl, ABC):
         """Execute the motions of a drilling cycle at the present position; ``work``: the cycle drives the spindle."""
         self.end_contour()
         self.preconditions.report_motion()
+        if self.line != self._drilled_line:
+            self.judge_within_compensation("a drilling cycle", self.drills_within_compensation)
+            self._drilled_line = self.line
         hole = self.programmed_position.copy()
         feed, first_row = self.programmed_feed, self.row
         if work is None and not all(motion.rapid for motion in motions):

@@ -1,23 +1,25 @@
 """What no program should do, whatever it is for: faults of modal state."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
+from trunnion.verification.basis import TOOL_LENGTH, ZERO, missing_of
 from trunnion.verification.checks.approach_faults import approaches_through_part
 from trunnion.verification.checks.approach_order import not_in_turn
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
-from trunnion.verification.checks.low_rapids import low_rapids, skipped_retracts
+from trunnion.verification.checks.low_rapids import low_rapids, rapids_at_unknown_heights, skipped_retracts
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
-from trunnion.verification.context import ComparedContext, Context, check_from_places
+from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.event_words import event_word
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
-from trunnion.verification.results import Check, Place
+from trunnion.verification.results import Check, Coverage, Place
 from trunnion.verification.row_ranges import chunk_bounds
 from trunnion.verification.spindle_words import TURNING, both_senses, started_behind_cuts
 
@@ -53,7 +55,13 @@ def check_modal_state(context: Context) -> Check:
     places.sort(key=lambda place: place.nc_line)
     # With a CL file, the check "spindle" has the spindle.
     good = "good_feed" if isinstance(context, ComparedContext) else "good_feed_and_spindle"
-    return check_from_places("modal", places, Wording("modal", good))
+    check = check_from_places("modal", places, Wording("modal", good))
+    if not len(rows := rapids_at_unknown_heights(context)):
+        return check
+    why = phrase("left_height_unknown")
+    left_out = tuple(context.place(row, 0.0, why) for row in rows[:MAX_PLACES].tolist())
+    coverage = Coverage(len(run) - len(rows), len(run), left_out)
+    return replace(check, missing=missing_of((ZERO, TOOL_LENGTH), run), coverage=coverage)
 
 
 def _cuts_from_unknown_places(context: Context) -> Iterator[Place]:

@@ -28,6 +28,7 @@ from trunnion.model.turning_lines import LineSearch, TurningLines
 from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
+from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.kinematics.unknown_approaches import UnknownApproaches, unknown_approaches
 from trunnion.verification.kinematics.worst_rows import WorstRows
@@ -45,7 +46,8 @@ class AxisMotion:
     axis_deviation  degrees between the tool axis half-way and the great circle, in rows at feed
     tip_deviation   mm between the tip half-way and its straight line, in lines without TCP
     extremes        (5, 2) lowest and highest values in workpiece motions, mm or deg; of slides also between the ends
-                    of arcs and of lines on which rotary axes turn under TCP
+                    of arcs and of lines on which rotary axes turn under TCP, but not where they stand at a position
+                    of the machine that nobody can compare with those of the workpiece
     extreme_rows    (5, 2) the rows that reach them, -1 for none
     within_lines    (5, 2) bool: between the ends of a line on which rotary axes turn
     unknown         rows that are left out of the extremes, since nobody knows where they begin
@@ -109,6 +111,7 @@ class AxisMotionAnalyzer:
         # On the first leg of an approach the tool is still as high as before it, which may be known to nobody.
         here = self._unknown.rows[(self._unknown.rows >= first) & (self._unknown.rows < end)]
         machine_frame[here - first] = True
+        at_machine = MachinePositions.of(run).unplaced(np.arange(first, end))
         feeds = self._feeds.part(first, end, positions)
         arcs = ArcSpeeds.of(run, first, end, positions)
         rows = ChunkRows(
@@ -120,6 +123,7 @@ class AxisMotionAnalyzer:
             run.programmed[first:end],
             tcp,
             machine_frame,
+            at_machine,
             run.orientation_between(first, end) == Orientation.ANGLES,
             feeds,
             arcs.rows - first,
@@ -133,7 +137,7 @@ class AxisMotionAnalyzer:
         )
         self._count_seen(first, kind, feeds)
         self._add_arc_shares(arcs, first, feeds, shares)
-        self._add_arcs(first, end, positions, machine_frame)
+        self._add_arcs(first, positions, machine_frame, at_machine)
         motion.within_lines[motion.extremes != extremes_before] = False
         self._add_lines(first, positions, tcp, machine_frame)
         if self._timer is not None:
@@ -173,13 +177,15 @@ class AxisMotionAnalyzer:
         for share, values in zip(shares, (speed, acceleration), strict=True):
             share[:, at] = np.maximum(share[:, at], values.T)
 
-    def _add_arcs(self, first: int, end: int, positions: PositionChunk, machine_frame: Flags) -> None:
+    def _add_arcs(self, first: int, positions: PositionChunk, machine_frame: Flags, at_machine: Flags) -> None:
         """Widen the extremes of slides by what arcs reach between their ends."""
-        rows, reach = run_reach(self._run, first, end, positions)
+        rows, reach = run_reach(self._run, first, first + len(machine_frame), positions)
         counts = ~machine_frame[rows - first]
         if not counts.any():
             return
         rows, low, high = rows[counts], reach.low[counts], reach.high[counts]
+        out = at_machine[rows - first]
+        low, high = np.where(out, math.inf, low), np.where(out, -math.inf, high)
         extremes, extreme_rows = self._motion.extremes, self._motion.extreme_rows
         for column in self._run.machine.linear:
             least, most = int(np.argmin(low[:, column])), int(np.argmax(high[:, column]))

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Floats2, Floats3, Ints, Ints2
+from trunnion.arrays import Codes, Flags, Flags2, Floats, Floats2, Floats3, Ints, Ints2
 from trunnion.jit import inlined, inner, kernel
 from trunnion.machines import Machine
 from trunnion.model.feed_path import NO_ROTATION
@@ -44,6 +44,7 @@ class ChunkRows(NamedTuple):
 
     joints, tip, axis  (k + 1, …)  the position before the rows comes first
     half_way           (k, 3)      tool axis where every joint is half-way
+    at_machine         (k, 5) bool the slide stands at a position of the machine, and nobody knows where that is
     angles             (k,) bool   the control interpolates rotary angles, not the tool axis on a great circle
     feeds              (4, k)      as ``trunnion.timing.row_feeds`` has them
     arcs               (m,)        the rows from the first that are arcs, in order
@@ -58,6 +59,7 @@ class ChunkRows(NamedTuple):
     programmed: Codes
     tcp: Flags
     machine_frame: Flags
+    at_machine: Flags2
     angles: Flags
     feeds: Floats2
     arcs: Ints
@@ -101,7 +103,8 @@ def axis_motion_rows(
     deviation  (k,) float64      written: how far the tool axis is off half-way in rows at feed, degrees
     """
     # Arrays are taken out of their tuples once: in the loop that would count references for every row.
-    joints, _, axis, half_way, kind, programmed, tcp, machine_frame, angles, feeds, arcs, arc_begin, arc_end = rows
+    joints, _, axis, half_way, kind, programmed, tcp, machine_frame, at_machine, angles, feeds = rows[:11]
+    arcs, arc_begin, arc_end = rows[11:]
     rotary, rapid, acceleration, placed = limits
     velocity = carry[1:]
     minutes_before = carry[0]
@@ -113,7 +116,7 @@ def axis_motion_rows(
         names_slides = programmed[at] & 7 != 0 or programmed[at] & 63 == 0
         counts = not machine_frame[at]
         slides_count = counts and (tcp[at] or names_slides)
-        turned = _axis_steps(joints, at, row, rotary, placed, counts, slides_count, extremes, extreme_rows)
+        turned = _axis_steps(joints, at_machine, at, row, rotary, placed, counts, slides_count, extremes, extreme_rows)
         minutes = feeds[0, at] / feeds[1, at] if feeds[1, at] < math.inf else 0.0
         deviation[at] = 0.0
         at_feed = kind[at] != 0 and not machine_frame[at]
@@ -132,6 +135,7 @@ def axis_motion_rows(
 @inlined
 def _axis_steps(
     joints: Floats,
+    at_machine: Flags,
     at: int,
     row: int,
     rotary: Flags,
@@ -150,7 +154,7 @@ def _axis_steps(
         value = joints[at + 1, k]
         if rotary[k]:
             turned = max(turned, abs(value - joints[at, k]))
-        elif placed[k] and abs(value - joints[at, k]) <= STANDS_STILL:
+        elif at_machine[at, k] or (placed[k] and abs(value - joints[at, k]) <= STANDS_STILL):
             continue  # where it came to this was counted, or is a position of the machine, such as home
         if turns_count if rotary[k] else slides_count:
             if value < extremes[k, 0]:

@@ -58,7 +58,15 @@ class MachinePositions:
 
         Row -1 is the start of the program. Rotary axes always do.
         """
-        found = np.ones((len(rows), self._width), np.bool_)
+        found = self.unplaced(rows)
+        found[:, [column for column in range(self._width) if column not in self._spans]] = True
+        return found
+
+    def unplaced(self, rows: Ints) -> Flags:
+        """Which slides stand after rows at a machine position that nobody can compare with those of the workpiece,
+        (k, 5) bool.
+        """
+        found = np.zeros((len(rows), self._width), np.bool_)
         for column, (begins, ends) in self._spans.items():
             found[:, column] = rows < ends[np.searchsorted(begins, rows, "right") - 1]
         return found

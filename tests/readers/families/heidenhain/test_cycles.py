@@ -338,3 +338,18 @@ def test_a_bore_that_cannot_be_milled_is_named(values: dict[str, float], run: Ru
     found = run(BEFORE + define(208, **{**DRILL, "Q334": 3, "Q335": 20, **values}) + "CYCL CALL")
     assert len(found) == 1
     assert Severity.ERROR in [finding.severity for finding in found.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("values", "what"),
+    [
+        ({"Q202": 0.0}, "has a Q202 that is not above 0"),
+        ({"Q202": -2.0}, "has a Q202 that is not above 0"),
+        ({"Q204": -5.0}, "has Q204=-5, which is below 0"),
+        ({"Q210": -1.0}, "has Q210=-1, which is below 0"),
+        ({"Q211": -1.0}, "has Q211=-1, which is below 0"),
+    ],
+)
+def test_values_of_the_wrong_sign_are_refused(values: dict[str, float], what: str, run: Runner) -> None:
+    found = run(BEFORE + define(200, **{**DRILL, **values}) + "L X+1 FMAX M99\n")
+    assert [what in each.text for each in found.errors] == [True]

@@ -107,3 +107,24 @@ def test_it_needs_a_cycle_with_which_the_manuals_combine_it(run: Runner) -> None
     assert "cycle 241 is not combined" in run(f"{BEFORE}{other}{pattern}M30\n").errors[0].text
     lacking = define(220, **{name: value for name, value in CIRCLE.items() if name != "Q204"}, Q301=1.0)
     assert "has no Q204" in run(f"{BEFORE}{define(200, **DRILL)}{lacking}M30\n").errors[0].text
+
+
+@pytest.mark.parametrize(
+    ("number", "values", "what"),
+    [
+        (220, {"Q244": 0.0}, "has a Q244 that is not above 0"),
+        (220, {"Q244": -80.0}, "has a Q244 that is not above 0"),
+        (220, {"Q204": -1.0}, "has Q204=-1, which is below 0"),
+        (221, {"Q237": 0.0}, "has Q237=0: positions in one place"),
+        (221, {"Q238": 0.0}, "has Q238=0: positions in one place"),
+    ],
+)
+def test_values_that_place_no_pattern_are_refused(
+    number: int, values: dict[str, float], what: str, run: Runner
+) -> None:
+    found = run(program(number, CIRCLE if number == 220 else LINES, **values))
+    assert [what in each.text for each in found.errors] == [True]
+
+
+def test_the_way_along_a_circle_of_holes_is_no_foreign_value(run: Runner) -> None:
+    assert run(program(220, CIRCLE, Q365=0.0)).diagnostics == ()

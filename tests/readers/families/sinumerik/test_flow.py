@@ -43,6 +43,7 @@ def xs(result: Run) -> list[float]:
         ("DEF INT _F[2,2]=SET(1,2,3,4)\nX=_F[0,1]\nX=_F[1,0]", [2, 3]),
         ("DEF REAL _F[2,3]\n_F[0,1]=REP(7,3)\nX=_F[0,0]\nX=_F[1,0]\nX=_F[1,1]", [0, 7, 0]),
         ("DEF REAL _F[3]\n_F[1]=SET(5,6)\nX=_F[1]\nX=_F[2]", [5, 6]),
+        ("DEF REAL _F[3]=(4,5,6)\nX=_F[0]\nX=_F[2]", [4, 6]),
         ("R1=0\nWHILE R1<2\nR1=R1+1\nX=R1\nENDWHILE\nX9", [1, 2, 9]),
         ("R1=0\nREPEAT\nR1=R1+1\nX=R1\nUNTIL R1>=2\nX9", [1, 2, 9]),
         ("R1=0\nLOOP\nR1=R1+1\nX=R1\nIF R1==3 GOTOF OUT\nENDLOOP\nOUT:\nX9", [1, 2, 3, 9]),
@@ -317,6 +318,24 @@ def test_comments_and_events_of_loops_are_bounded(run: Runner) -> None:
 )
 def test_variables_without_def_with_two_and_without_their_value_are_named(run: Runner, text: str, line: int) -> None:
     assert [each.line for each in run(text).errors] == [line]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "what"),
+    [
+        ("DEF REAL _F[3]\nX=_F[3]", 2, "_F[3] does not exist: _F has elements 0 to 2"),
+        ("DEF REAL _F[3]\n_F[5]=7", 2, "_F[5] does not exist: _F has elements 0 to 2"),
+        ("DEF REAL _F[3]\nX=_F[-1]", 2, "_F[-1] does not exist: _F has elements 0 to 2"),
+        ("DEF REAL _F[2,2]\nX=_F[0,2]", 2, "_F[0,2] does not exist: _F has elements 0 to 1, 0 to 1"),
+        ("DEF REAL _F[2,2]\n_F[0,2]=SET(1)", 2, "_F[0,2] does not exist: _F has elements 0 to 1, 0 to 1"),
+        ("DEF REAL _F[2,2]\nX=_F[1]", 2, "_F[1] does not exist: _F has elements 0 to 1, 0 to 1"),
+        ("DEF REAL _F[3]\nX=_F", 2, "_F does not exist: _F has elements 0 to 2"),
+        ("DEF REAL _F[3]\nFOR R1=0 TO 3\n_F[R1]=R1\nENDFOR", 3, "_F[3] does not exist: _F has elements 0 to 2"),
+        ("DEF REAL _N=5\nX=_N[0]", 2, "_N[0]: _N is no field"),
+    ],
+)
+def test_elements_that_a_field_does_not_have_are_named(run: Runner, text: str, line: int, what: str) -> None:
+    assert [(each.line, each.text.endswith(f": {what}")) for each in run(text).errors] == [(line, True)]
 
 
 def test_a_def_that_a_jump_leads_to_again_and_smoothing_that_is_off_are_no_mistakes(run: Runner) -> None:

@@ -14,7 +14,7 @@ from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import cycles, words
 from trunnion.readers.families.fanuc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
-from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.block import Block, g_code_text
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.word_table import Word
 
@@ -32,6 +32,8 @@ class CycleInterpreter(OffsetInterpreter):
         self._waiting: Diagnostic | None = None
         # What has stopped the spindle besides M5, if the program has not started it since; else empty.
         self._spindle_stands: Wording | None = None
+        # The control turns the spindle in threads, whatever turned it before.
+        self._thread_turns = False
         # Axes whose positions must be stated in a new plane before the tool cuts there.
         self._not_stated: frozenset[str] = frozenset()
 
@@ -40,6 +42,7 @@ class CycleInterpreter(OffsetInterpreter):
         if code in words.THREADS:
             self._spindle_stands = None  # the cycle turns it
         elif self.motion_code in words.THREADS:
+            self._thread_turns = False
             stands = Wording("NC370", "thread_stopped_spindle")
             self._spindle_stands = stands if control.settings.threads_stop_spindle else None
         super()._select_motion(code)
@@ -48,6 +51,12 @@ class CycleInterpreter(OffsetInterpreter):
             self._waiting = None
         elif self._initial is None:
             self._initial = float(control.programmed_position[control.plane_axis])
+
+    def _stop_for_thread(self, word: Word, block: Block) -> None:
+        if self.motion_code not in words.THREADS:
+            self._spindle_stands = Wording("NC370", "word_stopped_spindle", word=word.text)
+        self._thread_turns = True
+        self._execute_unknown(word)
 
     def _drill_block(self, block: Block, axes: dict[str, AxisWord]) -> None:
         """Drill at the position of a block; those without one and without R and Z drill nothing, and no word stays."""
@@ -87,8 +96,13 @@ class CycleInterpreter(OffsetInterpreter):
         control = self.control
         self._check_cycle_feed()
         hole = self._hole()
+        if hole.bottom > hole.retract and control.plane_axis == 2 and self.motion_code != cycles.BACK_BORE:
+            raise BlockError(Wording("NC210", "r_cycle_lies_below_depth"))
         motions = self._cycle_motions(lambda: cycles.cycle_motions(self.motion_code, hole))
         work = cycles.spindle_work(self.motion_code, hole.peck * control.length_unit)
+        turned = self._thread_turns or control.settings.threads_stop_spindle
+        if work is not None and work.hand and not turned and control.modal.spindle.current == -work.hand:
+            self._note(Wording("NC370", "thread_of_other_hand", word=g_code_text(self.motion_code)), Severity.ERROR)
         motion = control.motion
         for place in places:
             self._counter.count_motions(len(motions) + 1)
@@ -112,7 +126,11 @@ class CycleInterpreter(OffsetInterpreter):
         radius, begin, count = (values[letter] or 0.0 for letter in "IJL")
         if not 1.0 <= count <= _MAX_HOLES or count != int(count):
             raise BlockError(Wording("NC210", "repeats_of_cycle", letter="L"))
+        if radius <= 0.0:
+            raise BlockError(Wording("NC210", "radius_of_holes", word=name, value=radius))
         step = values.get("K") or 0.0 if "K" in values else 360.0 / count
+        if not step:
+            raise BlockError(Wording("NC210", "holes_in_one_place", word=name))
         control = self.control
         u, v = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
         centre = control.programmed_position / control.length_unit
@@ -167,6 +185,8 @@ class CycleInterpreter(OffsetInterpreter):
         if found := [letter for letter in others if letter in block.words]:
             raise BlockError(Wording("NC220", "peck_word_not_simulated", word=found[0]))
         dwell = block.words.get("P")
+        if dwell is not None and dwell.value < 0.0 and not words.takes_number(block):
+            raise BlockError(Wording("NC215", "negative_dwell"))
         in_doubt = settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value
         if in_doubt and not words.takes_number(block):
             raise BlockError(Wording("NC217", "p_cycle_without_point_no"))
@@ -202,6 +222,6 @@ class CycleInterpreter(OffsetInterpreter):
             to_initial=self._to_initial,
             peck=peck,
             lateral=lateral,
-            dwell=max(given.get("P", 0.0), 0.0) / 1000.0,
+            dwell=given.get("P", 0.0) / 1000.0,
             units=1.0 / control.length_unit,
         )

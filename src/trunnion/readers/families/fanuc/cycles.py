@@ -20,8 +20,11 @@ from trunnion.readers.control.hole_motion import (
 #: The one whose I and J shift the tool off the wall.
 FINE_BORE: Final = 760
 
+#: The one that bores upwards, from Z below the hole.
+BACK_BORE: Final = 870
+
 #: Those with such words. Where others know I and J, they describe pecks or a retract.
-SHIFTED: Final = (FINE_BORE, 870)
+SHIFTED: Final = (FINE_BORE, BACK_BORE)
 
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "RZPQIJ"

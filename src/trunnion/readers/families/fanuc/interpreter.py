@@ -336,11 +336,6 @@ class FanucInterpreter(CycleInterpreter):
             self._spindle_stands = None
         super()._iso(word, block)
 
-    def _stop_for_thread(self, word: Word, block: Block) -> None:
-        if self.motion_code not in words.THREADS:
-            self._spindle_stands = Wording("NC370", "word_stopped_spindle", word=word.text)
-        self._execute_unknown(word)
-
     # Motion
 
     def _execute_motion(self, codes: Sequence[Word], block: Block) -> None:

@@ -32,6 +32,7 @@ class HeidenhainControl(LeadControl):
 
     compensation_style = CIRCLES
     compensation_off = "R0"
+    drills_within_compensation = "refused"
     start_modes = START_MODES
     doubtful_modes = frozenset({"M89", "M116", "M118", "M120", "feed"})
     reset_by = "whether the end of a program cancels it depends on the software of the control"

@@ -13,11 +13,11 @@ from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.heidenhain import plane_datums
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
+from trunnion.readers.families.heidenhain.cycle_values import check_given
 from trunnion.readers.families.heidenhain.cycles import (
     CYCLES,
     LEGACY_CYCLES,
     MAY_BE_RAPID,
-    check_given,
     cycle_motions,
     legacy_cycle_motions,
     legacy_spindle_work,

@@ -21,7 +21,8 @@ from trunnion.readers.control.hole_motion import (
     full_retract,
     peck_depths,
 )
-from trunnion.readers.families.heidenhain.words import CYCLE_LINES, CYCLE_PARAMETERS
+from trunnion.readers.families.heidenhain.cycle_values import check_given, check_signs
+from trunnion.readers.families.heidenhain.words import CYCLE_LINES
 from trunnion.readers.program.word_values import one_of
 
 #: How far the tool moves off the wall of a bored hole, mm: a fixed value of the control.
@@ -32,6 +33,9 @@ MAY_BE_RAPID: Final = frozenset({208})
 
 #: Values of Q parameters: the depth counts from the tip of the tool (Q395), and the sense of bore milling (Q351).
 Q_VALUES: Final = {395: one_of(0), 351: one_of(-1, 0, 1)}
+
+#: Cycles whose infeed Q202 must be above 0; 241 needs none.
+_WITH_INFEED: Final = (200, 203, 205)
 
 #: Bores from below: its depth Q249 counts upwards, and it has no Q201.
 _BACK_BORING: Final = 204
@@ -96,13 +100,6 @@ class Hole:
         return self.get(208) or self.feed
 
 
-def check_given(number: int, values: Mapping[int, float]) -> None:
-    """Refuse a definition without one of the Q parameters that its cycle must have."""
-    if missing := [parameter for parameter in CYCLE_PARAMETERS[number] if parameter not in values]:
-        names = tuple(f"Q{parameter}" for parameter in missing)
-        raise CycleExecutionError(Wording("NC380", "has_no_parameter", missing=names))
-
-
 def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[HoleMotion]:
     """Return the motions of a cycle of the 200 series at one hole.
 
@@ -118,6 +115,7 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
             )
     if values[200] < 0.0:
         raise CycleExecutionError(Wording("NC380", "clearance_below_zero", value=values[200]))
+    check_signs(values, (202,) if number in _WITH_INFEED else ())
     if values.get(201, 0.0) > 0.0:
         raise CycleExecutionError(Wording("NC380", "depth_above_surface", value=f"Q201={values[201]:+g}"))
     hole = Hole(values, rpm, -abs(values[249]) if number == _BACK_BORING else values[201])

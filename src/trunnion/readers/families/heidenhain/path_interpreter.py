@@ -45,6 +45,8 @@ class PathInterpreter(FlowInterpreter):
         self._m_functions = MFunctions(self.control, self._note)
         # The feed of the tool call, for F AUTO.
         self._tool_feed: float | None = None
+        # The side that the last R0 has left, and the row from which on a motion in the working plane ends it.
+        self._side_left: tuple[int, int] = 0, 0
 
     # Motion
 
@@ -94,10 +96,15 @@ class PathInterpreter(FlowInterpreter):
 
     def _set_compensation(self, block: Block) -> None:
         modal = self.control.modal
-        if block.side in ("RL", "RR") and modal.compensation.current == -_RADIUS_COMPENSATION[block.side]:
+        if not block.side:
+            return
+        side, before = _RADIUS_COMPENSATION[block.side], int(modal.compensation.current)
+        if before and not side:
+            self._side_left = before, self.control.row
+        left, row = self._side_left
+        if side and -side in (before, left) and (before or not self.control.moved_in_plane_since(row)):
             self._note(Wording("NC343", "side_without_r0", word=block.side), Severity.ERROR)
-        if block.side:
-            modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
+        modal.compensation.set(self.control.row, side)
         if block.side in ("RL", "RR"):
             self._note(Wording("NC221", "radius_compensation", word=block.side), Severity.WARNING)
             self.control.judge_compensation()

@@ -11,7 +11,7 @@ from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
-from trunnion.readers.families.heidenhain.cycles import check_given
+from trunnion.readers.families.heidenhain.cycle_values import check_given, check_signs
 from trunnion.readers.program.word_values import one_of
 
 #: The cycles of patterns.
@@ -68,6 +68,7 @@ def pattern_of(number: int, values: Mapping[int, float]) -> Pattern:
             )
     if values[200] < 0.0:
         raise CycleExecutionError(Wording("NC380", "clearance_below_zero", value=values[200]))
+    check_signs(values, (244,) if number == CIRCLE else ())
     positions = _on_circle(values) if number == CIRCLE else _on_lines(values)
     own = {parameter: values[parameter] for parameter in _OVERRIDES}
     return Pattern(tuple(positions), values[301] == 1.0, own)
@@ -100,6 +101,9 @@ def _on_lines(values: Mapping[int, float]) -> list[tuple[float, float]]:
         raise CycleExecutionError(
             Wording("NC380", "bad_count", parameter="Q242", value=float(columns * lines), most=_MOST)
         )
+    for parameter, count in ((237, columns), (238, lines)):
+        if count > 1 and not values[parameter]:
+            raise CycleExecutionError(Wording("NC380", "positions_in_one_place", parameter=f"Q{parameter}"))
     cos, sin = math.cos(math.radians(values[224])), math.sin(math.radians(values[224]))
     positions = []
     for line in range(lines):

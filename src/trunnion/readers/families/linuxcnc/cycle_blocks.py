@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.spindle_work import SpindleTask, SpindleWork
@@ -14,7 +15,7 @@ from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.families.linuxcnc import cycles, words
 from trunnion.readers.families.linuxcnc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
-from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.block import Block, g_code_text
 from trunnion.readers.rs274.expressions import BlockError
 
 #: More holes of one block are mistakes of the program.
@@ -91,6 +92,9 @@ class CycleInterpreter(OffsetInterpreter):
         if self._inverse_time:
             raise BlockError(Wording("NC210", "cycle_cannot_inverse_time"))
         self._check_cycle_feed()
+        work = cycles.spindle_work(code)
+        if work is not None and work.hand and self.control.modal.spindle.current == -work.hand:
+            self._note(Wording("NC370", "thread_of_other_hand", word=g_code_text(code)), Severity.ERROR)
         own = {} if clearance is None else {"D": clearance}
         hole, height = self._hole(dict(self._modal_words) | own)
         self._drill(axes, hole, height, holes)

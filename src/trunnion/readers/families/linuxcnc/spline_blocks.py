@@ -40,6 +40,7 @@ class SplineBlocks:
         self._tangent: tuple[int, Floats] | None = None  # the row behind a G5, and P and Q of it with the other sign
         self._order = _QUADRATIC
         self._bits = 0
+        self._unit = 1.0
         self._poles: list[Floats] = []
         self._weights: list[float] = []
 
@@ -95,11 +96,13 @@ class SplineBlocks:
             self._check_modes()
             self._order = _QUADRATIC
             self._bits = 0
+            self._unit = control.length_unit
             self._poles, self._weights = [control.programmed_position.copy()], [1.0]
             if not axes:
                 self._weights = [self._weight(1.0 if weight is None else weight)]
         elif not axes and weight is not None:
             raise BlockError(Wording("NC322", "weight_without_point"))
+        self._check_unit()
         if order is not None:
             if order != int(order):
                 raise BlockError(Wording("NC322", "order_not_whole", order=order))
@@ -118,6 +121,10 @@ class SplineBlocks:
         self._poles.append(self._goal(axes))
         self._weights.append(self._weight(weight))
 
+    def _check_unit(self) -> None:
+        if self._control.length_unit != self._unit:
+            raise BlockError(Wording("NC322", "unit_changes_in_curve"))
+
     @staticmethod
     def _weight(weight: float) -> float:
         if not 0.0 < weight < MAX_POSITION:
@@ -129,6 +136,7 @@ class SplineBlocks:
         self._poles = []
         if not poles:
             raise BlockError(Wording("NC322", "g5_3_without_g5_2"))
+        self._check_unit()
         if axes:
             raise BlockError(Wording("NC322", "position_beside_g5_3"))
         if len(poles) < self._order:

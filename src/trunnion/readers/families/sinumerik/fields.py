@@ -18,6 +18,12 @@ def assign(reader: ExpressionReader, variables: Variables, name: str, index: tup
     if word not in ("SET", "REP") or reader.peek(1) != "(":
         return variables.assign(name, index, reader.value())
     reader.at += 1
+    _fill(reader, variables, name, index, word)
+    return True
+
+
+def _fill(reader: ExpressionReader, variables: Variables, name: str, index: tuple[int, ...], word: str) -> None:
+    """Assign the values in parentheses that come next, to the elements of a field from an index on."""
     given = reader.arguments()
     size = variables.size(name)
     if not size or (index and len(index) != len(size)):
@@ -25,6 +31,8 @@ def assign(reader: ExpressionReader, variables: Variables, name: str, index: tup
     count = math.prod(size)
     if count > MAX_VARIABLES // 2:
         raise ExpressionError(Wording("NC210", "too_many_variables", most=MAX_VARIABLES // 2))
+    if index:
+        variables.check_element(name, index)
     begin = 0
     for at, most in zip(index, size, strict=False):
         begin = begin * most + at
@@ -34,11 +42,13 @@ def assign(reader: ExpressionReader, variables: Variables, name: str, index: tup
     for place, value in enumerate(values, begin):
         if value is not None:
             variables.assign(name, _index(place, size), value)
-    return True
 
 
 def define(reader: ExpressionReader, variables: Variables, name: str, note: Note) -> None:
-    """Give a variable that was just defined its first value, or values."""
+    """Give a variable that was just defined its first value, or values; a list needs no SET here."""
+    if variables.size(name) and reader.peek() == "(":
+        _fill(reader, variables, name, (), "SET")
+        return
     if variables.size(name) and reader.peek() not in ("SET", "REP"):
         reader.value()
         note(Wording("NC215", "field_takes_set", name=name), Severity.ERROR)

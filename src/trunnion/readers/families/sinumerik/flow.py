@@ -321,8 +321,7 @@ class Flow:
         if token.kind is not TokenKind.NAME:
             raise ExpressionError(Wording("NC210", "not_name_variable", name=name))
         size = reader.index()
-        active.variables.define(kind, name, place=(line, reader.at))
-        active.variables.set_size(name, size)
+        active.variables.define(kind, name, place=(line, reader.at), size=size)
         if reader.accept("="):
             fields.define(reader, active.variables, name, self._note)
 

@@ -52,21 +52,43 @@ class Variables:
         self._check_index(number)
         self._parameters[number] = value
 
-    def define(self, kind: str, name: str, value: Value | None = None, *, place: tuple[int, int] = (0, 0)) -> None:
-        """DEF: define a variable of this program, once; a jump may lead to the same place, line and word, again."""
+    def define(
+        self,
+        kind: str,
+        name: str,
+        value: Value | None = None,
+        *,
+        place: tuple[int, int] = (0, 0),
+        size: tuple[int, ...] = (),
+    ) -> None:
+        """DEF: define a variable of this program, once; a jump may lead to the same place, line and word, again.
+
+        size   how many elements a field has, by index; () for a variable that is none
+        """
         if self._places.setdefault(name, place) != place:
             raise ExpressionError(Wording("NC223", "defined_twice", name=name))
         self._types[name] = kind
-        self._local[name] = {}
-        self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
-
-    def set_size(self, name: str, size: tuple[int, ...]) -> None:
-        """Note how many elements a field has, by index; () for a variable that is none."""
         self._sizes[name] = size
+        self._local[name] = {}
+        if not size:
+            self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
 
     def size(self, name: str) -> tuple[int, ...]:
         """Return how many elements a field of this program has, by index; () if it is none, or not known."""
         return self._sizes.get(name, ())
+
+    def check_element(self, name: str, index: tuple[int, ...]) -> None:
+        """Refuse an index that a variable of this program does not have, and a field without one."""
+        size = self._sizes.get(name)
+        if size is None or (self._types[name] == "STRING" and len(index) > len(size)):
+            return  # another program's, or a character of a text
+        if len(index) == len(size) and all(0 <= at < most for at, most in zip(index, size, strict=True)):
+            return
+        element = f"{name}[{','.join(map(str, index))}]" if index else name
+        if not size:
+            raise ExpressionError(Wording("NC215", "not_a_field", element=element, name=name))
+        elements = ", ".join(f"0 to {most - 1}" for most in size)
+        raise ExpressionError(Wording("NC215", "no_such_element", element=element, name=name, elements=elements))
 
     def __contains__(self, name: str) -> bool:
         """Whether this program defined the name."""
@@ -81,6 +103,7 @@ class Variables:
         """Set a variable; False if it was not defined, and so became a global one."""
         for number in index:
             self._check_index(number)
+        self.check_element(name, index)
         kind = self._types.get(name)
         if kind in ("INT", "BOOL", "CHAR", "REAL") and isinstance(value, str) and kind != "CHAR":
             raise ExpressionError(Wording("NC210", "takes_number_not_text", name=name))
@@ -107,6 +130,7 @@ class Variables:
 
     def variable(self, name: str, index: tuple[int, ...]) -> Value:
         """Return the value of a variable or predefined name; DEF alone makes it 0."""
+        self.check_element(name, index)
         for table in (self._local, self._global):
             elements = table.get(name)
             if elements is not None and index in elements:
