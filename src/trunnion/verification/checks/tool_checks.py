@@ -69,8 +69,9 @@ def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, .
 
 
 def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unnumbered: int) -> Iterator[Place]:
-    """Yield changes to a tool that the CL file never asks for, by number or by name; it gives its first ``unnumbered`` rows no
-    number of a tool.
+    """Yield changes to a tool that the CL file never asks for, by number or by name.
+
+    It gives its first ``unnumbered`` rows no number of a tool.
     """
     matching = context.matching
     for event in context.run.events:
