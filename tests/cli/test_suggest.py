@@ -6,6 +6,14 @@ import pytest
 
 from tests.support.posting import FOOT, HEAD
 from trunnion.cli import main
+from trunnion.cli.suggest import NotingTerminal, suggestion
+from trunnion.jobs.inputs.settings import as_texts
+from trunnion.jobs.job import Given
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.project import Judgement, Project
+from trunnion.jobs.registry import JOBS
+from trunnion.options.kinds import FileOut, Setting
+from trunnion.options.option import Option
 
 _BARE = HEAD.replace("LOAD/TOOL,1,ADJUST,1\n", "").replace("SPINDL/RPM,4000.0000,CLW\n", "")
 TWO = _BARE + FOOT + _BARE.replace("OP1", "OP 2").replace("D10", "D12").replace("FEDRAT/MMPM,500.0\n", "") + FOOT
@@ -59,3 +67,104 @@ def test_numbers_that_were_given_stand_under_their_keys(folder: Path) -> None:
     assert "zero_mm = [0, 0, -100]" in text
     assert "tool_length_mm = 120.5" in text
     assert main(["post", "part.toml"]) == 0
+
+
+#: Values of the options of a post that a project states; those of files are there.
+_GIVEN: dict[str, object] = {
+    "machine": "matsuura_mx330", "output": "other.nc", "subprograms": ["sub.nc"], "hooks": ["hook.py"],
+    "units": "mm", "dialect": "clsf", "strict": True, "zero": "G54=1,2,-3.5,G55=4,5,6", "tool_length": "1=100,2=80.25",
+    "feed": "fastest", "max_tilt": 40.0, "edited": "keep", "report": "o.html", "sheet": "s.html", "listing": "o.lst",
+    "manifest": "o.json", "turn": 30.0, "tilt": 10.0, "simulate": True, "stock": "box:200,100,30,-100,-50,-30",
+    "part": "part.stl", "tools": ["1=flat:20,length=60", "2=ball:6,length=40"], "tool_libraries": ["tools.toml"],
+    "unit": "inch", "fixtures": ["vice.stl"], "near": 0.5, "cell": 1.25, "accuracy": 0.01,
+}  # fmt: skip
+
+#: Options that are no values of a project: with its files, as a whole.
+_NOT_STATED = {"project"}
+
+_SAID = [each for each in JOBS["post"].flags if (each.key or each.setting) and not isinstance(each.kind, Setting)]
+
+
+def _suggested(**given: object) -> Project:
+    """The project that a post suggests to which all this was given."""
+    values = {each.name: each.empty for each in JOBS["post"].options}
+    values |= {"cl": ["part.cls"], "machine": "yl569", "suggest": "part.toml"} | given
+    values["settings"] = [
+        (each.setting, str(values[each.name])) for each in _SAID if each.setting and each.name in given
+    ]
+    with suggestion(Given(JOBS["post"], values), str(values["output"] or "part.nc"), NotingTerminal()):
+        pass
+    return load_project(Path("part.toml"))
+
+
+@pytest.mark.parametrize("option", [each for each in _SAID if each.name not in _NOT_STATED], ids=lambda each: each.name)
+def test_the_project_says_what_an_option_said(folder: Path, option: Option) -> None:
+    for name in ("sub.nc", "hook.py", "part.stl", "vice.stl"):
+        (folder / name).write_text("", encoding="utf-8")
+    (folder / "tools.toml").write_text("[[tool]]\nnumber = 1\n", encoding="utf-8")
+    value = _GIVEN[option.name]
+    project = _suggested(
+        **({option.name: value} if option.name != "simulate" else {"stock": "box:1,1,1", "simulate": 1})
+    )
+    (posted,), simulation = project.setups, project.simulation
+    if option.setting:
+        said = as_texts(posted.settings)[option.setting]
+        assert said.replace(".0", "") == str(value).replace(".0", "")
+    elif option.name == "simulate":
+        assert project.checks.simulate is Judgement.REFUSE
+    elif isinstance(option.kind, FileOut):
+        written = {"output": posted.output, **posted.papers.by_name()}
+        assert str(written[option.name]) == value
+    else:
+        places = (project, posted, simulation, simulation.setups[0])
+        said = posted.arguments.get(option.name) or next(
+            getattr(each, option.name) for each in places if hasattr(each, option.name)
+        )
+        assert (list(said) if isinstance(value, list) else said) == value
+
+
+def test_settings_are_written_as_a_project_takes_them(folder: Path) -> None:
+    (folder / "part.cls").write_text(HEAD + FOOT, encoding="utf-8")
+    post = ["post", "part.cls", "--machine", "yl569", "--zero", "G54=1,2,-3,G55=4,5,6", "--tool-length", "1=100"]
+    post += ["--set", "programs=operations", "--set", "work_offset=G54", "--output", "part.mpf"]
+    assert main([*post, "--suggest", "part.toml"]) == 0
+    text = (folder / "part.toml").read_text(encoding="utf-8")
+    assert "zero_mm = { G54 = [1, 2, -3], G55 = [4, 5, 6] }" in text
+    assert "tool_length_mm = { 1 = 100 }" in text
+    assert 'divide = "subprograms"' in text
+    assert load_project(folder / "part.toml")
+
+
+def test_what_a_project_does_not_state_is_named(folder: Path) -> None:
+    assert _suggested(strict=True, explain=True, force=True, json="-")
+    text = (folder / "part.toml").read_text(encoding="utf-8")
+    assert "# A project does not state --force, --explain, --json: what was given there is left out." in text
+    assert "strict = true" in text
+
+
+def test_nothing_is_written_where_nothing_can_be_filled_in(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "part.cls").write_text(HEAD + "ORIGIN/1,2\n" + FOOT, encoding="utf-8")
+    post = ["post", "part.cls", "--machine", "yl569", "--output", "part.mpf", "--suggest", "part.toml"]
+    for _ in range(2):
+        assert main(post) == 2
+        said = capsys.readouterr().err
+        assert "part.toml: not written: nothing can be filled in that ends the errors" in said
+        assert "FIL250" not in said
+        assert not (folder / "part.toml").exists()
+
+
+def test_errors_that_no_setting_ends_are_counted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "part.cls").write_text(
+        _BARE + FOOT + HEAD.replace("4000.0000", "0.3").replace("OP1", "OP2") + FOOT, encoding="utf-8"
+    )
+    post = ["post", "part.cls", "--machine", "matsuura_mx330", "--output", "part.nc", "--suggest", "part.toml"]
+    assert main(post) == 2
+    assert "2 settings to fill in, 1 decision behind #, 1 error to mend otherwise; then:" in capsys.readouterr().err
+    assert "for a tool that does not turn" in (folder / "part.toml").read_text(encoding="utf-8"), "conditions are kept"
+
+
+def test_a_file_that_no_project_names_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "a\\b.cls").write_text(HEAD + FOOT, encoding="utf-8")
+    assert main(["post", "a\\b.cls", "--machine", "yl569", "--output", "b.mpf", "--suggest", "part.toml"]) == 2
+    assert "FIL320" in capsys.readouterr().err
+    assert not (folder / "part.toml").exists()

@@ -1,7 +1,9 @@
 """``trunnion post --suggest``: a project with what was given, and the settings that the messages ask for."""
 
 import os
+import re
 import shlex
+import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path, PurePath
@@ -9,16 +11,18 @@ from typing import Final
 
 from trunnion.cli.printing import tell
 from trunnion.cli.terminal import Terminal
-from trunnion.errors import InputError, Problem, TrunnionError
+from trunnion.errors import InputError, Problem, Severity, TrunnionError
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines
 from trunnion.messages import Wording
-from trunnion.options.kinds import FileIn, FileOut
+from trunnion.options.groups import STOCK
+from trunnion.options.kinds import FileIn, FileOut, Setting, Switch
+from trunnion.options.option import Option
 from trunnion.wording import counted
 
-#: Options that stand in a project as they were given, where it has a key for them.
-_LEFT_OUT: Final = ("settings", "simulate", "project", "strict")
+#: A key of a project, where other options have words in place of one.
+_NAME: Final = re.compile(r"\w+")
 
 
 class NotingTerminal(Terminal):
@@ -44,16 +48,21 @@ def suggestion(given: Given, target: str, terminal: NotingTerminal) -> Iterator[
     if file.exists() or file.is_symlink():
         raise InputError(Problem(str(file), 0, Wording("FIL250", "definition_exists")))
     keys = _keys(given, target, file)
-    problems: Sequence[Problem] = ()
+    unsaid = _unsaid(given)
     try:
         yield
     except TrunnionError as error:
-        problems = error.problems
-        if any(problem.code.startswith(("FIL", "ARG")) for problem in problems):
+        problems = [*error.problems, *terminal.found]
+        if any(problem.code.startswith(("FIL", "ARG")) for problem in error.problems):
             raise
-        _write(given, keys, file, [*problems, *terminal.found])
+        from trunnion.jobs.post.asked_settings import asked_settings  # what only a suggestion needs
+
+        if any(each.is_needed for each in asked_settings(problems)):
+            _write(given, (keys, unsaid), file, problems)
+        else:
+            tell(f"{file}: not written: nothing can be filled in that ends the errors")
         raise
-    _write(given, keys, file, terminal.found)
+    _write(given, (keys, unsaid), file, terminal.found)
 
 
 def _keys(given: Given, target: str, file: Path) -> dict[str, object]:
@@ -64,38 +73,85 @@ def _keys(given: Given, target: str, file: Path) -> dict[str, object]:
         "cl": [_within(each, file) for each in given.cl],
         "output": _within(target, file),
     }
-    for option in given.job.options:
+    for option in _given(given):
         value = given.values[option.name]
-        if option.name in (*keys, *_LEFT_OUT) or not option.key or option.setting or value in (None, "", [], False):
+        if option.name in keys or isinstance(option.kind, Setting) or option.setting or not _has_key(option):
             continue
-        names = isinstance(option.kind, FileIn | FileOut)
-        several = [_within(each, file) if names else each for each in (value if isinstance(value, list) else [value])]
+        if isinstance(option.kind, Switch):
+            keys |= (
+                {option.key: True} if _NAME.fullmatch(option.key) else tomllib.loads(option.key.replace("] ", "]\n"))
+            )
+            continue
+        several = [_as_stated(each, option, file) for each in (value if isinstance(value, list) else [value])]
         keys[option.key] = several if isinstance(value, list) else several[0]
     return keys
+
+
+def _given(given: Given) -> list[Option]:
+    """Return the options that were given."""
+    return [each for each in given.job.options if given.values[each.name] not in (None, "", each.empty)]
+
+
+def _has_key(option: Option) -> bool:
+    """Whether a project states an option under its key; the key of a table may have its value."""
+    return _NAME.fullmatch(option.key) is not None or option.key.startswith("[")
+
+
+def _unsaid(given: Given) -> list[str]:
+    """Return the options that were given and that no project states."""
+    return [
+        each.flag
+        for each in _given(given)
+        if each.flag and each.name != "suggest" and not each.setting and not _has_key(each)
+    ]
+
+
+def _as_stated(value: object, option: Option, file: Path) -> object:
+    """Return a value as a project has it."""
+    from trunnion.simulation.stock.solids import is_mesh
+
+    names = isinstance(option.kind, FileIn | FileOut) and not (option.kind == STOCK.kind and not is_mesh(str(value)))
+    return _within(str(value), file) if names else value
 
 
 def _within(name: str, file: Path) -> str:
     """Return a file as a project names it: from its own folder on.
 
-    Raises ``InputError`` if it lies elsewhere.
+    Raises ``InputError`` if it lies elsewhere, or no project names a file so.
     """
+    from trunnion.jobs.project.paths import leads_out
+
     try:
         path = PurePath(os.path.relpath(name, file.parent))
     except ValueError:  # on another drive
         path = PurePath("..")
     if name == "-" or ".." in path.parts:
         raise InputError(Problem(str(file), 0, Wording("FIL320", "project_elsewhere", name=name)))
+    if leads_out(path.as_posix()):
+        raise InputError(Problem(str(file), 0, Wording("FIL320", "never_in_project", name=name)))
     return path.as_posix()
 
 
-def _write(given: Given, keys: dict[str, object], file: Path, problems: Sequence[Problem]) -> None:
+def _write(given: Given, said: tuple[dict[str, object], list[str]], file: Path, problems: Sequence[Problem]) -> None:
+    """Write the project; ``said`` are its keys, and the options that no project states."""
     from trunnion.jobs.post.asked_settings import asked_settings, project_text
+    from trunnion.jobs.post.settings_to_fill import GATHERED
 
     asked = asked_settings(problems)
     own = {each.setting: given.values[each.name] for each in given.job.options if each.setting}
     stated = {name: str(value) for name, value in own.items() if value is not None}
-    text = project_text(keys, {**stated, **dict(given.settings)}, asked, shlex.quote(str(file)))
+    keys, unsaid = said
+    head = [f"To post it: trunnion post {shlex.quote(str(file))}"]
+    head += [f"A project does not state {', '.join(unsaid)}: what was given there is left out."] if unsaid else []
+    text = project_text(keys, {**stated, **dict(given.settings)}, asked, head)
     with atomic_file(file) as sink:
         sink.write(text.encode())
     needed = sum(each.to_fill and each.is_needed for each in asked)
-    tell(f"{file}: {counted(needed, 'setting')} to fill in; then: trunnion post {shlex.quote(str(file))}")
+    decisions = sum(not each.to_fill and each.is_needed for each in asked)
+    answered = [problem for each in asked for problem in each.problems]
+    others = [each for each in problems if each.severity is Severity.ERROR and each.code != GATHERED]
+    others = [each for each in others if each not in answered]
+    parts = [f"{counted(needed, 'setting')} to fill in"]
+    parts += [f"{counted(decisions, 'decision')} behind #"] if decisions else []
+    parts += [f"{counted(len(others), 'error')} to mend otherwise"] if others else []
+    tell(f"{file}: {', '.join(parts)}; then: trunnion post {shlex.quote(str(file))}")

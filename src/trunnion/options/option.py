@@ -60,7 +60,8 @@ class Option:
     meaning   what the pages of the docs say, in Markdown; empty: what ``help`` says
     default   where it is not given
     many      how often, and with how many values
-    key       in project files and batches; empty: they do not state it
+    key       in project files and batches, or what they state in place of it, in the words of their pages; empty: they
+              do not state it
     level     to what the key belongs
     setting   the setting that it stands for; empty: none
     required  it must be given

@@ -298,7 +298,7 @@ def test_a_hook_that_fails_is_told_with_its_line_and_nothing_is_written(tmp_path
         (["--force"], "post its CL files alone"),
         (["--machine", "yl569"], "--machine does not go with a project; write it there, as machine"),
         (["--subprograms", "a.spf"], "--subprograms does not go with a project; write it there, as subprograms"),
-        (["--simulate"], "write it there, as [checks] simulate"),
+        (["--simulate"], 'write it there, as [checks] simulate = "refuse"'),
         (["more.cls"], "stands beside other files"),
     ],
 )

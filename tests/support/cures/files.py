@@ -13,6 +13,7 @@ _NEXT: Final = _OUT.replace("part.cls", "two.cls")
 _BOTH: Final = "trunnion post part.cls a/part.cls --machine yl569 --output out"
 _DIVIDED: Final = "trunnion post part.cls --machine matsuura_mx330 --output out.nc --set programs=operations"
 _NAMED: Final = _DIVIDED.replace("matsuura_mx330", "yl569").replace("out.nc", "out.mpf")
+_BACKSLASH: Final = "'a\\b.cls'"
 _MANIFEST: Final = f"{_OUT} --manifest out.json"
 
 
@@ -88,6 +89,8 @@ CURES: Final = (
            f"{_NEXT} --listing a.html --report b.html"),
     script("FIL320 project_elsewhere", f"mkdir a\n{_OUT} --suggest a/part.toml", "a/part.toml", "part.toml"),
     script("FIL320 manifest_elsewhere", f"mkdir a\n{_OUT} --manifest a/out.json", "a/out.json", "out.json"),
+    script("FIL320 never_in_project",
+           f"cp part.cls 'a\\b.cls'\n{_OUT.replace('part.cls', _BACKSLASH)} --suggest a.toml", "a\\b.cls", "b.cls"),
     _manifest("no_list_of_files", "^.*$", "[]"),
     _manifest("no_files", r'"files": \[.*?\]', '"files": []'),
     _manifest("no_such_list", r'"files": \[.*?\]', '"files": 5'),

@@ -77,7 +77,7 @@ _POST: Final = job(
     JSON,
     Option(
         "simulate", "--simulate", Switch(), "cut stock with the program too, and refuse what it must not do",
-        key="[checks] simulate", level=Level.WHOLE,
+        key='[checks] simulate = "refuse"', level=Level.WHOLE,
     ),
     Option(
         "project", "--project", FileIn("PROJECT"),

@@ -13,14 +13,18 @@ from typing import Final
 from trunnion.definitions.toml_text import written, written_key
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.post.settings_to_fill import GATHERED, entries_to_fill
-from trunnion.jobs.project.keys import SETTINGS
+from trunnion.jobs.project.project import Division
+from trunnion.jobs.project.settings import OWN_KEYS
 from trunnion.wording import counted
 
 #: A value, or the end of one, in whose place something is to be written.
 _TO_FILL: Final = re.compile(r"(?:^|[:,])(?:[A-Z][A-Z_]*|…)$")
 
-#: Settings that have a key of their own in projects.
-_KEYS: Final = {each.setting: each.key for each in SETTINGS if each.key != each.setting}
+#: The name of a value among several.
+_NAMED: Final = re.compile(r"(?:^|,)([^,=]*)=")
+
+#: What the setting ``programs`` says by other words than the key ``divide``.
+_OF_DIVIDE: Final = {"operations": Division.SUBPROGRAMS.value}
 
 #: The first word of a value that lets through what is refused otherwise.
 WAIVES: Final = "allowed"
@@ -66,37 +70,46 @@ def asked_settings(problems: Iterable[Problem]) -> list[AskedSetting]:
 
 
 def project_text(
-    keys: Mapping[str, object], settings: Mapping[str, str], asked: Sequence[AskedSetting], name: str
+    keys: Mapping[str, object], settings: Mapping[str, str], asked: Sequence[AskedSetting], head: Sequence[str]
 ) -> str:
     """Return a project that posts what was posted, with the settings that its messages ask for.
 
     keys      of the project, as they were given
     settings  that were given
-    name      of its file
+    head      lines that stand above it as comments
     """
     own, table = list[str](), list[str]()
     given = dict(settings)
     for each in asked:
         before = given.pop(each.name, "") if each.to_fill and each.is_needed else ""
         value = f"{before},{each.value}" if before else each.value
-        key, lines = _KEYS.get(each.name), own
+        key, lines = OWN_KEYS.get(each.name), own
         if key is None:
             key, lines = written_key(each.name), table
         lines += ["", *_reasons(each.problems)]
         mark = "" if each.to_fill and each.is_needed else "# "
-        lines.append(f"{mark}{key} = {written(_numbers(value) if lines is own else value)}")
-    stated = [f"{_KEYS[key]} = {written(_numbers(value))}" for key, value in given.items() if key in _KEYS]
+        lines.append(f"{mark}{key} = {written(_of_key(each.name, value) if lines is own else value)}")
+    stated = [f"{OWN_KEYS[key]} = {written(_of_key(key, value))}" for key, value in given.items() if key in OWN_KEYS]
     stated += [f"{key} = {written(value)}" for key, value in keys.items()]
-    others = [f"{written_key(key)} = {written(value)}" for key, value in given.items() if key not in _KEYS]
-    head = [
-        f"# To post it: trunnion post {name}",
-        *(["# First write values for the words in capitals, and take the # from what you decide so."] if asked else []),
-    ]
-    return "\n".join([*head, *stated, *own, "", "[settings]", *others, *table, ""])
+    others = [f"{written_key(key)} = {written(value)}" for key, value in given.items() if key not in OWN_KEYS]
+    comments = [f"# {each}" for each in head]
+    if asked:
+        comments.append("# First write values for the words in capitals, and take the # from what you decide so.")
+    return "\n".join([*comments, *stated, *own, "", "[settings]", *others, *table, ""])
 
 
-def _numbers(text: str) -> object:
-    """Return the number or the numbers of a setting, as its own key has them; a text that is none as it is."""
+def _of_key(setting: str, text: str) -> object:
+    """Return the value of a setting as its own key in a project has it."""
+    return _OF_DIVIDE.get(text, text) if setting == "programs" else _value(text)
+
+
+def _value(text: str) -> object:
+    """Return the number or the numbers of a setting, or a table of them, as its own key has them; a text that is none
+    as it is.
+    """
+    if "=" in text:
+        _, *parts = _NAMED.split(text)
+        return {name.strip(): _value(value) for name, value in zip(parts[::2], parts[1::2], strict=True)}
     try:
         found = [float(part) for part in text.split(",")]
     except ValueError:
@@ -115,5 +128,6 @@ def _reasons(problems: Sequence[Problem]) -> list[str]:
 def _reason(problem: Problem, others: int) -> str:
     more = f", and {counted(others, 'message')} like it" if others else ""
     place = f"line {problem.line}: " if problem.line else ""
-    text = f"# {place}{problem.severity}: {problem.what}{more} [{problem.code}]"
+    cure = f"; {problem.cure}" if problem.cure else ""  # which has the conditions of what it offers
+    text = f"# {place}{problem.severity}: {problem.what}{more}{cure} [{problem.code}]"
     return "".join(letter if letter.isprintable() else "?" for letter in text)

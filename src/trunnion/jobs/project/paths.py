@@ -15,6 +15,9 @@ from trunnion.messages import Wording
 _MOST_FILES: Final = 1000
 _MOST_NAMES: Final = 10_000
 
+#: Characters of a name.
+_LONGEST_NAME: Final = 1000
+
 
 class ProjectPaths:
     """Turns names in a project into paths; mistakes become problems of the tables."""
@@ -86,11 +89,17 @@ class ProjectPaths:
             )
         pure = PurePosixPath(name)
         location = self._folder / pure
-        outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name) or len(name) > 1000
-        if outside or not is_within(location, self._folder):
+        if leads_out(name) or not is_within(location, self._folder):
             table.add_problem(key, Wording("DEF330", "leads_out_of_project", name=name[:100]))
             return self._folder / "outside"
         return location
+
+
+def leads_out(name: str) -> bool:
+    """Whether no project names a file so, wherever the file lies: it leads out of the folder, on one system or all."""
+    pure = PurePosixPath(name)
+    outside = pure.is_absolute() or ".." in pure.parts or len(name) > _LONGEST_NAME
+    return outside or re.search(r"[\\:\x00-\x1f]", name) is not None
 
 
 def is_file(location: Path) -> bool:

@@ -16,7 +16,7 @@ from trunnion.messages import Wording
 _MOST_SETTINGS: Final = 500
 
 #: Settings that have a key of another name.
-_OWN_KEYS: Final = {each.setting: each.key for each in SETTINGS if each.key != each.setting} | {"programs": "divide"}
+OWN_KEYS: Final = {each.setting: each.key for each in SETTINGS if each.key != each.setting} | {"programs": "divide"}
 
 
 def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tuple[str, int, str]]]:
@@ -30,7 +30,7 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
         table.add_problem("settings", Wording("DEF330", "too_many_settings", count=len(stated), most=_MOST_SETTINGS))
         stated = {}
     for name, value in stated.items():
-        if key := _OWN_KEYS.get(name):
+        if key := OWN_KEYS.get(name):
             own.add_problem(name, Wording("DEF330", "setting_has_key", key=key))
             continue
         try:

@@ -29,23 +29,33 @@ def sideways_problems(toolpaths: Sequence[Toolpath]) -> list[Problem]:
     height of its highest point, where nothing is to cut.
     """
     operations = [operation for toolpath in toolpaths for operation in toolpath.operations if len(operation.moves)]
-    loaded: list[int] = []
-    for operation in operations:
-        numbers = [event.number for event in operation.events if isinstance(event, LoadTool)]
-        loaded.append(numbers[-1] if numbers else loaded[-1] if loaded else 0)
-    used = dict[int, set[str]]()
-    for number, operation in zip(loaded, operations, strict=True):
+    tools = _tools_of(operations)
+    used = dict[int | str, set[str]]()
+    for tool, operation in zip(tools, operations, strict=True):
         words = (word for event in operation.events if isinstance(event, CycleOn) for word in event.mode)
-        used.setdefault(number, set()).update(words)
+        used.setdefault(tool, set()).update(words)
     problems = []
-    for number, operation in zip(loaded, operations, strict=True):
-        row = _first_sideways(operation) if _cuts_along_its_axis(operation, used[number]) else None
+    for tool, operation in zip(tools, operations, strict=True):
+        row = _first_sideways(operation) if _cuts_along_its_axis(operation, used[tool]) else None
         if row is not None:
             wording = Wording(
-                "PLN350", "tool_sideways", operation=operation.name, tool=operation.tool.name or f"T{number}"
+                "PLN350", "tool_sideways", operation=operation.name, tool=operation.tool.name or f"T{tool or 0}"
             )
             problems.append(Problem(operation.file, int(operation.moves.line[row]), wording))
     return problems
+
+
+def _tools_of(operations: Sequence[Operation]) -> list[int | str]:
+    """Return the tool of each operation: its number, also where it is that of the operation before; else its name."""
+    tools: list[int | str] = []
+    names = [operation.tool.name for operation in operations]
+    for k, operation in enumerate(operations):
+        numbers = [event.number for event in operation.events if isinstance(event, LoadTool)]
+        if numbers:
+            tools.append(numbers[-1])
+        else:
+            tools.append(tools[-1] if k and names[k] == names[k - 1] else names[k])
+    return tools
 
 
 def _cuts_along_its_axis(operation: Operation, cycles: set[str]) -> bool:

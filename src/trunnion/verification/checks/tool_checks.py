@@ -45,7 +45,8 @@ def check_tool(context: ComparedContext) -> Check:
     if run.uses_length_numbers:
         places += _wrong_lengths(context)
     unnumbered = next((state.first for state in states if state.value.is_known), 0)
-    places += _foreign_changes(context, asked, unnumbered) if asked else ()
+    named = [state.value.names for state in states if not state.value.is_known]
+    places += _foreign_changes(context, [*asked, *named], unnumbered) if asked else ()
     places += _foreign_deltas(context)
     tools = tuple(Wording("tool", "named", tool=name) for name in dict.fromkeys(names[0] for names in asked))
     good = Wording("tool", "good", tools=tools) if tools else Wording("tool", "none_asked")
@@ -68,8 +69,9 @@ def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, .
 
 
 def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unnumbered: int) -> Iterator[Place]:
-    """Yield changes to a tool that the CL file never asks for; it gives its first ``unnumbered`` rows no number of a
-    tool.
+    """Yield changes to a tool that the CL file never asks for, by number or by name.
+
+    It gives its first ``unnumbered`` rows no number of a tool.
     """
     matching = context.matching
     for event in context.run.events:
