@@ -13,6 +13,7 @@ from trunnion.errors import InputError, Problem, TrunnionError
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
 from trunnion.jobs.post.asked_settings import asked_settings, project_text
+from trunnion.jobs.post.settings_to_fill import unnamed_operations
 from trunnion.machines import shipped_machines
 from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, FileOut
@@ -93,7 +94,9 @@ def _write(given: Given, keys: dict[str, object], file: Path, problems: Sequence
     asked = asked_settings(problems)
     own = {each.setting: given.values[each.name] for each in given.job.options if each.setting}
     stated = {name: str(value) for name, value in own.items() if value is not None}
-    text = project_text(keys, {**stated, **dict(given.settings)}, asked, shlex.quote(str(file)))
+    text = project_text(
+        keys, {**stated, **dict(given.settings)}, asked, shlex.quote(str(file)), unnamed_operations(problems)
+    )
     with atomic_file(file) as sink:
         sink.write(text.encode())
     needed = sum(each.to_fill and each.is_needed for each in asked)

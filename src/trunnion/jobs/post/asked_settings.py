@@ -66,13 +66,18 @@ def asked_settings(problems: Iterable[Problem]) -> list[AskedSetting]:
 
 
 def project_text(
-    keys: Mapping[str, object], settings: Mapping[str, str], asked: Sequence[AskedSetting], name: str
+    keys: Mapping[str, object],
+    settings: Mapping[str, str],
+    asked: Sequence[AskedSetting],
+    name: str,
+    unnamed: Sequence[str] = (),
 ) -> str:
     """Return a project that posts what was posted, with the settings that its messages ask for.
 
     keys      of the project, as they were given
     settings  that were given
     name      of its file
+    unnamed   operations that no setting can name
     """
     own, table = list[str](), list[str]()
     given = dict(settings)
@@ -91,6 +96,10 @@ def project_text(
     head = [
         f"# To post it: trunnion post {name}",
         *(["# First write values for the words in capitals, and take the # from what you decide so."] if asked else []),
+        *(
+            _printable(f"# No setting can name {each}: name it otherwise in CAM, or state a value for all.")
+            for each in unnamed
+        ),
     ]
     return "\n".join([*head, *stated, *own, "", "[settings]", *others, *table, ""])
 
@@ -116,4 +125,8 @@ def _reason(problem: Problem, others: int) -> str:
     more = f", and {counted(others, 'message')} like it" if others else ""
     place = f"line {problem.line}: " if problem.line else ""
     text = f"# {place}{problem.severity}: {problem.what}{more} [{problem.code}]"
+    return _printable(text)
+
+
+def _printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else "?" for letter in text)
