@@ -121,10 +121,14 @@ def warning(file: str, line: int, wording: Wording, *, subject: Subject | None =
 
 
 def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
-    """Problems that differ only in their lines become one: at the first line, with their number."""
+    """Problems that differ only in their lines become one: at the first line, with their number.
+
+    Those of different operations stay apart: each may want a setting of its own.
+    """
     alike: dict[tuple[object, ...], list[Problem]] = {}
     for problem in problems:
-        alike.setdefault((problem.file, problem.what, problem.cure, problem.severity), []).append(problem)
+        operation = problem.wording.parameter("operation")
+        alike.setdefault((problem.file, operation, problem.what, problem.cure, problem.severity), []).append(problem)
     return tuple(
         same[0] if len(same) == 1 else replace(same[0], wording=same[0].wording.within("repeated", count=len(same)))
         for same in alike.values()

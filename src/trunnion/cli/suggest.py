@@ -135,7 +135,7 @@ def _within(name: str, file: Path) -> str:
 def _write(given: Given, said: tuple[dict[str, object], list[str]], file: Path, problems: Sequence[Problem]) -> None:
     """Write the project; ``said`` are its keys, and the options that no project states."""
     from trunnion.jobs.post.asked_settings import asked_settings, project_text
-    from trunnion.jobs.post.settings_to_fill import GATHERED
+    from trunnion.jobs.post.settings_to_fill import GATHERED, unnamed_operations
 
     asked = asked_settings(problems)
     own = {each.setting: given.values[each.name] for each in given.job.options if each.setting}
@@ -143,6 +143,10 @@ def _write(given: Given, said: tuple[dict[str, object], list[str]], file: Path, 
     keys, unsaid = said
     head = [f"To post it: trunnion post {shlex.quote(str(file))}"]
     head += [f"A project does not state {', '.join(unsaid)}: what was given there is left out."] if unsaid else []
+    head += [
+        f"No setting can name {each}: name it otherwise in CAM, or state a value for all."
+        for each in unnamed_operations(problems)
+    ]
     text = project_text(keys, {**stated, **dict(given.settings)}, asked, head)
     with atomic_file(file) as sink:
         sink.write(text.encode())

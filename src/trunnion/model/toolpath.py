@@ -139,10 +139,11 @@ class SelectTool(Event):
 
 @dataclass(frozen=True, slots=True)
 class SpindleOn(Event):
-    """Turn the spindle on, rev/min; surface speeds are converted."""
+    """Turn the spindle on, rev/min; surface speeds are converted. ``stated``: by a setting, not by the CL file."""
 
     rpm: float
     sense: Sense = Sense.CLW
+    stated: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -374,8 +375,7 @@ class Toolpath:
     states_unit  the file says its unit, or its feeds do; else mm are assumed
     dialect     what the file is written in, a key of ``trunnion.cl.dialects.DIALECTS``
     recognized  the title of the dialect, and by what it was recognized
-    system      the coordinate system of the points in that of the model where the file gives it and its meaning is not
-                settled: 3 rows of 4 numbers, mm
+    system      of the points, in that of the model, where the file gives it and its meaning is open: 3 rows of 4, mm
     states_system  each operation states where its coordinate system lies in the absolute one of the CAM system
     clamping    how the part is clamped, as comments in the head of the file say; None: they say nothing
     reopen      opens the text of a file that is packed or a stream once more; None: it is the file of that path

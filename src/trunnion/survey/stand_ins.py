@@ -11,7 +11,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.jobs.post.asked_settings import WAIVES, AskedSetting, asked_settings
 
 #: What is written in place of the words in capitals.
-_VALUES: Final = {"RPM": "1000", "MM_MIN": "300", "MM": "0.5", "DEGREES": "0.1"}
+_VALUES: Final = {"RPM": "1000", "MM_MIN": "300", "PITCH_MMPR": "1MMPR", "MM": "0.5", "DEGREES": "0.1"}
 
 #: A tool of its own for each operation, from this number on: above those that most CL files have.
 _NUMBER: Final = "NUMBER"

@@ -117,6 +117,15 @@ CURES: Final = (
     _said("CTL510", "operation_cuts_while", _CUT.replace(_SPEED, ""), {"spindle": "OP1:4000"}),
     _said("ARG220", "value_twice", _CUT.replace(_SPEED, ""), {"spindle": "500,OP1:4000"}, spindle="500,4000"),
     _said("ARG230", "states_own_speed", _CUT, {"spindle": None}, spindle="OP1:4000"),
+    _said("CTL510", "speed_stated_for_another", _TWO_BARE, {"spindle": "OP1:900,OP 2:800"}, spindle="OP1:900"),
+    _said("CTL570", "operation_not_to_name", _BARE.replace("OP1", "A:B") + FOOT, {"spindle": "900"}),
+    _said(
+        "ARG220",
+        "beyond_revolution",
+        _CUT.replace(_FEED, ""),
+        {"missing_feed": "300"},
+        missing_feed="300MMPR",
+    ),
     _said(
         "CTL510",
         "operation_cuts_while_spindle",

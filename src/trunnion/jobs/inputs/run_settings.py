@@ -107,14 +107,14 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         default="what the CL files say; else centreline",
     ),
     "spindle": RunSetting(
-        "Speed of the spindle, rev/min, of operations that cut while it stands because no SPINDL comes before, or of "
-        "one that has none of its own. Clockwise; with a minus counter-clockwise.",
+        "Speed of the spindle, rev/min, of operations without a SPINDL that cut while it stands or with another tool; "
+        "OPERATION:RPM is that of one alone. Clockwise; with a minus counter-clockwise.",
         form="RPM or OPERATION:RPM",
         example="8000,DRILL:1200",
     ),
     "missing_feed": RunSetting(
-        "Feed of cuts and holes that have none in the CL file, mm/min; with MMPR behind it mm a revolution, such as "
-        "the pitch of a thread.",
+        "Feed of cuts and holes that have none in the CL file, mm/min; with MMPR behind it mm a revolution. A tap "
+        "takes its pitch alone, such as TAP:1.25MMPR.",
         form="MM_MIN or OPERATION:MM_MIN",
         example="300,TAP:1.25MMPR",
     ),

@@ -17,8 +17,11 @@ _KEY: Final = "missing_feed"
 _PER_REVOLUTION: Final = "MMPR"
 _PER_MINUTE: Final = "MMPM"
 
-#: The feeds that it takes, mm/min or mm a revolution.
+#: The feeds that it takes, mm/min.
 _BOUNDS: Final = (1e-3, 99_999.0)
+
+#: The greatest that it takes per revolution, mm: metric threads have pitches up to 8, and no cutter bears more.
+_MOST_PER_REVOLUTION: Final = 10.0
 
 
 def with_stated_feeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> list[Toolpath]:
@@ -41,12 +44,19 @@ def with_stated_feeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]
 
 
 def _feed(text: str) -> tuple[float, bool] | None:
-    """Return a feed, and whether it is per revolution."""
+    """Return a feed, and whether it is per revolution.
+
+    Raises ``InputError`` for one per revolution that no tool bears, as of a feed per minute that ends in MMPR.
+    """
     per_rev = text.endswith(_PER_REVOLUTION)
     try:
         feed = float(text.removesuffix(_PER_REVOLUTION))
     except ValueError:
         return None
+    if per_rev and feed > _MOST_PER_REVOLUTION:
+        raise InputError(
+            setting_problem(_KEY, Wording("ARG220", "beyond_revolution", value=text, most=_MOST_PER_REVOLUTION))
+        )
     return (feed, per_rev) if _BOUNDS[0] <= feed <= _BOUNDS[1] else None
 
 
@@ -72,7 +82,8 @@ def _fed(operation: Operation, stated: tuple[float, bool] | None) -> Operation:
     word = _PER_REVOLUTION if per_rev else _PER_MINUTE
     events = [
         replace(event, values=(*event.values, (word, (feed,))))
-        if isinstance(event, CycleOn) and _lacks_own(operation, event)
+        # A feed per minute would be a pitch that changes with the speed.
+        if isinstance(event, CycleOn) and _lacks_own(operation, event) and (per_rev or "TAP" not in event.mode)
         else event
         for event in operation.events
     ]

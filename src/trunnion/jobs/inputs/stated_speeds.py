@@ -11,10 +11,14 @@ from trunnion.errors import InputError, setting_problem
 from trunnion.jobs.inputs.stated_by_operation import check_operations, stated_by_operation
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Event, Kind, LoadTool, Operation, Sense, SpindleOff, SpindleOn, Toolpath
+from trunnion.output.validation.spindle import ToolInSpindle
 
 #: The setting, and the speeds that it takes, rev/min.
 _KEY: Final = "spindle"
 _BOUNDS: Final = (1.0, 500_000.0)
+
+#: What the spindle does before the first operation.
+_STANDS: Final = SpindleOff(0, 0)
 
 
 def stated_speeds(settings: Mapping[str, str]) -> dict[str, float]:
@@ -35,31 +39,45 @@ def _speed(text: str) -> float | None:
 
 
 def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> list[Toolpath]:
-    """Turn the spindle on in operations that cut while it stands, at the speeds that settings state.
+    """Turn the spindle on at the speeds that settings state: that of an operation in it alone, and the one without a
+    name in all others that have none of their own.
 
     Raises ``InputError`` for the speed of an operation that is not there, or has a SPINDL of its own before its first
     cut.
     """
-    speeds, found, turns = stated_speeds(settings), list[Toolpath](), False
+    speeds, found = stated_speeds(settings), list[Toolpath]()
     if not speeds:
         return [*toolpaths]
+    running: SpindleOn | SpindleOff = _STANDS
+    tool = ToolInSpindle()
     for toolpath in toolpaths:
         operations = list[Operation]()
         for operation in toolpath.operations:
-            states = operation.name in speeds
-            turns, own = _turning_at_first_cut(operation, turns)
-            if states and own:
+            before, tool = tool, tool.then(operation)
+            at_cut = _at_first_cut(operation, running)
+            own = at_cut is not running and isinstance(at_cut, SpindleOn)
+            if own and operation.name in speeds:
                 said = Wording("ARG230", "states_own_speed", operation=operation.name)
                 raise InputError(setting_problem(_KEY, said))
-            speed = speeds.get(operation.name, None if turns else speeds.get(""))
+            speed = speeds.get(operation.name)
+            if speed is None and not own and _first_cut(operation) < len(operation.moves):
+                speed = _speed_of_others(speeds, at_cut, tool.is_another(before))
             new = operation if speed is None else _turning(operation, speed)
             operations.append(new)
-            for event in new.events:
-                if isinstance(event, SpindleOn | SpindleOff):
-                    turns = isinstance(event, SpindleOn)
+            running = next((each for each in reversed(new.events) if isinstance(each, SpindleOn | SpindleOff)), running)
         found.append(replace(toolpath, operations=tuple(operations)))
     check_operations(_KEY, speeds, found)
     return found
+
+
+def _speed_of_others(speeds: Mapping[str, float], at_cut: SpindleOn | SpindleOff, another_tool: bool) -> float | None:
+    """Return the speed of all others, for an operation that has none of its own; None if it goes on with its tool at
+    the speed of the CL file, or at that same speed.
+    """
+    speed = speeds.get("")
+    if speed is None or another_tool or isinstance(at_cut, SpindleOff):
+        return speed
+    return speed if at_cut.stated and _turned_on(0, 0, speed) != replace(at_cut, row=0, line=0) else None
 
 
 def _first_cut(operation: Operation) -> int:
@@ -68,16 +86,11 @@ def _first_cut(operation: Operation) -> int:
     return int(np.argmax(cuts)) if cuts.any() else len(cuts)
 
 
-def _turning_at_first_cut(operation: Operation, turns: bool) -> tuple[bool, bool]:
-    """Return whether the spindle turns at the first cut, and whether the operation itself turned it on before.
-
-    Without a cut it turns: nothing is to be stated.
-    """
-    first, own = _first_cut(operation), False
-    for event in operation.events:
-        if isinstance(event, SpindleOn | SpindleOff) and event.row <= first:
-            turns = own = isinstance(event, SpindleOn)
-    return turns or first == len(operation.moves), own
+def _at_first_cut(operation: Operation, running: SpindleOn | SpindleOff) -> SpindleOn | SpindleOff:
+    """Return what the spindle does at the first cut, where ``running`` is what it does before the operation."""
+    first = _first_cut(operation)
+    switches = [each for each in operation.events if isinstance(each, SpindleOn | SpindleOff) and each.row <= first]
+    return switches[-1] if switches else running
 
 
 def _turning(operation: Operation, speed: float) -> Operation:
@@ -86,5 +99,8 @@ def _turning(operation: Operation, speed: float) -> Operation:
     loads = [k for k, event in enumerate(events) if isinstance(event, LoadTool) and event.row <= first]
     at = loads[-1] + 1 if loads else 0
     row, line = (events[loads[-1]].row, events[loads[-1]].line) if loads else (0, operation.line)
-    on = SpindleOn(row, line, abs(speed), Sense.CCLW if speed < 0.0 else Sense.CLW)
-    return replace(operation, events=tuple(chain(events[:at], (on,), events[at:])))
+    return replace(operation, events=tuple(chain(events[:at], (_turned_on(row, line, speed),), events[at:])))
+
+
+def _turned_on(row: int, line: int, speed: float) -> SpindleOn:
+    return SpindleOn(row, line, abs(speed), Sense.CCLW if speed < 0.0 else Sense.CLW, stated=True)

@@ -92,7 +92,7 @@ def project_text(
     stated = [f"{OWN_KEYS[key]} = {written(_of_key(key, value))}" for key, value in given.items() if key in OWN_KEYS]
     stated += [f"{key} = {written(value)}" for key, value in keys.items()]
     others = [f"{written_key(key)} = {written(value)}" for key, value in given.items() if key not in OWN_KEYS]
-    comments = [f"# {each}" for each in head]
+    comments = [_printable(f"# {each}") for each in head]
     if asked:
         comments.append("# First write values for the words in capitals, and take the # from what you decide so.")
     return "\n".join([*comments, *stated, *own, "", "[settings]", *others, *table, ""])
@@ -129,5 +129,8 @@ def _reason(problem: Problem, others: int) -> str:
     more = f", and {counted(others, 'message')} like it" if others else ""
     place = f"line {problem.line}: " if problem.line else ""
     cure = f"; {problem.cure}" if problem.cure else ""  # which has the conditions of what it offers
-    text = f"# {place}{problem.severity}: {problem.what}{more}{cure} [{problem.code}]"
+    return _printable(f"# {place}{problem.severity}: {problem.what}{more}{cure} [{problem.code}]")
+
+
+def _printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else "?" for letter in text)

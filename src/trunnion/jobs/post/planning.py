@@ -287,7 +287,9 @@ def _of_program(
     program: Program, observer: Observer, known: Sequence[Problem] = ()
 ) -> tuple[list[Problem], list[Problem]]:
     """Return warnings about a program that are not known yet, which have been reported, and errors."""
-    problems = [problem for problem in merge_repeated(check_program(program)) if problem not in known]
+    problems = [
+        problem for problem in merge_repeated(with_operations(check_program(program), program)) if problem not in known
+    ]
     found = [problem for problem in problems if problem.severity is not Severity.ERROR]
     observer.problems(found)
     return found, _errors_of(problems)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Final
 
-from trunnion.errors import Problem
+from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording, phrase, settings_in_cure
 from trunnion.output.program import Program
 
@@ -40,6 +40,17 @@ def entries_to_fill(problem: Problem, operation: str) -> list[tuple[str, str]]:
     return found
 
 
+def unnamed_operations(problems: Iterable[Problem]) -> tuple[str, ...]:
+    """Return the names of operations that settings are wanted for, and that none can name."""
+    named = [
+        str(each.wording.parameter("operation") or "")
+        for each in problems
+        if each.severity is Severity.ERROR
+        and any(value.startswith(OPERATION) for _, value in settings_in_cure(each.wording))
+    ]
+    return tuple(dict.fromkeys(name for name in named if _PARTING & set(name)))
+
+
 def with_operations(errors: Iterable[Problem], program: Program) -> list[Problem]:
     """Return errors that know the name of their operation, where their cures name settings of one."""
     return [
@@ -53,7 +64,8 @@ def with_operations(errors: Iterable[Problem], program: Program) -> list[Problem
 
 
 def settings_to_fill(errors: Sequence[Problem], file: str) -> list[Problem]:
-    """Return a message with the settings of operations that are missing, where more than one is; else none.
+    """Return a message with the settings of operations that are missing, where more than one is; and one with those
+    operations that no setting can name.
 
     errors  that know their operations
     file    that the message is about
@@ -63,10 +75,13 @@ def settings_to_fill(errors: Sequence[Problem], file: str) -> list[Problem]:
         for name, value in entries_to_fill(error, str(error.wording.parameter("operation") or "")):
             if ":" in value and value not in lacking.setdefault(name, []):
                 lacking[name].append(value)
+    unnamed = unnamed_operations(errors)
+    found = [Problem(file, 0, Wording("CTL570", "operation_not_to_name", names=unnamed))] if unnamed else []
     if sum(map(len, lacking.values())) < 2:
-        return []
+        return found
     settings = _stated((name, ",".join(values)) for name, values in lacking.items() if values)
-    return [Problem(file, 0, Wording("CTL570", "settings_of_operations", count=len(settings), settings=settings))]
+    gathered = Wording("CTL570", "settings_of_operations", count=len(settings), settings=settings)
+    return [*found, Problem(file, 0, gathered)]
 
 
 def _stated(settings: Iterable[tuple[str, str]]) -> tuple[Wording, ...]:

@@ -1,71 +1,12 @@
-"""What an operation needs at its start: a spindle speed, a tool, templates for its machining mode, a tolerance."""
-
-from itertools import pairwise
-
-import numpy as np
+"""What an operation needs at its start: a tool, templates for its machining mode, a tolerance."""
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
-from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation, SpindleOff, SpindleOn
+from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation
 from trunnion.output.program import Program
-
-
-def spindle_problems(program: Program, operation: Operation, turns: bool | None) -> list[Problem]:
-    """Refuse the first cut of an operation for which the spindle stands: before the first SPINDL, or after SPINDL/OFF.
-
-    A check of the program without its CL files would fail it as well. An operation without a speed is warned of.
-
-    ``turns`` is whether the spindle turns when the operation begins, by the operations before; None: no SPINDL yet.
-    """
-    switches = [event for event in operation.events if isinstance(event, SpindleOn | SpindleOff)]
-    for event, following in pairwise([None, *switches, None]):
-        start = event.row if event else 0
-        on = turns if event is None else isinstance(event, SpindleOn)
-        cuts = operation.moves.kind[start : following.row if following else None] != Kind.RAPID
-        if on or not cuts.any():
-            continue
-        if program.effective_setting("standing_spindle") != "allowed":
-            line = int(operation.moves.line[start + int(np.argmax(cuts))])
-            return [
-                Problem(
-                    program.file_of(operation),
-                    line,
-                    Wording("CTL510", "operation_cuts_while", operation=operation.name)
-                    if event is None and turns is None
-                    else Wording("CTL510", "operation_cuts_while_spindle", operation=operation.name),
-                )
-            ]
-        break
-    if turns is None and not any(isinstance(event, SpindleOn) for event in switches):
-        return [
-            warning(
-                program.file_of(operation),
-                operation.line,
-                Wording("CTL520", "operation_no_spindle", operation=operation.name),
-            )
-        ]
-    return []
-
-
-def other_speed_problems(program: Program, operation: Operation, before: str, number: int) -> list[Problem]:
-    """Warn of an operation that changes the tool, and cuts with the spindle speed of the one before.
-
-    ``before`` is the name of that, empty if its spindle stands; ``number`` that of the tool, 0 if there was none.
-    """
-    loads = [event for event in operation.events if isinstance(event, LoadTool) and event.row == 0]
-    speeds = [event.row for event in operation.events if isinstance(event, SpindleOn)]
-    cuts = np.flatnonzero(operation.moves.kind != Kind.RAPID)
-    if not (before and loads and number not in (0, loads[0].number) and len(cuts)) or (speeds and speeds[0] <= cuts[0]):
-        return []
-    return [
-        warning(
-            program.file_of(operation),
-            loads[0].line,
-            Wording("CTL520", "operation_loads_tool", operation=operation.name, number=loads[0].number, before=before),
-        )
-    ]
+from trunnion.output.validation.spindle import cycle_rows
 
 
 def tool_problems(program: Program, operation: Operation, in_spindle: str) -> list[Problem]:
@@ -111,13 +52,8 @@ def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
 
 def _is_of_holes(operation: Operation) -> bool:
     """Whether an operation makes holes by cycles, and cuts nothing between them."""
-    between, is_open = np.ones(len(operation.moves), np.bool_), False
-    for event in operation.events:
-        if isinstance(event, CycleOn | CycleOff):
-            is_open = isinstance(event, CycleOn)
-            between[event.row :] = not is_open
-    cuts = operation.moves.kind != Kind.RAPID
-    return not between.all() and not bool((cuts & between).any())
+    in_cycle = cycle_rows(operation)
+    return bool(in_cycle.any()) and not bool(((operation.moves.kind != Kind.RAPID) & ~in_cycle).any())
 
 
 def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:

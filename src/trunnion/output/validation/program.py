@@ -13,13 +13,12 @@ from trunnion.output.validation.machine import machine_problems
 from trunnion.output.validation.operations import (
     machining_mode_problems,
     next_axis_problems,
-    other_speed_problems,
     plane_entry_problems,
-    spindle_problems,
     tolerance_problems,
     tool_problems,
 )
 from trunnion.output.validation.orientation import normal_problems, tool_vector_problems
+from trunnion.output.validation.spindle import SpindleSpeeds
 from trunnion.output.validation.texts import text_problems
 from trunnion.output.validation.without_tcp import problems_without_tcp
 from trunnion.planning.holes.cycles import SpindleState, SpindleStates
@@ -29,9 +28,8 @@ def check_program(program: Program) -> list[Problem]:
     """Return what the program would lack, and what the control would reject; errors mean not to write it."""
     problems: list[Problem] = []
     tool_in_spindle = ""
-    turns: bool | None = None  # whether the spindle does; None until the first SPINDL
     rpm: float | None = None
-    before, number = "", 0  # the operation before, and its tool
+    speeds = SpindleSpeeds(program)
     # A spindle that stands is refused by itself, unless it may: what cycles need of it is asked only then.
     may_stand = program.effective_setting("standing_spindle") == "allowed"
     spindle = None if may_stand else SpindleState(1.0, Sense.CLW)
@@ -51,16 +49,9 @@ def check_program(program: Program) -> list[Problem]:
             problems += event_problems(program, motion, event, turning, registers)
             rpm = event.rpm if isinstance(event, SpindleOn) else None if isinstance(event, SpindleOff) else rpm
         problems += _motion_problems(program, motion)
-        rejected = program.control.family.validate_operation(operation, turns is not None)
+        rejected = program.control.family.validate_operation(operation, speeds.turns is not None)
         problems += [Problem(program.file_of(operation), line, why.wording) for line, why in rejected]
-        problems += spindle_problems(program, operation, turns)
-        problems += other_speed_problems(program, operation, before if turns else "", number)
-        before, number = operation.name, loads[-1].number if loads else number
-        for event in operation.events:
-            if isinstance(event, SpindleOn):
-                turns = True
-            elif isinstance(event, SpindleOff) and turns:
-                turns = False
+        problems += speeds.problems_of(operation)
         if not motion.starts_operation:
             problems += next_axis_problems(program, motion)
             continue

@@ -10,7 +10,7 @@ from typing import Final
 from trunnion.controls.words import NumberFormat
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Sense
-from trunnion.output.shared.spindle import cycle_dwell_seconds, running_spindle
+from trunnion.output.shared.spindle import cycle_dwell_seconds, running_spindle, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
 
 Formats = Mapping[str, NumberFormat]
@@ -170,14 +170,13 @@ def _tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinit
     """Without a floating holder: the pitch has the sign of the thread's hand."""
     if cycle.dwell:
         raise HoleCycleError(Wording("CTL350", "dwell_bottom_thread"))
-    running = running_spindle(spindle, "CYCLE/TAP")
+    pitch, running = thread(cycle, spindle)
     low, high = _heights(cycle, top)
-    pitch = _feed(cycle, running) / running.rpm
     return 207, "RIGID TAPPING NEW", {**low, 239: pitch if running.sense is Sense.CLW else -pitch, **high}
 
 
 def _floating_tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
-    running_spindle(spindle, "CYCLE/TAP")
+    thread(cycle, spindle)
     low, high = _heights(cycle, top)
     return 206, "TAPPING NEW", {**low, 206: _feed(cycle, spindle), **_dwell(cycle, spindle), **high}
 
