@@ -192,8 +192,9 @@ CYCLE_PARAMETERS: Final = {
 #: Q parameters that newer software has added to cycles, or that some machines leave out. Any other belongs to none.
 CYCLE_OPTIONS: Final = {
     200: (395,),
-    202: (357,),
+    202: (336, 357),
     203: (395,),
+    204: (336,),
     205: (208, 253, 373, 379, 395),
     208: (342, 351, 370),
     209: (336, 403),
