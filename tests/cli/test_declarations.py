@@ -28,7 +28,7 @@ def test_every_command_is_carried_out_by_a_function() -> None:
 
 
 def test_every_command_has_two_examples_that_are_understood() -> None:
-    assert [job.name for job in JOBS.values() if len(job.examples) != 2] == []
+    assert [job.name for job in JOBS.values() if len(job.examples) < 2] == []
 
 
 def test_an_option_has_one_name_in_the_library_for_one_flag() -> None:

@@ -120,7 +120,7 @@ def imported_by(words: list[str], folder: Path) -> set[str]:
 
 
 def test_numba_is_imported_before_what_would_import_it_many_calls_deeper() -> None:
-    script = "import sys\nimport trunnion.cli.post_files\nprint(*sys.modules)"
+    script = "import sys\nimport trunnion.cli.startup\nprint(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     imported = done.stdout.split()
     assert imported.index("numba") < imported.index("trunnion.cl")

@@ -1,6 +1,4 @@
-"""``trunnion post``: CL files, a project, or either of them again and again.
-
-It reads its first CL file in a thread while the planner, the writers and the readers are imported.
+"""``trunnion post`` reads its first CL file in a thread while the planner, the writers and the readers are imported.
 
 Reading first and importing afterwards lengthens the post of a million points by a tenth (2.60 to 2.86 s on the machine
 where this was measured).
@@ -17,25 +15,11 @@ from typing import TYPE_CHECKING
 import trunnion.jit
 from trunnion.cl.read import ClReading
 from trunnion.cli.cl_files import begin_reading, spline_tolerance
-from trunnion.cli.command_line.post_mistakes import names_project
 from trunnion.jobs.job import Given
 
 if TYPE_CHECKING:  # imported while the first CL file is read
     from trunnion.files import OutputGroup
     from trunnion.jobs.observer import Observer
-
-
-def run(given: Given) -> int:
-    """Post every CL file, or a project; or watch them."""
-    if given.watch:
-        from trunnion.cli.watch import run as watch
-
-        return watch(given)
-    if names_project(given.cl):
-        from trunnion.cli.project import run as post_project
-
-        return post_project(given)
-    return post_files(given)
 
 
 def post_files(given: Given, group: "OutputGroup | None" = None, observer: "Observer | None" = None) -> int:

@@ -85,7 +85,7 @@ _POST: Final = job(
     ),
     BODIES.under(_SIMULATING),
     CUTTING.under(_SIMULATING),
-    run="post_files:run",
+    run="startup:run",
     guards=True,
     examples=[
         ("trunnion post part.cls --machine yl569 --output part.mpf", "one proven program"),
