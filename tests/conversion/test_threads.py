@@ -173,7 +173,7 @@ def test_the_other_control_taps_with_its_own_cycle(machine: str, to: str, tmp_pa
         ("mikron_600u", RIGID_KLARTEXT.format(pitch="-1.5")),
         ("yl569", "CYCLE84(10,0,3,-20,,,3,,-1.5,0,500,500)"),
         ("matsuura_mx330", "M29 S500\nG98 G74 X10. Z-20. R3. F750."),
-        ("xyzac_trt", "G98 G74 X10 Z-20 R3 F750 P0"),
+        ("xyzac_trt", "M4\nG98 G74 X10 Z-20 R3 F750 P0\nX20\nG80\nM3\nG0"),
     ],
 )
 def test_a_left_hand_thread_keeps_its_hand(machine: str, cycle: str, tmp_path: Path) -> None:
