@@ -275,6 +275,15 @@ def test_a_wrong_writer_is_found(body: Body, tmp_path: Path, monkeypatch: pytest
     assert isinstance(writer.toolpath.operations[0].events[0], SpindleOn)
 
 
+def test_a_stated_speed_reads_back_as_one_of_the_file(body: Body, tmp_path: Path) -> None:
+    operation = body("SPINDL/RPM,9,CLW", "FEDRAT/MMPM,1", "GOTO/0,0,0")
+    stated = tuple(replace(each, stated=True) if isinstance(each, SpindleOn) else each for each in operation.events)
+    writer, sink = CatiaWriter(Toolpath("a", (replace(operation, events=stated),))), io.BytesIO()
+    writer.write(sink)
+    (tmp_path / "again").write_bytes(sink.getvalue())
+    assert not [*read_back_problems(writer.toolpath, tmp_path / "again", "catia")]
+
+
 FILES = sorted(path for each in ("creo", "nx", "solidworks") for path in (SHARED / "data" / each).glob("*"))
 
 

@@ -37,7 +37,10 @@ def error_of(command: list[str], capsys: pytest.CaptureFixture[str]) -> str:
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        (["--cl", "a.cls", "b.cls"], "trunnion verify: error: 'b.cls' is one argument too many; name files before the options"),
+        (
+            ["--cl", "a.cls", "b.cls"],
+            "trunnion verify: error: 'b.cls' is one argument too many; name files before the options",
+        ),
         (["--accept"], "trunnion verify: error: --accept is no option of this command; trunnion test has it; trunnion"),
         (["--edge", "x"], "'x' is not a cutting edge; write its D number, such as 1"),
     ],

@@ -186,14 +186,14 @@ def _said(
 
 
 def _content(event: Event) -> tuple[object, ...]:
-    """Return what an event says, without its place."""
+    """Return what an event says, without its place, and without who said it."""
     if isinstance(event, CycleOn):
         return ("CycleOn", *_cycle(event))
     if isinstance(event, UnknownStatement):
         return ("UnknownStatement", "".join(event.text.replace("$", "").split()))
     if isinstance(event, From | GoHome):
         return (type(event).__name__, *_vectors(event))
-    values = (getattr(event, field.name) for field in fields(event) if field.name not in ("row", "line"))
+    values = (getattr(event, field.name) for field in fields(event) if field.name not in ("row", "line", "stated"))
     return (type(event).__name__, *values)
 
 
