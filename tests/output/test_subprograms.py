@@ -161,6 +161,7 @@ def test_a_program_in_several_files_does_what_it_does_in_one(
     assume(made is not None)
     assert made is not None
     one, several = made
+    assume("NC343" not in {each.code for each in one.errors})  # a CUTCOM that changes sides without a way between
     run = several.run(machine)
     assert run.errors == one.errors == ()
     found = compare(without_words(one), without_words(run), 1e-9)
