@@ -225,7 +225,9 @@ def test_a_command_that_is_ended_leaves_nothing_half_written(name: str, tmp_path
     """It is stopped where the hidden folder of its program is there: this one plans for ever."""
     arguments = ["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]
     script = f"""
-import sys, time
+import signal, sys, time
+if signal.getsignal(signal.{name}) is signal.SIG_IGN:  # as nohup leaves it
+    signal.signal(signal.{name}, signal.SIG_DFL)
 import trunnion.jobs.post.posting, trunnion.cli
 trunnion.jobs.post.posting.plan_program = lambda *_: time.sleep(600)
 sys.argv[1:] = {arguments!r}
