@@ -55,7 +55,8 @@ def check_tool(context: ComparedContext) -> Check:
     places += _foreign_deltas(context)
     places += wrong_unnumbered_tools(context, states)
     tools = tuple(Wording("tool", "named", tool=name) for name in dict.fromkeys(names[0] for names in asked))
-    good, missing = Wording("tool", "good", tools=tools), ()
+    good = Wording("tool", "good", tools=tools)
+    missing: tuple[Wording, ...] = ()
     if not tools:
         described = {each.operation.tool for each in context.expected.sections if is_described(each.operation.tool)}
         good = Wording("tool", "told_apart", count=len(described)) if described else Wording("tool", "none_asked")
