@@ -61,6 +61,13 @@ CURES: Final = (
         ("CUTCOM/RIGHT\n", "CUTCOM/OFF\nGOTO/25,9,5\nCUTCOM/RIGHT\n"),
         on="xyzac_trt",
     ),
+    _said(
+        "CTL220",
+        "cutcom_changes_side",
+        _COMPENSATED.replace("GOTO/20,30", "CUTCOM/RIGHT\nGOTO/20,30"),
+        ("CUTCOM/RIGHT\n", "CUTCOM/OFF\nGOTO/25,9,5\nCUTCOM/RIGHT\n"),
+        on="dmu65",
+    ),
     Cure("PLN125", "axis_would_go", post("yl569"), _WIDE, (), cured_by=post("generic_head_head_ca")),
     _within("CTL230", "cutcom_names_register", "CUTCOM/LEFT,XYPLAN,7", "CUTCOM/LEFT,XYPLAN", on="dmu65"),
     _within("CTL430", "gohome_before_operation", "GOHOME", ""),
