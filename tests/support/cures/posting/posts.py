@@ -51,7 +51,11 @@ _SIDES: Final = (
 )
 _WIDE: Final = HEAD + "GOTO/300,0,5\nGOTO/-300,0,5\n" + FOOT
 
+_FLIPPED: Final = LEANING + "GOTO/10.1,0.0,5.0,0.6,0.0,0.8\n" + FOOT
+
 CURES: Final = (
+    _said("NC390", "too_slow_for_feed", _FLIPPED, {"lower_feed": "yes"}),
+    _said("NC390", "too_slow_for_feed", _FLIPPED, {"feed": "fastest"}),
     _said("CTL220", "cutcom_where_tool", _SIDES, {"mode": "OP1:tilted"}, mode="tcp"),
     _said("CTL220", "cutcom_where_tool", _SIDES, ("CUTCOM/LEFT,XYPLAN\n", ""), ("CUTCOM/OFF\n", ""), mode="tcp"),
     _said(
