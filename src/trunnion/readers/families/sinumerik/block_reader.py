@@ -172,6 +172,7 @@ class BlockReader:
                 # M2=3 and S2=100 address spindle 2; only the master spindle is simulated.
                 text = f"M{extension}={_code(number, 'M')}" if letter == "M" else f"S{extension}="
                 self._note(Wording("NC221", "speaks_another_spindle_not_followed", text=text), Severity.WARNING)
+                block.said.append((letter, f"{extension}={number:g}"))
             case "G", "":
                 block.g.append(_code(number, "G"))
             case "M", _:
@@ -247,11 +248,7 @@ class BlockReader:
                 keep_value(block, name, value)
                 block.said.append((name, f"{axis}={value}"))
         elif name == "SPOS" and follows in ("=", "["):
-            if follows == "[":
-                _skip(reader, "[", "]")
-            reader.expect("=")
-            value, _ = self._value(reader)
-            block.words.append("SPOS")
+            self._spindle_position(reader, block)
         elif name in NOT_SIMULATED:
             self._subprograms(reader, name)
         elif follows in ("=", "["):
@@ -274,6 +271,18 @@ class BlockReader:
             raise ExpressionError(Wording("NC210", "word_needs_value", word=name))
         else:
             block.calls.append(read_call(reader, name))
+
+    def _spindle_position(self, reader: ExpressionReader, block: Block) -> None:
+        """Read where SPOS turns the spindle; another one is not followed."""
+        spindle = _skip(reader, "[", "]") if reader.peek() == "[" else ""
+        reader.expect("=")
+        value = as_number(self._value(reader)[0])
+        block.said.append(("SPOS", f"{spindle}={value:g}"))
+        if spindle in ("", "[0]", "[1]"):
+            block.words.append("SPOS")
+        else:
+            text = f"SPOS{spindle}="
+            self._note(Wording("NC221", "speaks_another_spindle_not_followed", text=text), Severity.WARNING)
 
     @staticmethod
     def _feed_group(reader: ExpressionReader) -> None:
