@@ -128,7 +128,9 @@ class WordInterpreter(Rs274Interpreter[A]):
     def _call_tool(self, block: Block) -> None:
         tool = block.take("T")
         if tool is not None:
-            self.control.select_tool(f"{tool:g}")
+            if tool < 0.0 or tool != int(tool):
+                raise BlockError(Wording("NC215", "no_number_of_tool", tool=tool))
+            self.control.select_tool(f"{tool:.15g}")
 
     def _late_words(self, codes: Sequence[Word]) -> Sequence[Word]:
         """Return the M codes that act after the motion of their block."""

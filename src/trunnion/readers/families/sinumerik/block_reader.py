@@ -164,7 +164,7 @@ class BlockReader:
         if (extension == "" or (master_spindle and letter in "TS")) and (held := _HELD.get(letter)):
             self._once(letter, getattr(block, held) is not None)
         if letter == "T" and master_spindle:
-            block.tool = value if isinstance(value, str) else f"{value:.10g}"
+            block.tool = value if isinstance(value, str) else f"{_code(as_number(value), 'T')}"
             return
         number = as_number(value)
         match address:
