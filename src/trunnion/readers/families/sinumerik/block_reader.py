@@ -270,7 +270,7 @@ class BlockReader:
         elif name in ACTIVE and name not in ("MSG", "SETAL"):
             raise ExpressionError(Wording("NC210", "word_needs_value", word=name))
         else:
-            block.calls.append(read_call(reader, name))
+            block.calls.append(read_call(reader, name, variables))
 
     def _spindle_position(self, reader: ExpressionReader, block: Block) -> None:
         """Read where SPOS turns the spindle; another one is not followed."""
@@ -337,8 +337,8 @@ class BlockReader:
             self._note(Wording("NC223", "no_definition", name=name), Severity.ERROR)
 
 
-def read_call(reader: ExpressionReader, name: str) -> Call:
-    """Read the arguments of a call, after its name."""
+def read_call(reader: ExpressionReader, name: str, variables: Variables) -> Call:
+    """Read the arguments of a call, after its name; a whole field has no value."""
     if reader.peek() != "(":
         return Call(name)
     active = Call(name)
@@ -349,6 +349,9 @@ def read_call(reader: ExpressionReader, name: str) -> Call:
         start = reader.at
         if reader.peek() in (",", ")"):
             active.arguments.append(None)
+        elif reader.peek(1) in (",", ")") and variables.size(reader.peek()):
+            active.arguments.append(None)
+            reader.at += 1
         else:
             active.arguments.append(reader.value())
         active.argument_texts.append(_text(reader.tokens, start, reader.at))
