@@ -87,7 +87,9 @@ def test_other_words_are_other_kinds() -> None:
 def test_other_names_are_other_kinds_in_lists_and_in_what_ends_a_program() -> None:
     wordings = [Wording("NC132", "unknown_or_missing", call=f"SUB{k % 2}") for k in range(6)]
     wordings += [Wording("NC220", "known_not_simulated", words=f"{word} [ X ] = {k}") for k, word in enumerate("FLFV")]
-    wordings += [Wording("NC211", "unknown_extended_word", letter="V", extension=str(k % 2), number=k) for k in (1, 2, 3)]
+    wordings += [
+        Wording("NC211", "unknown_extended_word", letter="V", extension=str(k % 2), number=k) for k in (1, 2, 3)
+    ]
     found, left = first_of_kinds([Problem("a.nc", 1 + k, each) for k, each in enumerate(wordings)], 10)
     assert ([each.line for each in found], left) == ([1, 2, 7, 8, 10, 11, 12], 0)
     tally = ErrorTally()

@@ -355,7 +355,9 @@ class Flow:
                 if given is None or not by_name or not variables.take_variable(kind, name, place):
                     variables.define(kind, name, default if given is None else given)
                     if by_name and given is not None:
-                        fault = Wording("NC220", "variable_comes_back", name=name, given=variables.argument_texts[place])
+                        fault = Wording(
+                            "NC220", "variable_comes_back", name=name, given=variables.argument_texts[place]
+                        )
                         self._note(fault, Severity.ERROR)
             place += 1
             reader.accept(",")
