@@ -145,7 +145,7 @@ def test_m52_is_a_warning(run: Runner) -> None:
 
 def arcs_of(poles: Floats) -> list[tuple[Floats, ...]]:
     """Begin, joint, end and both directions of the pairs of arcs in place of a quadratic curve."""
-    found = []
+    found = list[tuple[Floats, ...]]()
     at = np.linspace(0.0, 1.0, 13)
     points = bezier(poles, at)[:, :2]
     ways = np.array([(1 - t) * (poles[1] - poles[0]) + t * (poles[2] - poles[1]) for t in at])[:, :2]
