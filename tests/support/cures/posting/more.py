@@ -84,7 +84,7 @@ CURES: Final = (
     by_lines("CTL460 opskip_ends_operation", "OPSKIP/ON", "GOTO/20,0,5", "+ OPSKIP/OFF"),
     by_lines("CTL460 tool_axis_turns", "RAPID", "GOTO/0,0,30", "CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100", "GOTO/0,0,0",
            "OPSKIP/ON", "GOTO/5,0,0",
-           "+ OPSKIP/OFF", "GOTO/7,0,0", "GOTO/20,0,0,0.5,0,0.86602540378444", "+ OPSKIP/ON", "+ GOTO/20,3,0",
+           "+ OPSKIP/OFF", "GOTO/20,0,0,0.5,0,0.86602540378444", "+ OPSKIP/ON", "+ GOTO/20,3,0",
            "OPSKIP/OFF", "GOTO/20,5,0", "CYCLE/OFF"),
     by_lines("CTL470 new_speed_in_cut", "GOTO/20,0,5,0.5,0.0,0.8660254038", "+ RAPID", "+ GOTO/20,0,60",
            "SPINDL/RPM,7000,CLW", "+ GOTO/20,0,5",
