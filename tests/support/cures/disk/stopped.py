@@ -127,19 +127,29 @@ def _printed(*, breaks: bool) -> Trial:
     return tried
 
 
+class _Hears(logging.Handler):
+    """What is logged."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.said: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.said.append(record.getMessage())
+
+
 def _kernels(*, named: bool) -> Trial:
     """Return what seeks a folder for kernels where no other can be written to than the one that is named, if any."""
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-        real, said = tempfile.TemporaryFile, list[logging.LogRecord]()
+        real: Any = tempfile.TemporaryFile
 
         def refusing(**where: Path) -> Any:
             if folder not in where["dir"].parents:
                 raise OSError(30, "Read-only file system")
             return real(**where)
 
-        log, hears = logging.getLogger("trunnion.jit"), logging.Handler()
-        hears.emit = said.append  # type: ignore[method-assign]
+        log, hears = logging.getLogger("trunnion.jit"), _Hears()
         log.addHandler(hears)
         try:
             with (
@@ -149,9 +159,7 @@ def _kernels(*, named: bool) -> Trial:
                 found = store.cache_folder.__wrapped__()
         finally:
             log.removeHandler(hears)
-        problems = tuple(
-            Problem("", 0, foreign(each.getMessage(), code=str(each.args[-1]))) for each in said if each.args
-        )
+        problems = tuple(Problem("", 0, foreign(each, code="FIL310")) for each in hears.said if "FIL310" in each)
         return Outcome(problems, found is not None)
 
     return tried
