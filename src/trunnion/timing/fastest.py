@@ -232,7 +232,7 @@ def _within_limits(
 
 def _excess(shares: Floats) -> float:
     """By what time must be stretched for shares of speed, acceleration and jerk (3, …)."""
-    return max(float(share.max()) ** (1.0 / order) for order, share in enumerate(shares, 1)) * (1.0 + 1e-9)
+    return max(math.pow(share.max(), 1.0 / order) for order, share in enumerate(shares, 1)) * (1.0 + 1e-9)
 
 
 def _measured_shares(path: SmoothPath, rates: SquareRates, coefficients: Floats, table: Floats) -> Floats:
