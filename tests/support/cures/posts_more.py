@@ -60,9 +60,32 @@ _NORMALS: Final = HEAD.replace("0.0000,75", "5.0000,75").replace("RAPID\n", "$$ 
 _LEAN: Final = ("GOTO/40,0,5,0.5,0,0.8660254038 $$ 42.5,0,4.330127", "GOTO/50,0,5 $$ 52.5,0,4.330127")
 _CONTOUR: Final = "$$ contour data\nCUTCOM/LEFT\nGOTO/20,9,5\nGOTO/20,20,5\nCUTCOM/OFF\nGOTO/30,20,5"
 _CENTRE: Final = "CUTCOM/LEFT\nGOTO/20,9,5\nCUTCOM/OFF\nGOTO/30,9,5"
+#: Variants of CTL220 that leave out CUTCOM: where, how it is written, the machine, and the settings.
+_LEFT_OUT: Final[tuple[tuple[str, str, str, str, Mapping[str, str]], ...]] = (
+    ("cutcom_where_tool", _TILTED, "", "yl569", {"mode": "tcp"}),
+    ("cutcom_where_tool_not", LEANING, ",ZXPLAN", "yl569", {}),
+    ("cutcom_where_control", _TILTED, "", "dmu65", {"mode": "tcp"}),
+    ("cutcom_where_control_takes", HEAD, ",ZXPLAN", "dmu65", {"mode": "tcp"}),
+    ("cutter_radius_compensation", LEANING, "", "matsuura_mx330", {}),
+    ("cutter_radius_compensation_plane", HEAD, ",YZPLAN", "xyzac_trt", {}),
+    ("cutter_radius_compensation_without", LEANING, "", "dmu65", {"tcp": "off", "zero": "0,0,100"}),
+)
 _TAP: Final = "TAP,FEDTO,-10,RAPTO,3,MMPR,1"
 
 CURES: Final = (
+    *(
+        _settings(f"CTL220 {variant}", {"compensation": "OP1:left_out"},
+                  f"{head}CUTCOM/LEFT{plane}\nGOTO/20,9,5\nCUTCOM/OFF\nGOTO/30,9,5,0,0,1\n", on, **given)
+        for variant, head, plane, on, given in _LEFT_OUT
+    ),
+    _settings("CTL220 contour_not_left_out", {"compensation": "OP1:programmed"},
+              HEAD + "$$ contour data\nCUTCOM/LEFT\nGOTO/20,9,5\nGOTO/20,20,5\nCUTCOM/OFF\nGOTO/30,20,5\n",
+              compensation="left_out"),
+    _lines("CTL220 cutcom_left_out", "CUTCOM/LEFT", "GOTO/20,9,5", "CUTCOM/OFF", "GOTO/30,9,5",
+           compensation="left_out"),
+    marked("CTL320 speed_replaced", post(), "GOTO/20,0,5", head=HEAD.replace("4000.0", "0.4"), foot=FOOT,
+           spindle="OP1:400"),
+    _settings("ARG230 no_cutcom_there", {"compensation": None}, compensation="OP1:left_out"),
     _lines("CTL110 word_beyond_format", "- FEDRAT/MMPM,1e9", "+ FEDRAT/MMPM,1000", "GOTO/20,0,5", on="matsuura_mx330"),
     _lines("CTL120 line_more_bytes", "- INSERT/(MSG, " + "x" * 300 + ")", "+ INSERT/(MSG, x)", on="xyzac_trt"),
     _lines("CTL220 contour_and_centre", _CONTOUR, FOOT + _OP2.rstrip(), "- CUTCOM/LEFT", "+ CUTCOM/LEFT,7",
