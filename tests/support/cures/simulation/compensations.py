@@ -6,7 +6,7 @@ from typing import Final
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial, post
-from tests.support.cures.simulations import on
+from tests.support.cures.simulation.simulations import on
 from trunnion.compensation.centre_toolpaths import toolpaths_of_centre
 
 _CONTOUR: Final = (

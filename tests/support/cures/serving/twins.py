@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
-from tests.support.cures.projects_simulated import CL, ONE, TWO, project_written
+from tests.support.cures.projects.simulated import CL, ONE, TWO, project_written
 from tests.support.cures.reading import ended, text_of
 from tests.support.simulating import HEAD, SLOT
 from trunnion.jobs.twin import recording, serving

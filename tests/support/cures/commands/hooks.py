@@ -48,5 +48,10 @@ CURES: Final = (
         "operation.moves.feed[:1]", "operation.moves.feed * 0.8"),
     _file("HOK135 changes_operation_place", f"def on_operation(operation, context):\n    {_IN_PLACE}", _IN_PLACE,
           "return replace(operation, moves=replace(operation.moves, feed=operation.moves.feed * 0.8))"),
+    script("PLN620 step_number_below", "edit part.cls END-OF-PATH "
+           "'CYCLE/DRILL,DEEP,FEDTO,-9,RAPTO,3,STEP,4,1,1,MMPM,99\\nGOTO/50,0,0\\nCYCLE/OFF\\nEND-OF-PATH'\n"
+           f"write shop.py \"{_HEAD}def on_event(event, context):\\n    if isinstance(event, CycleOn):\\n"
+           "        return replace(event, values=(*event.values[:2], ('STEP', (4.0, -1.0, 1.0)), *event.values[3:]))\\n"
+           f"    return event\\n\"\n{_POST} --set cycles=off", "-1.0, 1.0", "1.0, 1.0"),
     _on("HOK160 hooks_leave_out", "operation", "[]", "[]", "None"),
 )  # fmt: skip

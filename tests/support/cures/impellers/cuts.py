@@ -14,8 +14,8 @@ import numpy as np
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
-from tests.support.cures.impeller_paths import built, made_of
-from tests.support.cures.impellers import IMPELLER, written
+from tests.support.cures.impellers.definitions import IMPELLER, written
+from tests.support.cures.impellers.paths import built, made_of
 from tests.support.cures.reading import ended
 from tests.support.example_impellers import EXAMPLES
 from tests.support.operations import operation_of

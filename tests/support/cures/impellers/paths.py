@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from tests.support.cures.cure import Cure, Outcome, Trial
-from tests.support.cures.impellers import IMPELLER, POINTS, written
+from tests.support.cures.impellers.definitions import IMPELLER, POINTS, written
 from tests.support.cures.reading import ended
 from tests.support.example_impellers import EXAMPLES
 from trunnion.impeller.definition import read_impeller

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
-from tests.support.cures.projects_simulated import CL, ONE, project_written
+from tests.support.cures.projects.simulated import CL, ONE, project_written
 from tests.support.cures.reading import ended
 from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.place.project import placed_setup

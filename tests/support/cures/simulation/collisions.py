@@ -9,7 +9,7 @@ import numpy as np
 
 from tests.support.cures.cure import Cure, Outcome, Trial
 from tests.support.cures.reading import ended
-from tests.support.cures.simulations import HEAD_OF_OURS, on
+from tests.support.cures.simulation.simulations import HEAD_OF_OURS, on
 from tests.support.simulating import SLOT, TOOL, cuboid
 from trunnion.errors import Problem
 from trunnion.machines import load_machine
