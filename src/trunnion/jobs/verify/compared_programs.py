@@ -104,5 +104,4 @@ def _stands_on(run: Run) -> str:
         values.append(Wording("comparison", "lengths"))
     elif machine.tool_length is not None:
         values.append(Wording("comparison", "length", length=machine.tool_length))
-    unknown = (Wording("comparison", "not_stated"),)
-    return str(Wording("comparison", "placed", program=run.files[0], values=tuple(values) or unknown))
+    return str(Wording("comparison", "placed", program=run.files[0], values=tuple(values)))
