@@ -11,6 +11,7 @@ from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, Mount
 from trunnion.messages import Wording
+from trunnion.model.mode_words import TOOL_AXIS
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
@@ -313,6 +314,7 @@ class FanucInterpreter(CycleInterpreter):
         control.set_tcp(True)
         control.set_length(True)
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
+        control.say_mode(TOOL_AXIS, self._length_word)
         control.vectors = vectors
         control.judge_mirror()
 

@@ -86,7 +86,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         outer = self._stack[-1].variables
         variables = Variables(outer.declared, outer)
         # The PROC line reads the arguments when it is executed.
-        variables.pass_arguments(call.arguments)
+        variables.pass_arguments(call.arguments, call.argument_texts)
         source, file = self._open_subprogram(path)
         assert isinstance(source, SinumerikText)
         self._stack.append(ActiveProgram(source, file, call.repeats, variables=variables))
@@ -110,7 +110,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         if token.kind is not TokenKind.NAME:
             raise ExpressionError(Wording("NC210", "name_must_follow"))
         reader.at += 1
-        active.modal = read_call(reader, token.text)
+        active.modal = read_call(reader, token.text, active.variables)
 
     def _external_call(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         in_parentheses = reader.accept("(")

@@ -327,7 +327,8 @@ class Flow:
 
     def define_parameters(self, reader: ExpressionReader, active: ActiveProgram) -> None:
         """Define the parameters of the PROC line with the arguments of the call."""
-        handed = active.variables.arguments
+        variables = active.variables
+        handed = variables.arguments
         if any(token.text == "SAVE" for token in reader.tokens[reader.at :]):
             self._note(Wording("NC220", "save_g_words_come_back"), Severity.ERROR)
         reader.at += 1
@@ -335,7 +336,7 @@ class Flow:
             return
         place = 0
         while not reader.accept(")"):
-            reader.accept("VAR")
+            by_name = reader.accept("VAR")
             kind = reader.peek()
             reader.at += 1
             if kind == "STRING":
@@ -344,9 +345,32 @@ class Flow:
             if kind not in TYPES or not name:
                 raise ExpressionError(Wording("NC210", "parameter_type_name"))
             reader.at += 1
-            reader.index()
-            default = reader.value() if reader.accept("=") else None
-            given = handed[place] if place < len(handed) else None
-            active.variables.define(kind, name, default if given is None else given)
+            if reader.peek() == "[":
+                variables.take_field(kind, name, place, _bounds(reader), copies=not by_name)
+            elif field := variables.named_field(place):
+                raise ExpressionError(Wording("NC210", "parameter_is_value", name=name, given=field))
+            else:
+                default = reader.value() if reader.accept("=") else None
+                given = handed[place] if place < len(handed) else None
+                if given is None or not by_name or not variables.take_variable(kind, name, place):
+                    variables.define(kind, name, default if given is None else given)
+                    if by_name and given is not None:
+                        fault = Wording(
+                            "NC220", "variable_comes_back", name=name, given=variables.argument_texts[place]
+                        )
+                        self._note(fault, Severity.ERROR)
             place += 1
             reader.accept(",")
+        if len(handed) > place:
+            self._note(Wording("NC215", "too_many_arguments", given=len(handed), takes=place), Severity.ERROR)
+
+
+def _bounds(reader: ExpressionReader) -> tuple[int | None, ...]:
+    """Read the size of a field that is a parameter, as in ``[3]``, ``[]`` or ``[,]``; None where it is open."""
+    reader.expect("[")
+    found = list[int | None]()
+    while True:
+        found.append(None if reader.peek() in (",", "]") else reader.integer())
+        if reader.accept("]"):
+            return tuple(found)
+        reader.expect(",")
