@@ -7,6 +7,7 @@ Without TCP the axes of a program bring the tip to its points with one zero and 
 state them, or somebody does. A cut with TCP needs neither.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,7 +29,7 @@ class ComparedProgram:
 
     program: FilePath | Run
     machine: Machine
-    subprograms: tuple[FilePath, ...]
+    subprograms: Sequence[FilePath]
     names: tuple[str, str]
 
     def run(self, machine: Machine | None = None) -> Run:
@@ -74,7 +75,7 @@ def read_both(
     zero, tool_length  for both; what a program that needs them states itself comes first. None: only that
     """
     programs = (one, two)
-    runs = [each.run() for each in programs]
+    runs = one.run(), two.run()
     by_place = [cuts_by_place(run) for run in runs]
     if not any(by_place) and zero is None and tool_length is None:
         return BothRuns(*runs)
@@ -87,7 +88,7 @@ def read_both(
         source = machines[by_place.index(True)]
         at = by_place.index(False)
         machines[at] = replace(machines[at], workpiece_zero=source.workpiece_zero, tool_length=source.tool_length)
-    placed = [program.run(machine) for program, machine in zip(programs, machines, strict=True)]
+    placed = one.run(machines[0]), two.run(machines[1])
     return BothRuns(
         *placed, tuple(map(_stands_on, (run for run, needed in zip(placed, by_place, strict=True) if needed)))
     )
