@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from contextlib import chdir
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -66,7 +66,7 @@ def _named(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     return ended(lambda: heard.extend(trunnion.post(files, machine="yl569").problems), heard)
 
 
-def _operation(**changes: object) -> Callable[[Toolpath], Toolpath]:
+def _operation(**changes: Any) -> Callable[[Toolpath], Toolpath]:
     return lambda found: replace(found, operations=tuple(replace(each, **changes) for each in found.operations))
 
 
