@@ -193,7 +193,7 @@ def settings_of(machine: Machine) -> Settings:
         kept_by=table.text("kept_by", KEPT_BY),
         variables=read_variables(table, VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
-        states_numbers="whole_numbers" in table.keys(),
+        states_numbers="whole_numbers" in table,
     )
     table.report_unread_keys()
     table.raise_problems()
