@@ -79,6 +79,23 @@ def test_holes_with_the_speed_of_another_tool_are_told(part: Path) -> None:
     assert not [each for each in found.problems if each.code == "CTL520"]
 
 
+@pytest.mark.parametrize("machine", MACHINES)
+def test_a_speed_at_which_nothing_cuts_is_replaced_and_told(part: Path, machine: str) -> None:
+    part.write_text(_only_holes("THREAD", 1, TAP).replace("RAPID", "SPINDL/RPM,0.398,CLW\nRAPID", 1))
+    found = trunnion.post(part, machine=machine, settings={"spindle": "THREAD:398"})
+    assert found.passed
+    assert [each.code for each in found.problems if "0.398" in each.what] == ["CTL320"]
+    assert found.text is not None
+    assert "S398" in found.text.replace("=", "")
+
+
+@pytest.mark.parametrize("speed", ["398", "THREAD:-398"])
+def test_a_low_speed_is_replaced_only_as_its_operation_and_sense_are_stated(part: Path, speed: str) -> None:
+    part.write_text(_only_holes("THREAD", 1, TAP).replace("RAPID", "SPINDL/RPM,0.398,CLW\nRAPID", 1))
+    with pytest.raises((InputError, RefusedError), match=r"prints as 0|turns otherwise"):
+        trunnion.post(part, machine="yl569", settings={"spindle": speed})
+
+
 def test_every_operation_without_a_speed_or_feed_is_asked_at_once(
     part: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -15,7 +15,7 @@ from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap, rotation_about, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode, RotaryTarget
 from trunnion.readers.control.event_recorder import Note
-from trunnion.readers.families.fanuc.settings import START_MODES, Settings
+from trunnion.readers.families.fanuc.settings import Settings, start_modes_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.scan.letter_blocks import letter_table
 
@@ -35,7 +35,6 @@ class FanucControl(Rs274Control):
 
     # A reset, and with it the end of a program, keeps units and stroke limits in any case (docs/reader-fanuc.md).
     kept_modes = frozenset({"units", "limits"})
-    start_modes = START_MODES
     doubtful_modes = frozenset({"distances", "plane", "feed", "compensation", "offset", "length"})
 
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
@@ -43,6 +42,7 @@ class FanucControl(Rs274Control):
         super().__init__(machine, note, shortest=shortest)
         self.settings = settings
         self.own_words = settings.words
+        self.start_modes = start_modes_of(settings.words)
         self.reset_by = f"whether a reset ends it depends on {settings.kept_by}"
         self._letter_tables = {
             (whole_feeds, vectors, turning): self._make_table(whole_feeds, vectors, turning)

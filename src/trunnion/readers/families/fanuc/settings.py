@@ -9,8 +9,8 @@ from trunnion.compensation.styles import TYPE_A, UNKNOWN_STYLE
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.mode_words import END_OF_CYCLES
-from trunnion.readers.control.start_modes import MOTION, check_start_modes
-from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
+from trunnion.readers.control.start_modes import MOTION, PLANE_OF_POSE, check_start_modes
+from trunnion.readers.families.fanuc.words import MORE_OFFSETS, NO_PLANE_OF_POSE, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.forms import read_form
 from trunnion.readers.program.settings import family_of, reading_of, unit_of
@@ -152,6 +152,13 @@ class Settings:
             block.words["P"] = Number(dwell.value / _SECONDS)
 
 
+def start_modes_of(words: WordMeanings) -> Mapping[str, str]:
+    """Return the modes with which a control starts, by the words that it has for them."""
+    if NO_PLANE_OF_POSE not in words.g.values():
+        return START_MODES
+    return {**START_MODES, PLANE_OF_POSE: words.own_text(NO_PLANE_OF_POSE)}
+
+
 def settings_of(machine: Machine) -> Settings:
     """Read the settings of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
@@ -159,12 +166,13 @@ def settings_of(machine: Machine) -> Settings:
     increment = table.number("least_increment_mm", 0.001, above=0.0)
     unit = unit_of(table)
     read_form(table, family_of(machine))
-    check_start_modes(table, START_MODES)
+    words = read_word_meanings(table, is_own_word, TABLE.meanings)
+    check_start_modes(table, start_modes_of(words))
     settings = Settings(
         numbers == "calculator",
         increment,
         unit,
-        read_word_meanings(table, is_own_word, TABLE.meanings),
+        words,
         point_is_seconds=table.text("dwells", "milliseconds", one_of=("milliseconds", "point")) == "point",
         m_codes_last=table.text("m_codes", "each", one_of=("each", "last")) == "last",
         repeat_letter=table.text("cycles_repeat_with", "K", one_of=("K", "L")),

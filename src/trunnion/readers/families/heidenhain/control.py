@@ -10,7 +10,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, Mount
 from trunnion.messages import Wording
 from trunnion.model.feed_path import FeedPath
-from trunnion.model.mode_words import TOOL_AXIS
+from trunnion.model.mode_words import FOLLOWING, TOOL_AXIS
 from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.event_recorder import Note
@@ -71,7 +71,7 @@ class HeidenhainControl(LeadControl):
 
     def limit_compensating_feed(self, feed: float | None) -> None:
         """M128 F: how fast the linear axes may follow the rotary ones, as written; None: as the machine sets it."""
-        self.say_mode("compensating motions", "" if feed is None else f"F{feed * self.feed_unit:.6g}")
+        self.say_mode(FOLLOWING, "" if feed is None else f"F{feed * self.feed_unit:.6g}")
 
     def say_tool_axis(self) -> None:
         """Record whether rotary words under TCP are positions of axes or angles in space."""
