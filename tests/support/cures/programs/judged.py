@@ -92,7 +92,7 @@ def _program(cl: str, machine: str, *settings: tuple[str, str]) -> str:
 def _edited(cl: str, machine: str, *settings: tuple[str, str], **given: Any) -> Trial:
     """Return what verifies a posted program in which a text, such as ``F5000 -> F400``, was edited; or nothing."""
 
-    def edited(text: str, _: Mapping[str, str], folder: Path) -> Outcome:
+    def edited(text: str, no_settings: Mapping[str, str], folder: Path) -> Outcome:
         (folder / "part.cls").write_text(cl, encoding="utf-8")
         program = folder / ("part.h" if machine == "dmu65" else "part.mpf")
         old, _, new = text.partition(" -> ")
