@@ -8,8 +8,8 @@ from typing import Any, Final
 import pytest
 
 import trunnion
-from tests.jobs.test_public_api import FUNCTIONS, arguments_of
 from tests.support.locations import YL569
+from tests.support.public_api import FUNCTIONS, arguments_of
 
 #: Of no type that any argument has.
 _WRONG: Final = (object(), [object()], {1: object()})

@@ -128,6 +128,7 @@ CURES: Final = (
     _in("NC224 corner_feed", "G1 X40 F100", "- Y40 RND=5", "+ Y40 RND=5 FRC=100", "X9 F200"),
     _in("NC224 corner_feed_in_no_manual", "G1 X40. F100.", "X40. Y40. ,R5.", "- X90. F50.", "+ X90. F100.", on=_FANUC),
     _in("NC224 cycle800_direct_axes_unknown", '- CYCLE800(0,"",0,192,0,0,0,20,40,0,0,0,0,1)', "G1 X10 F100"),
+    _in("NC224 number_without_point", "- G1 X10 F100.", "+ G1 X10. F100.", on=_FANUC),
     _in("NC224 smooths_path", "- G5.1 Q3 X0 Y0", "+ G5.1 Q1", "G1 X10. F100.", "+ G5.1 Q0", on=_FANUC),
     _in("NC224 traori_only_machine_knows_what", "- TRAORI(3)", "+ TRAORI", "G54", "G1 X10 F100", "TRAFOOF", "G54"),
     _in("NC224 traori_turns_basic_position", "- TRAORI(,0,1,0)", "+ TRAORI", "G54", "G1 X10 F100", "TRAFOOF", "G54"),
