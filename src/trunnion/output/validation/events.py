@@ -104,9 +104,11 @@ def _skipped_feeds(program: Program, operation: Operation) -> Iterator[Problem]:
     for on, off in pairwise(events):
         if not (isinstance(on, BlockSkip) and isinstance(off, BlockSkip) and on.on and not off.on):
             continue
-        if on.row == off.row and 0 < on.row < len(moves) and moves.feed[on.row] != moves.feed[on.row - 1]:
-            if int(moves.kind[on.row]) != Kind.RAPID:
-                yield Problem(program.file_of(operation), on.line, Wording("CTL460", "feed_alone", off=off.line))
+        row = on.row
+        if row != off.row or not 0 < row < len(moves) or int(moves.kind[row]) == Kind.RAPID:
+            continue
+        if moves.feed[row] != moves.feed[row - 1]:
+            yield Problem(program.file_of(operation), on.line, Wording("CTL460", "feed_alone", off=off.line))
 
 
 def block_skip_problems(program: Program) -> list[Problem]:
