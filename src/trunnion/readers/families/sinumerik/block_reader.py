@@ -85,13 +85,18 @@ class BlockReader:
         letter = reader.peek()
         start = reader.at
         reader.at += 1
-        extension = self._extension(reader)
-        if letter == "R" and (extension or reader.peek() == "["):
-            reader.at = start + 1
-            self._parameter(reader, variables)
-            return
-        name = letter + extension
-        value, mode = self._value(reader)
+        plain = _plain_number(reader)
+        value: Value
+        if plain is not None:
+            name, extension, value, mode = letter, "", plain, PositionMode.MODAL
+        else:
+            extension = self._extension(reader)
+            if letter == "R" and (extension or reader.peek() == "["):
+                reader.at = start + 1
+                self._parameter(reader, variables)
+                return
+            name = letter + extension
+            value, mode = self._value(reader)
         if name in self._axes:
             self._axis(block, name, as_number(value), mode)
         elif isinstance(value, str) and name != "T":
@@ -137,15 +142,10 @@ class BlockReader:
                 reader.expect(")")
                 return value, PositionMode(mode)
             return reader.value(), PositionMode.MODAL
-        sign = 1.0
-        if reader.peek() in ("+", "-"):
-            sign = -1.0 if reader.peek() == "-" else 1.0
-            reader.at += 1
-        token = reader.token
-        if token is None or token.kind is not TokenKind.NUMBER:
+        number = _plain_number(reader)
+        if number is None:
             raise ExpressionError(Wording("NC210", "number_missing"))
-        reader.at += 1
-        return sign * token.value, PositionMode.MODAL
+        return number, PositionMode.MODAL
 
     def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
         self._once(name, name in block.axes)
@@ -371,6 +371,23 @@ def _code(number: float, letter: str) -> int:
     if number != int(number) or not 0 <= number < 1e9:
         raise ExpressionError(Wording("NC210", "takes_whole_number", letter=letter))
     return int(number)
+
+
+def _plain_number(reader: ExpressionReader) -> float | None:
+    """Read a number that is the value of the letter before it; None if something else follows, which is not read.
+
+    Digits before an equals sign belong to the name of the word.
+    """
+    tokens, at, sign = reader.tokens, reader.at, 1.0
+    if at < len(tokens) and tokens[at].kind is TokenKind.SIGN and tokens[at].text in ("-", "+"):
+        sign = -1.0 if tokens[at].text == "-" else 1.0
+        at += 1
+    if at >= len(tokens) or tokens[at].kind is not TokenKind.NUMBER:
+        return None
+    if at + 1 < len(tokens) and tokens[at + 1].text == "=":
+        return None
+    reader.at = at + 1
+    return sign * tokens[at].value
 
 
 def _text(tokens: Sequence[Token], start: int, end: int | None = None) -> str:
