@@ -12,6 +12,8 @@ from typing import Any, Self
 import pytest
 
 from tests.support.locations import TESTS, YL569
+from tests.support.open_cycles import OPEN
+from tests.support.posting import FOOT, HEAD
 from trunnion.batch.worker_task import Outcome, Status
 from trunnion.batch.workers import timed_out
 from trunnion.cli import main
@@ -25,7 +27,7 @@ from trunnion.survey.found_files import FileKind, FoundFile, found_files
 from trunnion.survey.result import Became, Survey, SurveyedMachine, surveyed, trying
 from trunnion.survey.stand_ins import stand_ins
 from trunnion.survey.taking import MACHINES, take_survey
-from trunnion.survey.trying import Step, Trial, try_steps
+from trunnion.survey.trying import SETTINGS, STEP, Step, Trial, try_steps
 
 KLARTEXT = b"""0 BEGIN PGM 1 MM
 1 TOOL CALL 1 Z S1000
@@ -341,3 +343,24 @@ def test_nothing_is_decided_that_lets_through_what_is_refused() -> None:
     speed = Problem("part.cls", 3, Wording("CTL510", "operation_cuts_while", operation="OP1"))
     assert stand_ins([asks]) == {}
     assert stand_ins([asks, speed]) == {"spindle": "OP1:1000"}
+
+
+def _after(path: Path, text: str, machine: str) -> Outcome:
+    path.write_text(text)
+    return try_steps(Trial(path.name, path, machine, (Step.INFO, Step.POST, Step.SETTINGS, Step.VERIFY)))
+
+
+def test_a_file_that_cannot_be_described_without_settings_is_posted_with_stand_ins(tmp_path: Path) -> None:
+    outcome = _after(tmp_path / "part.apt", OPEN, "dmu65")
+    assert (outcome.status, outcome.figures[STEP]) == (Status.PASSED, Step.VERIFY)
+    assert list(outcome.figures[SETTINGS]) == ["open_cycle"]
+
+
+def test_a_program_is_verified_with_what_it_was_posted_with(tmp_path: Path) -> None:
+    turned = HEAD.replace("1.0000000,0.0000000\nINTOL", "-1.0000000,0.0000000\nINTOL").replace(
+        "0.0,0.0,1.0", "0.0,0.0,-1.0"
+    )
+    assert turned.count("-1.0") == 2
+    outcome = _after(tmp_path / "part.cls", turned + FOOT, "hs664rt")
+    assert (outcome.status, outcome.figures[STEP]) == (Status.PASSED, Step.VERIFY)
+    assert outcome.figures[SETTINGS] == {"frame": "absolute"}

@@ -137,7 +137,7 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, State
     columns: bool
 
 
-class DiffArguments(StatedArguments, total=False):
+class DiffArguments(SetUpArguments, StatedArguments, total=False):
     """Arguments of ``trunnion.diff``."""
 
     to_machine: MachineLike | None

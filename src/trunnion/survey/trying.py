@@ -38,6 +38,9 @@ _NAME: Final = "survey"
 _CALLS_FILE: Final = "NC132"
 _MOST_BESIDE: Final = 50_000_000
 
+#: Settings of a post that ``verify`` has as arguments, by the names of these.
+_REPEATED: Final = {"cl_units": "units", "dialect": "dialect", "frame": "frame", "cutcom": "cutcom"}
+
 #: Of an outcome: the step that it is of, and the settings or keys without which it would not have passed.
 STEP: Final = "step"
 SETTINGS: Final = "filled_in"
@@ -121,7 +124,7 @@ def try_steps(trial: Trial) -> Outcome:
             outcome = _with_keys(subject, outcome)
         warnings += outcome.warnings
         outcome = replace(outcome, figures={**outcome.figures, STEP: str(step)})
-        if outcome.status is not Status.PASSED:
+        if outcome.status is not Status.PASSED and not _is_asked_for_settings(step, trial, outcome):
             break
     if subject.asked is not None and outcome.status is Status.PASSED:
         filled = {SETTINGS: dict(subject.settings)} if subject.settings else {KEYS: dict(subject.keys)}
@@ -129,6 +132,11 @@ def try_steps(trial: Trial) -> Outcome:
         outcome = replace(outcome, problems=subject.asked.problems, figures=figures)
     told = tuple(replace(each, file=_shown(each.file, trial)) for each in outcome.problems)
     return replace(outcome, files={}, warnings=warnings, problems=told)
+
+
+def _is_asked_for_settings(step: Step, trial: Trial, outcome: Outcome) -> bool:
+    """Whether a CL file cannot even be described without settings, and is posted with stand-ins for them."""
+    return step is Step.INFO and Step.SETTINGS in trial.steps and bool(stand_ins(outcome.problems))
 
 
 def _shown(file: str, trial: Trial) -> str:
@@ -214,7 +222,8 @@ def _verified(subject: _Subject) -> Outcome:
     arguments: dict[str, Any] = {"machine": _reading(subject), "subprograms": list(subject.subprograms)}
     if subject.cl:
         proven = {name: value for name, value in subject.settings.items() if name in PROOF_SETTINGS}
-        arguments |= {"cl": [subject.cl], "settings": proven}
+        repeated = {_REPEATED[name]: value for name, value in subject.settings.items() if name in _REPEATED}
+        arguments |= {"cl": [subject.cl], "settings": proven, **repeated}
     return _worked(subject, Action.VERIFY, subject.program, arguments, "")
 
 

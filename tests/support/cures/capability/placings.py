@@ -9,6 +9,7 @@ import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
 from tests.support.cures.projects.simulated import CL, ONE, project_written
 from tests.support.cures.reading import ended
+from tests.support.program_heads import HEADS
 from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.place.project import placed_setup
 from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping
@@ -71,6 +72,17 @@ def _turned_again(turn: float, tilt: float) -> Trial:
     return lambda text, settings, folder: ended(lambda: clamped_after(Clamping(turn=90.0), (turn, tilt), "part.cls"))
 
 
+def _without_tcp(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Compare a program with TCP with itself without it; settings are the place."""
+    one, two = folder / "one.mpf", folder / "two.mpf"
+    one.write_text(text, encoding="utf-8")
+    two.write_text(text.replace("TRAORI\n", ""), encoding="utf-8")
+    given: dict[str, Any] = {key: tuple(map(float, value.split(","))) for key, value in settings.items()}
+    if "tool_length" in given:
+        given["tool_length"] = given["tool_length"][0]
+    return ended(lambda: trunnion.diff(one, two, machine="yl569", **given))
+
+
 _UNLIMITED: Final = 'extends = "ucp800"\n'
 _LIMITED: Final = _UNLIMITED + "".join(f'[[axis]]\nname = "{name}"\nlimits_mm = [-400, 400]\n' for name in "XYZ")
 _CLS: Final = _placed("part.cls", tool_length=60.0)
@@ -94,6 +106,13 @@ CURES: Final = (
     ),
     Cure(
         "PLC310", "states_part", _stated((0.0, 90.0), (0.0, 45.0)), CL, (), cured_by=_stated((0.0, 90.0), (0.0, 90.0))
+    ),
+    Cure(
+        "PLC340",
+        "place_of_cuts",
+        _without_tcp,
+        HEADS["yl569"].format(lines="TRAORI\nG1 X10. B30. F100."),
+        ({"zero": "0,0,20", "tool_length": "100"},),
     ),
     Cure("PLC320", "states_part_tilt", _turned_again(0.0, 30.0), CL, (), cured_by=_turned_again(30.0, 0.0)),
 )

@@ -4,12 +4,17 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
+from unittest.mock import patch
 
+import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial, marked, post
 from tests.support.cures.posting.rows import by_definition, by_lines, by_settings, defined, on_machine
+from tests.support.cures.reading import ended
 from tests.support.cures.scripts import script
 from tests.support.locations import ROOT
 from tests.support.posting import CLEAR, FOOT, HEAD, LEANING
+from trunnion.errors import Problem
+from trunnion.families import FAMILIES, FamilyEntry
 
 _PLACED: Final = {"tcp": "off", "zero": "0,0,100", "tool_length": "50"}
 _TURN: Final = "GOTO/11,0,5,0.0,0.5,0.8660254\n"
@@ -63,7 +68,47 @@ _CIRCLING: Final = (
     + "FEDRAT/MMPM,500.0\n"
     + "".join(f"GOTO/{k},0,5,{axis},0.8\n" for k, axis in enumerate(("0.6,0", "0,0.6", "-0.6,0", "0,-0.6", "0.6,0")))
 )
+
+
+def _unread(tried: Trial) -> Trial:
+    """Return a trial of a family of controls that has no reader."""
+
+    def posted(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+        family = "sinumerik_840d"
+        with patch.dict(FAMILIES, {family: FamilyEntry(FAMILIES[family].writer, None)}):
+            return tried(text, settings, folder)
+
+    return posted
+
+
+def _forced(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Post a CL file by force."""
+    file, heard = folder / "part.cls", list[Problem]()
+    file.write_text(text, encoding="utf-8")
+    return ended(
+        lambda: heard.extend(trunnion.post(file, machine="yl569", settings=settings, force=True).problems), heard
+    )
+
+
+def _reported(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Post a CL file by force, and write a report of it."""
+    file = folder / "part.cls"
+    file.write_text(text, encoding="utf-8")
+    return ended(lambda: trunnion.post(file, machine="yl569", force=True).write_report(folder / "report.html"))
+
+
 CURES: Final = (
+    Cure("CTL920", "", _unread(post()), HEAD + FOOT, (), cured_by=post()),
+    Cure("CTL930", "", _unread(_forced), HEAD + FOOT, (), stays=True),
+    Cure("CTL920", "nothing_times_feeds", _unread(_forced), HEAD + FOOT, ({"feed": None},), {"feed": "fastest"}),
+    Cure("CTL920", "nothing_proven", _unread(_reported), HEAD + FOOT, (), cured_by=_reported),
+    Cure(
+        "CTL115",
+        "line_brings_block_number",
+        on_machine('extends = "matsuura_mx330"\n[control.block_numbers]\nstart = 1\nstep = 1\n'),
+        HEAD + "INSERT/N3 G4 P500\n" + FOOT,
+        ({"numbers": "off"},),
+    ),
     by_lines(
         "CTL340 f_block_would",
         "- FEDRAT/MMPM,0.000001",

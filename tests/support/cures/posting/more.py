@@ -143,4 +143,6 @@ CURES: Final = (
          {"tcp": "off", "zero": "0,0,0", "tool_length": "100"}),
     by_lines("PLN130 axis_turns_over", "GOTO/20,0,5,0,0,1", "CIRCLE/20,10,5,0,0,1,10", "- GOTO/30,10,5,0,0,-1",
            "+ GOTO/30,10,5,0,0,1"),
+    by_lines("PLN130 axis_turns_over", "GOTO/20,0,5,0,1,0", "+ GOTO/25,0,5,0,0,1", "GOTO/30,0,5,0,-1,0",
+           on="matsuura_mx330"),
 )  # fmt: skip

@@ -51,7 +51,11 @@ _SIDES: Final = (
 )
 _WIDE: Final = HEAD + "GOTO/300,0,5\nGOTO/-300,0,5\n" + FOOT
 
+_FLIPPED: Final = LEANING + "GOTO/10.1,0.0,5.0,0.6,0.0,0.8\n" + FOOT
+
 CURES: Final = (
+    _said("NC390", "too_slow_for_feed", _FLIPPED, {"lower_feed": "yes"}),
+    _said("NC390", "too_slow_for_feed", _FLIPPED, {"feed": "fastest"}),
     _said("CTL220", "cutcom_where_tool", _SIDES, {"mode": "OP1:tilted"}, mode="tcp"),
     _said("CTL220", "cutcom_where_tool", _SIDES, ("CUTCOM/LEFT,XYPLAN\n", ""), ("CUTCOM/OFF\n", ""), mode="tcp"),
     _said(
@@ -60,6 +64,13 @@ CURES: Final = (
         _COMPENSATED.replace("GOTO/20,30", "CUTCOM/RIGHT\nGOTO/20,30"),
         ("CUTCOM/RIGHT\n", "CUTCOM/OFF\nGOTO/25,9,5\nCUTCOM/RIGHT\n"),
         on="xyzac_trt",
+    ),
+    _said(
+        "CTL220",
+        "cutcom_changes_side",
+        _COMPENSATED.replace("GOTO/20,30", "CUTCOM/RIGHT\nGOTO/20,30"),
+        ("CUTCOM/RIGHT\n", "CUTCOM/OFF\nGOTO/25,9,5\nCUTCOM/RIGHT\n"),
+        on="dmu65",
     ),
     Cure("PLN125", "axis_would_go", post("yl569"), _WIDE, (), cured_by=post("generic_head_head_ca")),
     _within("CTL230", "cutcom_names_register", "CUTCOM/LEFT,XYPLAN,7", "CUTCOM/LEFT,XYPLAN", on="dmu65"),

@@ -102,7 +102,16 @@ def _renamed(definition: str, settings: Mapping[str, str], folder: Path) -> Outc
 
 _OBLIQUE: Final = f'extends = "{_BC}"\n[spindle]\ndirection = [0, 0.6, 0.8]\n'
 _TIGHT: Final = f'extends = "{_CA}"\n[[axis]]\nname = "Y"\nlimits_mm = [-170, 170]\n'
+
+
+def _without_reason(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Post a path with a rewind for which no axis limit is found."""
+    with patch("trunnion.planning.poses.decision_log.first_limit_hit", return_value=None):
+        return post(_CA)(text, settings, folder)
+
+
 CURES: Final = (
+    Cure("PLN210", "rotary_axes_would", _without_reason, _WOUND + FOOT, ({"rewind": "insert"},), {"rewind": "none"}),
     by_settings("PLN210 cut", {"rewind": "insert"}, _WOUND, _CA, rewind="none"),
     Cure("PLN220", "one_rewind", post(_CA), _WOUND + FOOT, ({"rewind": "none"},), refuses=True),
     Cure("PLN220", "rewinds_of_time", post(_CA), _LONG + FOOT, ({"rewind": "none"},), refuses=True),

@@ -83,7 +83,7 @@ class CycleInterpreter(OffsetInterpreter):
         self._report_rotary_words(axes)
         self._require_words(self._modal_words)
         holes = 1 if repeats is None else int(repeats)
-        if not 0 <= holes <= _MAX_HOLES:
+        if not 0 <= holes <= _MAX_HOLES or repeats not in (None, holes):
             raise BlockError(Wording("NC210", "repeats_of_cycle", letter=letter))
         if letter == "L" and holes > 1 and control.absolute:
             raise BlockError(Wording("NC210", "l_repeats_cycle_g91_only"))

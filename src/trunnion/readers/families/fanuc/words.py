@@ -215,6 +215,7 @@ MORE_OFFSETS: Final = TABLE.code("G54.1")
 MACROS: Final = frozenset({TABLE.code("G65"), TABLE.code("G66")})
 MODAL_MACRO: Final = TABLE.code("G66")
 TILT: Final = TABLE.code("G68.2")
+NO_PLANE_OF_POSE: Final = TABLE.code("G: no plane of the rotary position")
 
 #: Smooth interpolation and nano smoothing, which round the path within a tolerance of the control.
 SMOOTHING: Final = ("G5.1 Q2", "G5.1 Q3")

@@ -132,6 +132,12 @@ class ExpressionReader:
                 Wording("NC210", "expected_found", expected=text, found=found.text if found else "the end of the block")
             )
 
+    def expect_end(self) -> None:
+        """Refuse further words: none of them would be executed."""
+        if self.token is not None:
+            words = " ".join(token.text for token in self.tokens[self.at : self.at + 20])[:200]
+            raise ExpressionError(Wording("NC212", "behind_statement", words=words))
+
     def number(self) -> float:
         """Read an expression whose value must be a number."""
         value = self.value()
