@@ -85,7 +85,7 @@ class BlockReader:
         letter = reader.peek()
         start = reader.at
         reader.at += 1
-        plain = _plain_number(reader)
+        plain = reader.plain_number()
         value: Value
         if plain is not None:
             name, extension, value, mode = letter, "", plain, PositionMode.MODAL
@@ -142,7 +142,7 @@ class BlockReader:
                 reader.expect(")")
                 return value, PositionMode(mode)
             return reader.value(), PositionMode.MODAL
-        number = _plain_number(reader)
+        number = reader.plain_number()
         if number is None:
             raise ExpressionError(Wording("NC210", "number_missing"))
         return number, PositionMode.MODAL
@@ -383,23 +383,6 @@ def _code(number: float, letter: str) -> int:
     if number != int(number) or not 0 <= number < 1e9:
         raise ExpressionError(Wording("NC210", "takes_whole_number", letter=letter))
     return int(number)
-
-
-def _plain_number(reader: ExpressionReader) -> float | None:
-    """Read a number that is the value of the letter before it; None if something else follows, which is not read.
-
-    Digits before an equals sign belong to the name of the word.
-    """
-    tokens, at, sign = reader.tokens, reader.at, 1.0
-    if at < len(tokens) and tokens[at].kind is TokenKind.SIGN and tokens[at].text in ("-", "+"):
-        sign = -1.0 if tokens[at].text == "-" else 1.0
-        at += 1
-    if at >= len(tokens) or tokens[at].kind is not TokenKind.NUMBER:
-        return None
-    if at + 1 < len(tokens) and tokens[at + 1].text == "=":
-        return None
-    reader.at = at + 1
-    return sign * tokens[at].value
 
 
 def _text(tokens: Sequence[Token], start: int, end: int | None = None) -> str:
