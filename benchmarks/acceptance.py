@@ -45,12 +45,13 @@ def shares(found: Survey) -> str:
 
 def read_shares(programs: Sequence[SurveyedFile]) -> str:
     """Return the shares of programs that are read as they are, and with one round of keys."""
-    became = Counter(each.became for each in programs)
-    read = sum(count for each, count in became.items() if each.passed) + became[Became.BEYOND]
+    became = Counter(each.became for each in programs if each.became is not Became.CALLED)
+    count = max(became.total(), 1)
+    read = sum(n for each, n in became.items() if each.passed) + became[Became.BEYOND]
     keyed = read + became[Became.READ_KEYED]
     return (
-        f"{len(programs)} programs: {read} read as they are ({read / max(len(programs), 1):.1%}), "
-        f"{keyed} after one round of keys ({keyed / max(len(programs), 1):.1%})"
+        f"{became.total()} programs besides subprograms of others: {read} read as they are ({read / count:.1%}), "
+        f"{keyed} after one round of keys ({keyed / count:.1%})"
     )
 
 

@@ -23,6 +23,7 @@ class Became(StrEnum):
     READ          a program: read and run, and no check of it alone fails
     READ_WARNED   the same, with warnings
     READ_KEYED    refused as it is; read and run with the keys of ``[control.reading]`` under which it reads best
+    CALLED        a subprogram, read through a program beside it that calls it
     BEYOND        understood, and nothing is wrong but that this machine cannot go so far, or turn its spindle so fast
     CHECK_FAILED  a program: read and run, and a check of it fails
     PROOF_FAILED  posted, and the program does not do what the CL file says: it is not written
@@ -39,6 +40,7 @@ class Became(StrEnum):
     READ = "read"
     READ_WARNED = "read with warnings"
     READ_KEYED = "read with keys"
+    CALLED = "called by another"
     BEYOND = "beyond the machine"
     CHECK_FAILED = "check failed"
     PROOF_FAILED = "proof failed"
@@ -306,6 +308,8 @@ _BECAME: Final[Mapping[Status, Callable[[FileKind, Outcome], Became]]] = {
 
 def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     """Return what became of a file: of a CL file each try counts, of a program the best."""
+    if file.caller:
+        return SurveyedFile(file.name, file.kind, f"a subprogram of {file.caller}", Became.CALLED)
     if not tries:
         is_other = file.is_tried and file.kind is FileKind.OTHER
         became = Became.NOT_OURS if is_other else Became.NOT_TRIED
