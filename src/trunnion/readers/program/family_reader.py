@@ -8,6 +8,7 @@ from typing import Any
 
 from trunnion.compensation.styles import UNKNOWN_STYLE
 from trunnion.machines import Machine
+from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.interpreter import Interpreter
 from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
 from trunnion.readers.program.settings import no_reading
@@ -37,6 +38,7 @@ class FamilyReader:
     compensation_style   how a control compensates the radius in a plane, a key of ``STYLES``; 0: not known
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     variables            what variables are called of which values can be stated; None: there are none
+    call_words           how programs call others; None: none does
     """
 
     interpreter: type[Interpreter[Any]]
@@ -53,6 +55,7 @@ class FamilyReader:
     compensation_style: Callable[[Machine], int] = lambda _: UNKNOWN_STYLE
     check_reading: Callable[[Machine], object] = no_reading
     variables: re.Pattern[str] | None = None
+    call_words: CallWords | None = None
 
     def callable_files(self, files: Iterable[Path]) -> tuple[Path, ...]:
         """Return the files whose names programs can call, the first of each name."""
