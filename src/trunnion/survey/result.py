@@ -22,6 +22,7 @@ class Became(StrEnum):
     PROVEN_FILLED  refused as it is; proven with stand-ins for the settings that its errors ask for
     READ          a program: read and run, and no check of it alone fails
     READ_WARNED   the same, with warnings
+    CALLED        a subprogram, read through a program beside it that calls it
     BEYOND        understood, and nothing is wrong but that this machine cannot go so far, or turn its spindle so fast
     CHECK_FAILED  a program: read and run, and a check of it fails
     PROOF_FAILED  posted, and the program does not do what the CL file says: it is not written
@@ -37,6 +38,7 @@ class Became(StrEnum):
     PROVEN_FILLED = "proven with settings"
     READ = "read"
     READ_WARNED = "read with warnings"
+    CALLED = "called by another"
     BEYOND = "beyond the machine"
     CHECK_FAILED = "check failed"
     PROOF_FAILED = "proof failed"
@@ -299,6 +301,8 @@ _BECAME: Final[Mapping[Status, Callable[[FileKind, Outcome], Became]]] = {
 
 def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     """Return what became of a file: of a CL file each try counts, of a program the best."""
+    if file.caller:
+        return SurveyedFile(file.name, file.kind, f"a subprogram of {file.caller}", Became.CALLED)
     if not tries:
         is_other = file.is_tried and file.kind is FileKind.OTHER
         became = Became.NOT_OURS if is_other else Became.NOT_TRIED

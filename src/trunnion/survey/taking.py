@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final, TypedDict, Unpack
 
@@ -16,7 +17,9 @@ from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine, shipped_machines
 from trunnion.messages import Wording
+from trunnion.readers import can_read, reader_of
 from trunnion.readers.program.settings import family_of
+from trunnion.survey.called_files import callers
 from trunnion.survey.found_files import FileKind, FoundFile, count_files, found_files
 from trunnion.survey.result import Survey, SurveyedMachine, Trying, surveyed, trying
 from trunnion.survey.trying import Step, Trial, try_in_worker
@@ -118,6 +121,11 @@ class _Team:
     ) -> None:
         self._names, self._steps = [name for name, _ in loaded], steps
         self._languages = [_language(machine) for _, machine in loaded]
+        self._readers = {
+            language: reader_of(machine)
+            for language, (_, machine) in zip(self._languages, loaded, strict=True)
+            if can_read(machine)
+        }
         self.machines = tuple(
             SurveyedMachine(
                 Path(name).name if name.endswith(".toml") else name,
@@ -132,7 +140,11 @@ class _Team:
 
     def trials(self, root: Path, advance: Callable[[int], None]) -> Iterator[tuple[tuple[int, int], Trial]]:
         """Yield what is to be tried, file by file."""
-        for number, file in enumerate(found_files(root)):
+        files = list(found_files(root))
+        called = callers(files, self._readers) if self._steps[FileKind.PROGRAM] else {}
+        for number, file in enumerate(files):
+            if number in called:
+                file = replace(file, caller=called[number].name)
             machines = list(self._machines_for(file))
             self.files.append(file)
             self.tries.append({})
@@ -151,7 +163,7 @@ class _Team:
         return [each for _, each in sorted(self.tries[number].items())]
 
     def _machines_for(self, file: FoundFile) -> Iterator[int]:
-        if file.kind is FileKind.OTHER or not self._steps[file.kind]:
+        if file.kind is FileKind.OTHER or file.caller or not self._steps[file.kind]:
             return
         for on, language in enumerate(self._languages):
             is_cl, languages = file.kind is FileKind.CL, file.languages

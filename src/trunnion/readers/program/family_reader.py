@@ -12,7 +12,7 @@ from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.interpreter import Interpreter
 from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
 from trunnion.readers.program.settings import no_reading
-from trunnion.readers.program.subprograms import callable_files
+from trunnion.readers.program.subprograms import Subprograms, callable_files
 from trunnion.readers.program.work_offsets import WorkOffsetWords
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
@@ -60,3 +60,14 @@ class FamilyReader:
     def callable_files(self, files: Iterable[Path]) -> tuple[Path, ...]:
         """Return the files whose names programs can call, the first of each name."""
         return callable_files(files, self.interpreter.suffixes, self.interpreter.prefix)
+
+    def call_name(self, name: str) -> str:
+        """Return the name of a file, or of a call, as calls are compared: without folder, ending and prefix."""
+        named = Subprograms((), self.interpreter.suffixes, self.interpreter.prefix)
+        key = named.key(name)
+        bare = name if key is None else key[0]
+        return bare if self.call_words is None else self.call_words.name(bare)
+
+    def called(self, text: bytes) -> frozenset[str]:
+        """Return the names of what a text calls, as ``call_name`` gives them."""
+        return frozenset() if self.call_words is None else frozenset(map(self.call_name, self.call_words.called(text)))
