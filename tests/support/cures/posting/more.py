@@ -82,6 +82,7 @@ CURES: Final = (
            "OPSKIP/OFF", "+ CUTCOM/OFF",
            "GOTO/0,-20,20", on="dmu65"),
     by_lines("CTL460 opskip_ends_operation", "OPSKIP/ON", "GOTO/20,0,5", "+ OPSKIP/OFF"),
+    by_lines("CTL460 feed_alone", "GOTO/20,0,5", "- OPSKIP/ON", "FEDRAT/MMPM,100", "- OPSKIP/OFF", "GOTO/30,0,5"),
     by_lines("CTL460 tool_axis_turns", "RAPID", "GOTO/0,0,30", "CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100", "GOTO/0,0,0",
            "OPSKIP/ON", "GOTO/5,0,0",
            "+ OPSKIP/OFF", "GOTO/20,0,0,0.5,0,0.86602540378444", "+ OPSKIP/ON", "+ GOTO/20,3,0",
