@@ -201,6 +201,36 @@ def test_programs_are_read_for_all_shipped_machines(tmp_path: Path, monkeypatch:
     assert [each.machine for each in found.files[0].tries] == ["mikron_600u"]  # which has a B, unlike dmu65
 
 
+def test_a_program_that_goes_through_is_tried_on_no_other_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = []
+
+    class Listing(Here):
+        def run(self, tasks: Iterable[tuple[Any, Trial]]) -> Iterator[tuple[Any, Outcome]]:
+            for place, trial in tasks:
+                tried.append((trial.machine, trial.steps))
+                yield place, try_steps(trial)
+
+    monkeypatch.setattr(taking, "LocalWorkers", Listing)
+    (tmp_path / "sound.h").write_bytes(KLARTEXT)
+    (tmp_path / "turned.h").write_bytes(KLARTEXT.replace(b"Z+50", b"Z+50 UNHEARD"))
+    take_survey(tmp_path)
+    plain = (Step.VERIFY,)
+    others = [("mikron_600u", plain), ("ucp800", plain)]
+    assert tried == [("dmu65", plain), ("dmu65", plain), *others, ("dmu65", (Step.VERIFY, Step.KEYS))]
+
+
+def test_a_refused_program_is_read_once_more_with_keys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    start = "O1\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X0 Y0\nG43 H1 Z50\n"
+    (tmp_path / "nested.nc").write_text(f"{start}G1 Z1 F100 (A (B))\nM30\n")
+    (tmp_path / "worse.nc").write_text(f"{start}G1 Z1 F100 (A (B))\nG1 UNHEARD\nM30\n")
+    nested, worse = take_survey(tmp_path, machine=["matsuura_mx330"]).files
+    assert (nested.became, nested.tries[0].codes) == (Became.READ_KEYED, ("NC210",))
+    assert (worse.became, worse.tries[0].count) == (Became.REFUSED, 1)
+
+
 def test_programs_find_the_subprograms_beside_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(taking, "LocalWorkers", Here)
     call = KLARTEXT.replace(b"3 L Z+10 F100", b"3 CALL PGM tnc:\\\\parts\\\\plunge.h")
