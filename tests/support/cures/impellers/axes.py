@@ -83,7 +83,9 @@ def _linked(tool: ToolShape) -> Trial:
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
         family, is_clear = floor(0.2, 1), pose_check(slot(3.0, 30.0), tool, 2.0, 0.01)
         axes = [np.tile([0.0, 0.0, 1.0], (len(each.centre), 1)) for each in family.passes]
-        space = FreeSpace.around(StockSize(90.0, 35.0, 0.0, 0.0), 2.0, 2.0, np.array([[3.0, 40.0]]), np.concatenate(axes))
+        space = FreeSpace.around(
+            StockSize(90.0, 35.0, 0.0, 0.0), 2.0, 2.0, np.array([[3.0, 40.0]]), np.concatenate(axes)
+        )
         around = Surroundings(space, is_clear, "BLADE_FINISH")
         return ended(lambda: link_passes(family.passes, axes, around, Links(0.0, 2.0, 3.0, 0.01), 2.0))
 

@@ -132,9 +132,7 @@ CURES: Final = (
         (_CHANNEL_ROUGH, ""),
         (_HUB_FINISH, _CHANNEL_ROUGH + _HUB_FINISH),
     ),
-    _order(
-        "up_mm_metal_stand_outside", WHOLE.replace(_STOCK_ROUGH, ""), (_STOCK_FINISH, _STOCK_ROUGH + _STOCK_FINISH)
-    ),
+    _order("up_mm_metal_stand_outside", WHOLE.replace(_STOCK_ROUGH, ""), (_STOCK_FINISH, _STOCK_ROUGH + _STOCK_FINISH)),
     _order(
         "up_mm_metal_stand_outside",
         WHOLE.replace(_STOCK_ROUGH, ""),
