@@ -96,9 +96,7 @@ def _missing_between(context: ComparedContext, found: Mapping[int, list[_FoundSt
             yield context.place_of_missing(section.first, Wording("stops", "stop_between"))
 
 
-def _nothing_said_again(
-    context: ComparedContext, restarts: RestatedModes, stops: list[_FoundStop]
-) -> Iterator[Place]:
+def _nothing_said_again(context: ComparedContext, restarts: RestatedModes, stops: list[_FoundStop]) -> Iterator[Place]:
     """Yield stops of the program's own behind which spindle or coolant, on before, is not switched on again to cut."""
     for stop in stops:
         if stop.event.kind == "dwell":
