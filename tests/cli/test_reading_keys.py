@@ -20,6 +20,11 @@ END = "G0 Z9.\nG49\nM30\n%\n"
         ("matsuura_mx330", FANUC + "G1 X5. F9. ; FIRST\nX7. 'LAST\n" + END, {"more_comments": [";", "'"]}),
         ("matsuura_mx330", FANUC + "G1 X5. F9.\nG2 X7. Y2. I7. J0.\n" + END, {"arc_centres": "absolute"}),
         ("matsuura_mx330", FANUC + "G1 X5. F9. (A (B))\n" + END, {"nested_comments": "counted"}),
+        (
+            "matsuura_mx330",
+            FANUC + "G1 X-40. Y50. F9.\nG3 X-30. Y40. I-40 J40\n" + END,
+            {"arc_centres": "absolute", "whole_numbers": "calculator"},
+        ),
         ("matsuura_mx330", FANUC + "G1 N5 X5. F9.\n" + END, {"numbers_anywhere": "anywhere"}),
         ("xyzac_trt", ":12\nG21 G90 G94\nG1 X5 F9\nM2\n", {"program_numbers": [":"]}),
         ("yl569", "G71 G90\nG1 X5 F9 ! FIRST\nM30\n", {"more_comments": ["!"]}),

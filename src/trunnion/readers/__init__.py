@@ -5,7 +5,7 @@ The readers are written from the manuals of the controls. They share nothing wit
 
 from trunnion.machines.forward import forward_rows
 from trunnion.model.axis_positions import resolve_turns, write_joints
-from trunnion.readers.program.kinds import kind_problem, program_for_cl_file, with_kind
+from trunnion.readers.program.kinds import kind_problem, program_for_cl_file, with_kind, with_role
 from trunnion.readers.program.known_words import KnownWord, known_words
 from trunnion.readers.program.options import RunOptions
 from trunnion.readers.program.settings import GIVEN
@@ -20,5 +20,5 @@ KERNELS = (write_joints, forward_rows, read_blocks, execute_blocks, resolve_turn
 __all__ = [
     "GIVEN", "KERNELS", "KnownWord", "RunOptions", "can_read", "check_reading", "kind_problem", "known_words",
     "program_for_cl_file", "reader_of", "run_program", "with_kind", "with_reading",
-    "with_stated",
+    "with_role", "with_stated",
 ]  # fmt: skip

@@ -76,6 +76,7 @@ _SOUND: Final = HEADS["yl569"].format(lines="G1 X10 F100")
 
 CURES: Final = (
     _file("NC110 long_line", "- " + "X" * 5_000_000, "+ " + _SOUND.rstrip()),
+    _file("NC114 is_subprogram", *_SOUND.splitlines()[:-1], "- M17", "+ M30"),
     Cure("NC130", "not_a_subprogram_name", _with_files("notes.txt"), _SOUND, (), cured_by=_with_files("notes.spf")),
     Cure("NC130", "same_name", _with_files("ONE.SPF", "a/one.spf"), _SOUND, (), cured_by=_with_files("ONE.SPF")),
     Cure("NC132", "", _with_files(), _SOUND.replace("G1 X10", "FOO\nG1 X10"), (), cured_by=_with_files("FOO.SPF")),
