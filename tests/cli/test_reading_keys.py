@@ -52,3 +52,12 @@ def test_the_proposal_is_toml_to_copy_and_changes_nothing(tmp_path: Path, capsys
     assert ours.read_text() == before
     ours.write_text(before + said[said.index("[control.reading]") :])
     assert trunnion.read_program(program, machine=str(ours)).errors == ()
+
+
+def test_a_subprogram_is_named_before_what_is_proposed(tmp_path: Path) -> None:
+    program = tmp_path / "a.nc"
+    program.write_text("O77\nG91 G1 X1. F100.\nM99\n")
+    lines = list(proposed_reading(program, trunnion.load_machine("matsuura_mx330")).lines())
+    assert lines[0].startswith("this looks like a subprogram, by M99 in line 3; give the program that calls it")
+    program.write_text(FANUC + "G1 X5. F9.\n" + END)
+    assert len(list(proposed_reading(program, trunnion.load_machine("matsuura_mx330")).lines())) == 1

@@ -67,15 +67,19 @@ class Proposal:
     before  errors, and axes beyond their travel, without the keys
     after   with them
     why     what each key changes
+    role    what the program is, if it looks like a subprogram
     """
 
     keys: dict[str, Value]
     before: tuple[int, int]
     after: tuple[int, int]
     why: tuple[Wording, ...]
+    role: Wording | None = None
 
     def lines(self) -> Iterator[str]:
         """Yield the proposal as TOML to copy, with why as comments."""
+        if self.role is not None:
+            yield self.role.with_cure().what
         if not self.keys:
             yield str(phrase("reads_best_so", errors=self.before[0]))
             return
@@ -107,7 +111,7 @@ def proposed_reading(program: Path, machine: Machine) -> Proposal:
             said = phrase(variant, before=best[0], after=score[0], axes=best[1] - score[1])
             why |= {key: said for key, _ in added}
             keys, best = tried, score
-    return Proposal(keys, first, best, tuple(why[key] for key in keys))
+    return Proposal(keys, first, best, tuple(why[key] for key in keys), readers.role_of(program, machine))
 
 
 def _candidates(text: str, machine: Machine) -> Iterator[tuple[str, Value]]:

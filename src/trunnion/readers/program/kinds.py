@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from trunnion.errors import Problem, Severity
+from trunnion.errors import Problem
 from trunnion.families import FAMILIES
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic, Run
-from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.settings import family_of
 
 #: So much of a file is looked at, bytes, and so many letters of each line.
@@ -151,15 +150,6 @@ def with_kind(run: Run, program: Path) -> Run:
     doubt = _doubt(program, run.language, not len(run), lines >= max(_FEW_ERRORS, len(run)))
     first = () if doubt is None else (Diagnostic(1, doubt, file=run.files[0]),)
     return replace(run, diagnostics=(*first, *run.diagnostics)) if first else run
-
-
-def with_role(run: Run, program: Path, words: CallWords | None) -> Run:
-    """Return a run that says first that its program looks like a subprogram of others, if it does."""
-    mark = None if words is None else words.mark_of(program)
-    if mark is None:
-        return run
-    told = Wording("NC114", "is_subprogram", word=mark[0], line=mark[1])
-    return replace(run, diagnostics=(Diagnostic(1, told, Severity.WARNING, run.files[0]), *run.diagnostics))
 
 
 def kind_problem(program: Path, machine: Machine) -> Problem | None:
