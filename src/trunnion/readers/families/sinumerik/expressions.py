@@ -124,6 +124,22 @@ class ExpressionReader:
             return True
         return False
 
+    def plain_number(self) -> float | None:
+        """Read a number, or one with a sign, that is the value of the letter before it.
+
+        None if something else follows, which is not read: digits before an equals sign belong to the name of a word.
+        """
+        tokens, at, sign = self.tokens, self.at, 1.0
+        if at < len(tokens) and tokens[at].kind is TokenKind.SIGN and tokens[at].text in ("-", "+"):
+            sign = -1.0 if tokens[at].text == "-" else 1.0
+            at += 1
+        if at >= len(tokens) or tokens[at].kind is not TokenKind.NUMBER:
+            return None
+        if at + 1 < len(tokens) and tokens[at + 1].text == "=":
+            return None
+        self.at = at + 1
+        return sign * tokens[at].value
+
     def expect(self, text: str) -> None:
         """Read a sign that must come next."""
         if not self.accept(text):

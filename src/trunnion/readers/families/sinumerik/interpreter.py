@@ -132,8 +132,10 @@ class SinumerikInterpreter(WordInterpreter):
     def _read_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         words, comment = split_comment(raw.rstrip("\r"))
         stripped = words.strip()
-        level = int(stripped[1]) if re.match(r"/\d(?!\d)", stripped) else 0
-        skipped = stripped.startswith("/") and self._options.skips(level)
+        level, skipped = 0, stripped.startswith("/")
+        if skipped:
+            level = int(stripped[1]) if re.match(r"/\d(?!\d)", stripped) else 0
+            skipped = self._options.skips(level)
         if not stripped or stripped.startswith("%") or (skipped and len(words) <= MAX_LENGTH):
             self._read_header(active, line, stripped)
             self._record_comment(line, comment)
