@@ -18,6 +18,9 @@ PROOF_SETTINGS: Final = (
     "fallback_tolerance", "spindle", "missing_feed", "open_cycle", "compensation",
 )  # fmt: skip
 
+#: Words in cures of messages in whose place a value is to be written.
+WORDS_TO_FILL: Final = ("RPM", "MM_MIN", "PITCH_MMPR", "MM", "DEGREES", "NUMBER", "X,Y,Z", "…")
+
 #: What the best place is best for.
 GOALS: Final = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
 

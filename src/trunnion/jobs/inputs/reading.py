@@ -224,6 +224,7 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
         if doubt := readers.kind_problem(program, on):
             raise InputError((doubt, *error.problems)) from None
         raise
+    run = readers.with_role(run, program, on)
     if not run.errors:
         return run
     _refuse_cl_file(program)

@@ -121,7 +121,7 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     ),
     "missing_feed": RunSetting(
         "Feed of cuts and holes that have none in the CL file, mm/min; with MMPR behind it mm a revolution. A tap "
-        "takes its pitch alone, such as TAP:1.25MMPR.",
+        "takes its pitch alone, such as TAP:1.25MMPR; an operation may have both.",
         form="MM_MIN or OPERATION:MM_MIN",
         example="300,TAP:1.25MMPR",
     ),

@@ -9,7 +9,7 @@ from trunnion.jobs.inputs.stated_speeds import with_stated_speeds
 from trunnion.model.toolpath import Toolpath
 
 
-def with_stated(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> list[Toolpath]:
+def with_stated_operations(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> list[Toolpath]:
     """Return toolpaths with the speeds and feeds that settings state, and without CUTCOM where they leave it out; the
     reader knows what they state of cycles.
 

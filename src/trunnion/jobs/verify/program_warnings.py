@@ -22,7 +22,7 @@ _END_OF_TURN: Final = "NC342"
 _LEFT_ON: Final = "NC351"
 
 #: Kinds of which a program has few, told as they were noted.
-_FEW: Final = ("NC161", "NC228")
+_FEW: Final = ("NC114", "NC161", "NC228")
 
 #: Warnings of a kind that are told one by one; a program with more words is hardly one for this machine.
 _MOST_TOLD: Final = 20

@@ -15,7 +15,7 @@ from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.inputs.stated_cycles import stated_cycles
-from trunnion.jobs.inputs.stated_operations import with_stated
+from trunnion.jobs.inputs.stated_operations import with_stated_operations
 from trunnion.jobs.inputs.tool_lengths import with_lengths_of_tools
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.verify.arguments import angles_of
@@ -69,7 +69,7 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
     if given["hooks"]:
         toolpaths = _changed_by_hooks(toolpaths, on, given)
     toolpaths = replace_unknown_statements(toolpaths, on.control, on.machine)
-    toolpaths = with_stated(toolpaths, settings)
+    toolpaths = with_stated_operations(toolpaths, settings)
     stated, clamping = stated_clamping(toolpaths), None
     if toolpaths:
         clamping = clamped_after(stated, angles_of(given), toolpaths[0].file)

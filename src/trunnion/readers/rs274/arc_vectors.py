@@ -31,13 +31,14 @@ def centre_of(start: Floats, end: Floats, normal: Floats, given: Mapping[int, fl
     """
     if meaning == UNSIGNED:
         return _in_quadrant(start, end, normal, given)
-    return _at(start, given, -1.0 if meaning == FROM_CENTRE else 1.0)
+    sign = -1.0 if meaning == FROM_CENTRE else 1.0
+    return _at(start, {axis: sign * value for axis, value in given.items()})
 
 
-def _at(start: Floats, given: Mapping[int, float], *signs: float) -> Floats:
+def _at(start: Floats, way: Mapping[int, float]) -> Floats:
     centre = start.copy()
-    for (axis, value), sign in zip(given.items(), itertools.cycle(signs), strict=False):
-        centre[axis] += sign * value
+    for axis, value in way.items():
+        centre[axis] += value
     return centre
 
 
@@ -45,7 +46,7 @@ def _in_quadrant(start: Floats, end: Floats, normal: Floats, given: Mapping[int,
     """Return the centre about which the circle stays within a quadrant: the one of those with the most equal radii."""
     found: list[tuple[float, Floats]] = []
     for signs in itertools.product(*((1.0, -1.0) if value else (1.0,) for value in given.values())):
-        centre = _at(start, given, *signs)
+        centre = _at(start, {axis: sign * value for (axis, value), sign in zip(given.items(), signs, strict=True)})
         first, last = start - centre, end - centre
         axis = int(np.argmax(np.abs(normal)))
         first[axis] = last[axis] = 0.0

@@ -180,9 +180,10 @@ class Rs274Interpreter(Interpreter[A]):
         """Return the words of the machine's axes; report those of other axes."""
         axes: dict[str, AxisWord] = {}
         for letter in AXES:
-            value = block.take(letter)
-            if value is None:
+            if letter not in block.words:
                 continue
+            value = block.words[letter].value
+            block.used.add(letter)
             if letter in "XYZ" or letter in self.control.rotary_names:
                 axes[letter] = value, PositionMode.MODAL
             else:

@@ -14,6 +14,7 @@ from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.tool_additions import LENGTHS, REPLACED
 from trunnion.verification.checks.driven_path import cl_radius
+from trunnion.verification.checks.lengths_at_part import numbers_changed_at_part
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.checks.unnumbered_tools import is_described, wrong_unnumbered_tools
 from trunnion.verification.context import ComparedContext, check_from_places
@@ -46,6 +47,7 @@ def check_tool(context: ComparedContext) -> Check:
     places += _wrong_edges(context)
     if run.uses_length_numbers:
         places += _wrong_lengths(context)
+    places += numbers_changed_at_part(context)
     known = [(hole.row, hole.tool_names) for hole in context.expected.holes if hole.tool_names]
     asked += dict.fromkeys(names for _, names in known)
     starts = (state.first for state in states if state.value.is_known)

@@ -15,6 +15,11 @@ _LINKED: Final = (
     + _FOLDER.rpartition("\n")[2]
     + " --report json"
 )
+_BESIDE: Final = (
+    "mkdir in\ncp part.mpf in/a.mpf\ncp part.mpf real.spf\nlink ../real.spf in/a.spf\nwrite in/jobs.toml '"
+    + (_HEAD + 'subprograms = ["{folder}/{stem}.spf"]\n').replace("\n", "\\n")
+    + "'\ntrunnion batch in/jobs.toml"
+)
 
 
 def _jobs(message: str, text: str, old: str, new: str, before: str = "") -> Cure:
@@ -47,6 +52,7 @@ CURES: Final = (
           '"*.mpf"'),
     _jobs("DEF330 no_name_beside", _HEAD + 'subprograms = ["/a.spf"]\n', "/a.spf", "{folder}/{stem}.spf",
           before="cp part.mpf part.spf\n"),
+    script("FIL120 goes_leads_out", _BESIDE, "link ../real.spf", "cp real.spf"),
     script("BAT120 no_files", _FOLDER.replace("in/a.mpf", "in/a.xyz"), "--machine", "--files '**/*.xyz' --machine"),
     script("BAT120 no_files_match", _FOLDER + " --files '*.nc'", "*.nc", "**/*.mpf"),
     script("BAT320 result_would_leads", _LINKED, "link ../x out/b\n", ""),

@@ -38,9 +38,9 @@ def _tool(message: str, wrong: str, cured: str, settings: str = "") -> Cure:
 
 #: The beginning of an operation that is nowhere yet.
 _NOWHERE: Final = CLEAR.replace("RAPID\nGOTO/0.0,0.0,50.0,0.0,0.0,1.0\n", "FEDRAT/MMPM,9\n")
-_KNOTS: Final = ("KNOT/0.25,0.5", "KNOT/1.0")
-_POLES: Final = ("CNTRL/0,10,5", "CNTRL/10,20,5", "CNTRL/20,20,5", "CNTRL/30,10,6", "CNTRL/30,0,5")
-_SPLINE: Final = ("NURBS/", *_KNOTS, *_POLES)
+KNOTS: Final = ("KNOT/0.25,0.5", "KNOT/1.0")
+POLES: Final = ("CNTRL/0,10,5", "CNTRL/10,20,5", "CNTRL/20,20,5", "CNTRL/30,10,6", "CNTRL/30,0,5")
+_SPLINE: Final = ("NURBS/", *KNOTS, *POLES)
 #: Splines turned off in the CAM system: points in their place.
 _POINTS: Final = ("+ GOTO/15,8,5", "+ GOTO/30,0,5")
 
@@ -87,16 +87,16 @@ CURES: Final = (
         *(f"- CIRCLE/0,0,{-k},0,0,1,10,0.01,0.5,6,0,TIMES,9000\nGOTO/10,0,{-k}" for k in range(9))),
     _nx("CL580 rapid_before_nurbs", "- RAPID", *_SPLINE),
     _spline("CL600 cntrl_follows_neither", "CNTRL/1,2,3"),
-    _spline("CL600 cntrl_tool_axis", "NURBS/", *_KNOTS, "CNTRL/0,10,5,0,0,1", *_POLES[1:]),
+    _spline("CL600 cntrl_tool_axis", "NURBS/", *KNOTS, "CNTRL/0,10,5,0,0,1", *POLES[1:]),
     _spline("CL600 knot_without_nurbs", *_SPLINE, "KNOT/1"),
-    _spline("CL600 knots_not_increasing", "NURBS/", "KNOT/0,0.5,1", *_POLES),
-    _spline("CL600 last_knot", "NURBS/", "KNOT/0.2,0.5,0.9", *_POLES),
+    _spline("CL600 knots_not_increasing", "NURBS/", "KNOT/0,0.5,1", *POLES),
+    _spline("CL600 last_knot", "NURBS/", "KNOT/0.2,0.5,0.9", *POLES),
     _spline("CL600 no_knots", "NURBS/", "CNTRL/0,0,0"),
     _spline("CL600 nurbs_spline_degree", "NURBS/3", *_SPLINE[1:]),
-    _spline("CL600 other_degree", "NURBS/", "KNOT/0.5,1", *_POLES),
-    _spline("CL600 statement_within", *_SPLINE[:4], "COOLNT/ON", *_POLES[1:]),
+    _spline("CL600 other_degree", "NURBS/", "KNOT/0.5,1", *POLES),
+    _spline("CL600 statement_within", *_SPLINE[:4], "COOLNT/ON", *POLES[1:]),
     _file("CL600 too_many_points", "TOOL PATH/A,TOOL,T", "FEDRAT/MMPM,100", "GOTO/0,0,5", "- NURBS/", "- KNOT/0.25,0.5",
-          "- KNOT/1.0", "- CNTRL/9e8,0,0", *(f"- {line}" for line in _POLES[1:]), *_POINTS, "END-OF-PATH"),
+          "- KNOT/1.0", "- CNTRL/9e8,0,0", *(f"- {line}" for line in POLES[1:]), *_POINTS, "END-OF-PATH"),
     _nx("CL610 spline_nurbs_control", *_SPLINE),
     _nx("CL620 nurbs_within_cycle", "CYCLE/DRILL,RAPTO,3,FEDTO,-1,MMPM,9", "GOTO/0,0,5", "+ CYCLE/OFF",
         "+ GOTO/0,0,9", *_SPLINE),

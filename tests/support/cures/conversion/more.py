@@ -84,6 +84,7 @@ CURES: Final = (
            "--set work_offset=G54 --output q.nc"),
     within("CNV140 not_carried_over", "CYCLE832(.02,1,.02)", on="yl569", cl=False),
     _set("CNV111 no_dialect_of_programs", "dialect=apt"),
+    _set("CNV111 only_of_cl_files", "open_cycle=ends"),
     _set("CNV111 cl_file_in_mm", "units=inch"),
     _set("CNV111 no_zero_in_cl_files", "zero=0,0,0"),
     within("CNV143 within_operation", "G1 Z-1. F100", "+ G0 Z50.", "+ M5", "+ T2 M6", "+ S1000 M3", "G55",

@@ -6,7 +6,9 @@ from typing import Final
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, define
+from tests.support.cures.reading import ended
 from tests.support.cures.scripts import script
+from tests.support.locations import ROOT
 from trunnion.controls import load_control
 from trunnion.controls.inches import in_units
 from trunnion.errors import TrunnionError
@@ -25,6 +27,19 @@ def _in_inches(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 def _head(base: str) -> str:
     return f'schema = 1\nextends = "{base}"\nname = "Ours"\n'
+
+
+def _own(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Load a machine whose control is that of the library, with a text in place of the entry of the feed's word."""
+    library = (ROOT / "src/trunnion/controls/library/sinumerik_840d.toml").read_text(encoding="utf-8")
+    assert _FEED_WORD in library
+    (folder / "control.toml").write_text(library.replace(_FEED_WORD, text), encoding="utf-8")
+    machine = folder / "ours.toml"
+    machine.write_text(f'{_head("yl569")}[control]\nextends = "control.toml"\n', encoding="utf-8")
+    return ended(lambda: load_control(trunnion.load_machine(machine).control))
+
+
+_FEED_WORD: Final = '[[word]]\nname = "feed"\nletter = "F"\nformat = "feed"\n'
 
 
 def _lines(message: str, lines: str, cured: str, base: str = "yl569") -> Cure:
@@ -52,6 +67,7 @@ _END: Final = "[control.templates]\nprogram_end = '''\nM9\n{}\nM30\n%\n'''\n"
 _INCH_ANGLE: Final = '[[control.format]]\nname = "angle"\ninch = { decimals = 4 }\n'
 
 CURES: Final = (
+    Cure("DEF530", "no_entry_programs", _own, "# none\n", (("# none\n", _FEED_WORD),)),
     _text("DEF510 lone_brace", ";{title!r}", ";{title}"),
     _text("DEF510 lone_brace", ";{5:coordinate", ";{5:coordinate}"),
     _text("DEF510 lone_brace", ";[[{title}", ";[[{title}]]"),

@@ -4,7 +4,7 @@ import pickle
 import subprocess
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cache
+from functools import cache, reduce
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Final
@@ -14,7 +14,7 @@ import numpy as np
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
-from tests.support.cures.impellers.definitions import IMPELLER, written
+from tests.support.cures.impellers.definitions import IMPELLER, POINTS, written
 from tests.support.cures.impellers.paths import built, made_of
 from tests.support.cures.reading import ended
 from tests.support.example_impellers import EXAMPLES
@@ -99,13 +99,25 @@ def _named(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
         return ended(lambda: trunnion.write_impeller_step(file, folder / text))
 
 
+def _twisted(points: str, angle: float) -> str:
+    """Points of blades that are turned about Z, more and more from the inlet on."""
+    head, *rows = points.splitlines()
+    values = np.array([row.split(",") for row in rows], np.float64)
+    turns = np.exp(1j * np.linspace(0.0, angle, len(rows)))
+    for k in (1, 4):
+        turned = (values[:, k] + 1j * values[:, k + 1]) * turns
+        values[:, k], values[:, k + 1] = turned.real, turned.imag
+    return "\n".join([head, *(",".join(f"{each:.3f}" for each in row) for row in values.tolist()), ""])
+
+
 def _wound(machine: str) -> Trial:
-    """Return what plans a helix whose tool is tilted as the first operation says, on a machine."""
+    """Return what plans a helix whose tool is tilted as the first operation says, on a machine or that of a text."""
 
     def planned(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
         step = built(text).definition.steps[-1]
         moves = winding(10.0, 0.0, 3600.0, 900)
-        loaded = load_machine(machine)
+        (folder / "own.toml").write_text(machine, encoding="utf-8")
+        loaded = load_machine(str(folder / "own.toml") if "\n" in machine else machine)
         motions = plan(
             [Toolpath("part.cls", (operation_of(replace(moves, tip=40.0 * moves.axis)),))], loaded, 0.001
         ).motions
@@ -114,8 +126,24 @@ def _wound(machine: str) -> Trial:
     return planned
 
 
+_MIXED_POINTS: Final = (EXAMPLES / "mixed_flow_points.csv").read_text(encoding="utf-8") + "#END\n"
+_MIXED: Final = _MIXED_POINTS + (EXAMPLES / "mixed_flow.toml").read_text(encoding="utf-8").partition("[[tool]]")[
+    0
+].replace("mixed_flow_points.csv", "blade_points.csv")
+_LARGE: Final = (
+    ("bottom_mm = -400.0", "bottom_mm = -4.0"),
+    ("height_mm = 480.0", "height_mm = 42.0"),
+    ("diameter_mm = 500.0", "diameter_mm = 108.0"),
+)
+_CROSSING: Final = reduce(lambda text, change: text.replace(*change[::-1]), _LARGE, _MIXED)
+#: Two blades that go half round the axis.
+_WINDING: Final = _twisted(POINTS, 1.5) + "#END\n" + IMPELLER.replace("number = 6", "number = 2")
 _mesh: Final = made_of(cache(lambda one: impeller_model(one, 4.0)))
 _body: Final = made_of(lambda one: impeller_body(one, _FEW))
+_LIMITED: Final = (
+    'schema = 1\nextends = "generic_head_table_bc"\nname = "Ours"\n'
+    '[[axis]]\nname = "C"\nendless = false\nlimits_deg = [-900, 900]\n'
+)
 _TILT: Final = ("tilt_deg = 10", "tilt_deg = 0")
 
 CURES: Final = (
@@ -156,11 +184,15 @@ CURES: Final = (
         IMPELLER.replace("fillet_mm = 2.0", "fillet_mm = 2.6"),
         (("2.6", "2.0"),),
     ),
+    Cure("IMP420", "channel_goes_round", _body, _WINDING, (), cured_by=_mesh),
+    Cure("IMP420", "hub_shroud_cross", _body, _CROSSING, _LARGE),
+    Cure("IMP220", "bodies_make_no", _mesh, _CROSSING, _LARGE),
     Cure("IMP420", "makes_no_solid", _solid(1, b"it fails"), IMPELLER, (), cured_by=_mesh),
     Cure("IMP421", "open_cascade_makes", _solid(ends=False), IMPELLER, (), cured_by=_mesh),
     Cure("IMP420", "solid_mm_mesh", _solid(volume=50.0), IMPELLER, (), cured_by=_mesh),
     Cure("IMP421", "cannot_load_open", _solid(3, b"no libGL"), IMPELLER, (), cured_by=_solid()),
     Cure("IMP421", "cannot_load_open_cascade", _solid(3), IMPELLER, (), cured_by=_solid()),
+    Cure("IMP334", "rewinds_and_turns_back_home", _wound(_LIMITED), _COARSE, (_TILT,)),
     Cure("IMP334", "turns_back_home", _wound("generic_head_table_bc"), _COARSE, (_TILT,)),
     Cure("IMP334", "rewinds", _wound("generic_head_head_ca"), _COARSE, (_TILT,)),
 )

@@ -27,7 +27,7 @@ from trunnion.simulation.tools.profile import Role
 from trunnion.simulation.tools.shapes import ball, flat
 
 #: The published impeller with its operations.
-_WHOLE: Final = (EXAMPLES / "impeller.toml").read_text(encoding="utf-8")
+WHOLE: Final = (EXAMPLES / "impeller.toml").read_text(encoding="utf-8")
 _NOTHING: Final = Margins(0.0, 0.0, 0.0, 1.0)
 _COARSE: Final = Stepover(distance=3.0)
 
@@ -89,9 +89,9 @@ def _order(variant: str, text: str, *changes: tuple[str, str], code: str = "IMP3
 
 def _operation(kind: str) -> str:
     """The table of an operation of the published impeller."""
-    first = _WHOLE.index(f'[[operation]]\nkind = "{kind}"')
-    end = _WHOLE.find("[[operation]]", first + 1)
-    return _WHOLE[first : end if end > 0 else len(_WHOLE)]
+    first = WHOLE.index(f'[[operation]]\nkind = "{kind}"')
+    end = WHOLE.find("[[operation]]", first + 1)
+    return WHOLE[first : end if end > 0 else len(WHOLE)]
 
 
 _STOCK_ROUGH, _CHANNEL_ROUGH = _operation("stock roughing"), _operation("channel roughing")
@@ -122,43 +122,41 @@ CURES: Final = (
     _other("IMP328", "turns_have_million", _rough(stepover=1e-9), _rough()),
     _order(
         "up_mm_metal",
-        _WHOLE.replace(_STOCK_ROUGH, "").replace(_CHANNEL_ROUGH, _STOCK_ROUGH + _CHANNEL_ROUGH),
+        WHOLE.replace(_STOCK_ROUGH, "").replace(_CHANNEL_ROUGH, _STOCK_ROUGH + _CHANNEL_ROUGH),
         (_STOCK_ROUGH, ""),
         (_STOCK_FINISH, _STOCK_ROUGH + _STOCK_FINISH),
     ),
     _order(
         "up_mm_metal_stand",
-        _WHOLE.replace(_CHANNEL_ROUGH, "").replace(_HUB_FINISH, _HUB_FINISH + _CHANNEL_ROUGH),
+        WHOLE.replace(_CHANNEL_ROUGH, "").replace(_HUB_FINISH, _HUB_FINISH + _CHANNEL_ROUGH),
         (_CHANNEL_ROUGH, ""),
         (_HUB_FINISH, _CHANNEL_ROUGH + _HUB_FINISH),
     ),
-    _order(
-        "up_mm_metal_stand_outside", _WHOLE.replace(_STOCK_ROUGH, ""), (_STOCK_FINISH, _STOCK_ROUGH + _STOCK_FINISH)
-    ),
+    _order("up_mm_metal_stand_outside", WHOLE.replace(_STOCK_ROUGH, ""), (_STOCK_FINISH, _STOCK_ROUGH + _STOCK_FINISH)),
     _order(
         "up_mm_metal_stand_outside",
-        _WHOLE.replace(_STOCK_ROUGH, ""),
+        WHOLE.replace(_STOCK_ROUGH, ""),
         ("[stock]\n", '[stock]\npremachined = ["stock roughing"]\n'),
     ),
-    _order("up_mm_metal_stand_hub", _WHOLE.replace(_CHANNEL_ROUGH, ""), (_HUB_FINISH, _CHANNEL_ROUGH + _HUB_FINISH)),
+    _order("up_mm_metal_stand_hub", WHOLE.replace(_CHANNEL_ROUGH, ""), (_HUB_FINISH, _CHANNEL_ROUGH + _HUB_FINISH)),
     _order(
         "up_mm_metal_stand_hub",
-        _WHOLE.replace(_CHANNEL_ROUGH, ""),
+        WHOLE.replace(_CHANNEL_ROUGH, ""),
         ("[stock]\n", '[stock]\npremachined = ["channel roughing"]\n'),
     ),
     _order(
         "up_mm_metal_stand_hub_between",
-        _WHOLE.replace("hub_allowance_mm = 0.3", "hub_allowance_mm = 4.0", 1),
+        WHOLE.replace("hub_allowance_mm = 0.3", "hub_allowance_mm = 4.0", 1),
         ("hub_allowance_mm = 4.0", "hub_allowance_mm = 0.3"),
     ),
     _order(
         "up_mm",
-        _WHOLE.replace("allowance_mm = 0.5", "allowance_mm = 8.0", 1),
+        WHOLE.replace("allowance_mm = 0.5", "allowance_mm = 8.0", 1),
         ("allowance_mm = 8.0", "allowance_mm = 0.5"),
     ),
     _order(
         "step_down_mm",
-        _WHOLE.replace("step_down_mm = 1.5", "step_down_mm = 39", 1),
+        WHOLE.replace("step_down_mm = 1.5", "step_down_mm = 39", 1),
         ("step_down_mm = 39", "step_down_mm = 1.5"),
         code="IMP331",
     ),
@@ -166,7 +164,7 @@ CURES: Final = (
         "IMP333",
         "comes_near_mm",
         _beside,
-        _WHOLE,
+        WHOLE,
         (("hub_allowance_mm = 0.3", "hub_allowance_mm = 0.1"), ("\nallowance_mm = 0.3", "\nallowance_mm = 0.1")),
     ),
     _other("IMP327", "no_stock_stands", _rough(allowance=60.0), lambda _: None),

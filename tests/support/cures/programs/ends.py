@@ -96,6 +96,15 @@ def _called(message: str, call: str, on: str, **files: str) -> Cure:
     return Cure(code, variant, _with_files(on, {}), text, (), cured_by=_with_files(on, named))
 
 
+def _numbered(variant: str, given: Mapping[str, int], own: str = "") -> Cure:
+    """A call of O0077 with files of other numbers, or of too many; the cure leaves one of the right number."""
+    head, _, foot = _HEADS[_FANUC].partition("{lines}\n")
+    text = f"{head}M98 P77\n{foot}{own}"
+    files = {name: f"O{number:04d}\nG1 X3. F100.\nM99\n" for name, number in given.items()}
+    right = {} if own else {"O0077.nc": "O0077\nG1 X3. F100.\nM99\n"}
+    return Cure("NC132", variant, _with_files(_FANUC, files), text, (), cured_by=_with_files(_FANUC, right))
+
+
 def _utf_16(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Verify a program that is saved as UTF-16."""
     file = folder / "part.mpf"
@@ -130,6 +139,9 @@ CURES: Final = (
     _called("NC132 missing_subprogram", "O<sub> CALL", _LINUXCNC,
             sub_ngc="O<sub> SUB\nG1 X3 F100\nO<sub> ENDSUB\nM2\n"),
     _called("NC132 missing_subprogram_number", "M98 P77", _FANUC, O0077_nc="%\nO0077\nG1 X3. F100.\nM99\n%\n"),
+    _numbered("files_of_one_number", {"O0077.nc": 77, "0077.nc": 77}),
+    _numbered("number_in_both", {"O0077.nc": 77}, "O0077\nG1 X3. F100.\nM99\n"),
+    _numbered("other_number_in_file", {"O0077.nc": 78}),
     _in("NC140 goes_in_circles", "R1=1", "WHILE R1<9", "G1 X10 F100", "+ R1=R1+1", "ENDWHILE",
         trial=_limited("yl569", steps=10**6, MOST_BLOCKS_IN_CIRCLES=40, _LOOKED_AT_AFTER=20)),
     _in("NC140 too_many_blocks", "R1=1", "WHILE R1<9", "G1 X=R1 F100", "+ R1=R1+1", "- R1=R1+.0001", "ENDWHILE",

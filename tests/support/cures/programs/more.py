@@ -76,6 +76,7 @@ _SOUND: Final = HEADS["yl569"].format(lines="G1 X10 F100")
 
 CURES: Final = (
     _file("NC110 long_line", "- " + "X" * 5_000_000, "+ " + _SOUND.rstrip()),
+    _file("NC114 is_subprogram", *_SOUND.splitlines()[:-1], "- M17", "+ M30"),
     Cure("NC130", "not_a_subprogram_name", _with_files("notes.txt"), _SOUND, (), cured_by=_with_files("notes.spf")),
     Cure("NC130", "same_name", _with_files("ONE.SPF", "a/one.spf"), _SOUND, (), cured_by=_with_files("ONE.SPF")),
     Cure("NC132", "", _with_files(), _SOUND.replace("G1 X10", "FOO\nG1 X10"), (), cured_by=_with_files("FOO.SPF")),
@@ -128,6 +129,7 @@ CURES: Final = (
     _in("NC224 corner_feed", "G1 X40 F100", "- Y40 RND=5", "+ Y40 RND=5 FRC=100", "X9 F200"),
     _in("NC224 corner_feed_in_no_manual", "G1 X40. F100.", "X40. Y40. ,R5.", "- X90. F50.", "+ X90. F100.", on=_FANUC),
     _in("NC224 cycle800_direct_axes_unknown", '- CYCLE800(0,"",0,192,0,0,0,20,40,0,0,0,0,1)', "G1 X10 F100"),
+    _in("NC224 number_without_point", "- G1 X10 F100.", "+ G1 X10. F100.", on=_FANUC),
     _in("NC224 smooths_path", "- G5.1 Q3 X0 Y0", "+ G5.1 Q1", "G1 X10. F100.", "+ G5.1 Q0", on=_FANUC),
     _in("NC224 traori_only_machine_knows_what", "- TRAORI(3)", "+ TRAORI", "G54", "G1 X10 F100", "TRAFOOF", "G54"),
     _in("NC224 traori_turns_basic_position", "- TRAORI(,0,1,0)", "+ TRAORI", "G54", "G1 X10 F100", "TRAFOOF", "G54"),

@@ -50,6 +50,8 @@ CURES: Final = (
     _line("NC143", "", "IF R9==1\nENDIF", "R9=2\nIF R9==1\nENDIF"),
     _line("NC215", "speed_below_zero", "S-500", "S500"),
     _line("NC160", "endproc_without_proc", "ENDPROC", ""),
+    _line("NC212", "behind_statement", "R1=1\nIF R1==1\nENDIF M8", "R1=1\nIF R1==1\nENDIF\nM8"),
+    _line("NC212", "alone_in_block", "G4 F0.5 M8", "G4 F0.5\nM8"),
     Cure("NC113", "is_kind_by_one", verify("yl569"), _KLARTEXT, (), cured_by=verify("mikron_600u")),
     _said("modal", "", _SINUMERIK.replace(" F100", ""), ("G1 X10", "G1 X10 F100")),
     _said("modal", "", _SINUMERIK.replace(" M3", ""), ("S500", "S500 M3")),

@@ -67,7 +67,21 @@ def _project(message: str, old: str, new: str, text: str = _DIVIDED, **cl: str) 
     return script(message, f"{told}trunnion post p.toml", *(each.replace("\n", "\\n") for each in (old, new)))
 
 
+_OVER: Final = CL.replace("GOTO/-20,0,20,0,0,1", "GOTO/20,0,20,0,0,1")
+_THICK: Final = f'{_OVER}#END\nstock = "box:50,40,90,0,-20,-10"\n{_POSTED}'
+_CLAMPED: Final = _WHOLE.replace("part =", 'fixtures = ["beside.stl"]\npart =')
+_JUDGED: Final = '[checks]\nsimulate = "refuse"\n'
+
 CURES: Final = (
+    Cure("PRJ240", "rapid_through_stock", _post, _THICK, (("box:50,40,90", "box:50,40,10"),)),
+    Cure("PRJ240", "rapid_through_stock", _post, _THICK, (("GOTO/20,0,20", "GOTO/20,0,90"),)),
+    Cure(
+        "PRJ240",
+        "fixtures_not_checked",
+        _post,
+        f"{CL.replace(_LOW, _HIGH)}#END\n{_CLAMPED.replace(_JUDGED, '')}",
+        ((_POSTED, _POSTED + _JUDGED),),
+    ),
     _project("PRJ140 leaves_something_on", _ON, "", a=operation("A", end=_ON), b=operation("B")),
     _project("PRJ140 leaves_something_on", 'divide = "operations"\n', "", a=operation("A", end=_ON), b=operation("B")),
     _project(

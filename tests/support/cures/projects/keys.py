@@ -48,6 +48,8 @@ CURES: Final = (
              before="write shop.py 'def on_block(block, context): return None'\n"),
     _project("DEF330 names_no_file", _HEAD.replace("part.cls", "other.cls"), "other.cls", "part.cls"),
     _project("DEF330 leads_out_of_project", _HEAD.replace("part.cls", "../part.cls"), "../", ""),
+    _project("DEF330 word_to_fill", _HEAD + 'settings = { spindle = "OP1:RPM" }\n', "RPM", "900",
+             "trunnion check p.toml"),
     _project("DEF330 setting_has_key", _HEAD + 'settings = { zero = "0,0,0" }\n', 'settings = { zero = "0,0,0" }',
              "zero_mm = [0, 0, 0]"),
     _project("DEF330 no_stock", _HEAD + 'stock = ""\n[checks]\nsimulate = "warn"\n', 'stock = ""', _CUT),

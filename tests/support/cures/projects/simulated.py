@@ -115,7 +115,26 @@ _JOBS: Final = (
     + _WHOLE
     + 'machine = "xyzac_trt"\ntiles = 2\nstop_at = "first"\n'
 )
+
+
+def _posted_first(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Post a project, and simulate it."""
+    trunnion.post_project(project_written(text, folder))
+    return ended(lambda: trunnion.simulate(folder / "part.toml"))
+
+
+_DIVIDED: Final = 'divide = "operations"\n'
+
 CURES: Final = (
+    Cure("DEF330", "not_posted_yet", _simulated(), _POSTED + _WHOLE, (), cured_by=_posted_first),
+    Cure(
+        "DEF330",
+        "becomes_several_files",
+        _simulated(),
+        _POSTED + _DIVIDED + _WHOLE,
+        ((_WHOLE, _WHOLE + '[checks]\nsimulate = "refuse"\n'),),
+        cured_by=_project_posted("part.toml"),
+    ),
     Cure("SIM111", "project_among_programs", _simulated("part.toml", "one.ngc"), ONE, (), cured_by=_simulated()),
     Cure(
         "SIM111",

@@ -52,6 +52,7 @@ class Settings:
     """The settings of a control.
 
     calculator   numbers without a point are millimetres, inches and degrees, not least increments
+    states_numbers   the definition says how they count
     unit         mm or inch, as long as a program states none; empty: not known
     increment    the least increment, mm and degrees; a tenth of it for inches
     words        words that the control has in place of the family's
@@ -89,6 +90,7 @@ class Settings:
     kept_by: str = KEPT_BY
     extended_offsets: int = HIGHEST_EXTENDED
     variables: Mapping[str, float] = field(default_factory=dict)
+    states_numbers: bool = True
 
     def length(self, inches: bool) -> float:
         """Return the unit of whole numbers that are lengths, in mm or inches."""
@@ -119,13 +121,14 @@ class Settings:
 
     def scale(
         self, block: Block, mode: int, inches: bool, *, angles: str = "", plain: Collection[str] = frozenset()
-    ) -> None:
-        """Scale the whole numbers of a block by their units.
+    ) -> tuple[str, float] | None:
+        """Scale the whole numbers of a block by their units; return the first word that this changes, and its value.
 
         The letters ``angles`` are angles besides A, B and C; those in ``plain`` count as they are written.
         """
+        changed: tuple[str, float] | None = None
         if self.calculator:
-            return
+            return changed
         for letter, number in block.words.items():
             if not number.whole or letter in plain:
                 continue
@@ -138,6 +141,9 @@ class Settings:
             else:
                 continue
             block.words[letter] = Number(number.value * factor)
+            if changed is None and number.value and factor != 1.0:
+                changed = f"{letter}{number.value:g}", number.value * factor
+        return changed
 
     def check_dwell(self, block: Block) -> None:
         """Refuse P of a dwell with a point, where P counts milliseconds and takes none: the control stops there."""
@@ -187,6 +193,7 @@ def settings_of(machine: Machine) -> Settings:
         kept_by=table.text("kept_by", KEPT_BY),
         variables=read_variables(table, VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
+        states_numbers="whole_numbers" in table,
     )
     table.report_unread_keys()
     table.raise_problems()

@@ -154,8 +154,8 @@ TABLE: Final = WordTable(
         act="look_ahead", letters="P", values={"P": whole(0, 15)}, numbered=True,
     ),
     Word(
-        "G: bolt hole circle", "the cycle in force at `L` places of a circle of radius `I` about the tool, from the "
-        "angle `J` on", act="bolt_holes", letters="IJL", when=_BEHIND, moves=False,
+        "G: bolt hole circle", "the cycle in force or of the block at `L` places of a circle of radius `I` about the "
+        "tool, from the angle `J` on", act="bolt_holes", letters="IJL", when=_BEHIND, moves=False,
     ),
     Word(
         "G: bolt hole arc", "the same, with the angle `K` from one to the next", act="bolt_holes", letters="IJKL",

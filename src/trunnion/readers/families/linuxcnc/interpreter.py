@@ -192,7 +192,8 @@ class LinuxcncInterpreter(CycleInterpreter):
         # P0 is no tolerance: the control keeps its speed, as without P.
         control.add_tolerance(max(tolerance, naive or 0.0) * control.length_unit if tolerance else np.inf)
         within = (tolerance or 0.0, (tolerance or 0.0) if naive is None else naive)
-        rounding, joining = (f"{each * control.length_unit:.6g}" for each in within)
+        # In two digits: 0.0004 inch stands for 0.01 mm. The wider one is compared by its value besides.
+        rounding, joining = (f"{each * control.length_unit:.2g}" for each in within)
         control.say_mode(_WITHIN, f"P{rounding} Q{joining}")
         control.add_exact_stop("off")
 

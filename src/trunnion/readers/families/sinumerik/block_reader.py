@@ -85,13 +85,18 @@ class BlockReader:
         letter = reader.peek()
         start = reader.at
         reader.at += 1
-        extension = self._extension(reader)
-        if letter == "R" and (extension or reader.peek() == "["):
-            reader.at = start + 1
-            self._parameter(reader, variables)
-            return
-        name = letter + extension
-        value, mode = self._value(reader)
+        plain = reader.plain_number()
+        value: Value
+        if plain is not None:
+            name, extension, value, mode = letter, "", plain, PositionMode.MODAL
+        else:
+            extension = self._extension(reader)
+            if letter == "R" and (extension or reader.peek() == "["):
+                reader.at = start + 1
+                self._parameter(reader, variables)
+                return
+            name = letter + extension
+            value, mode = self._value(reader)
         if name in self._axes:
             self._axis(block, name, as_number(value), mode)
         elif isinstance(value, str) and name != "T":
@@ -137,15 +142,10 @@ class BlockReader:
                 reader.expect(")")
                 return value, PositionMode(mode)
             return reader.value(), PositionMode.MODAL
-        sign = 1.0
-        if reader.peek() in ("+", "-"):
-            sign = -1.0 if reader.peek() == "-" else 1.0
-            reader.at += 1
-        token = reader.token
-        if token is None or token.kind is not TokenKind.NUMBER:
+        number = reader.plain_number()
+        if number is None:
             raise ExpressionError(Wording("NC210", "number_missing"))
-        reader.at += 1
-        return sign * token.value, PositionMode.MODAL
+        return number, PositionMode.MODAL
 
     def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
         self._once(name, name in block.axes)
