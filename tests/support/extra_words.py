@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from trunnion.errors import InputError
 from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
@@ -22,15 +23,18 @@ def without_use(
     faulty: list[str] = []
     count = 0
 
-    def run(block: str, extra: str) -> Run:
+    def run(block: str, extra: str) -> Run | None:
         marked = block if "|" in block else f"{block}|"
         program.write_text(frame.format(lines=marked.replace("|", f" {extra}" if extra else "")), encoding="utf-8")
-        return run_program(program, loaded)
+        try:
+            return run_program(program, loaded)
+        except InputError:
+            return None
 
     for block, extras in forms.items():
         plain = run(block, "")
-        if plain.errors:
-            faulty.append(f"{block}: {plain.errors[0].text}")
+        if plain is None or plain.errors:
+            faulty.append(block if plain is None else f"{block}: {plain.errors[0].text}")
             continue
         shown = _shown(plain)
         for extra in extras:
@@ -40,12 +44,22 @@ def without_use(
     return dropped, faulty, count
 
 
-def _shown(run: Run) -> str:
+def _shown(run: Run | None) -> str:
     """All that a run shows of its words, besides the text of a block that an event repeats."""
+    if run is None:
+        return "an error that ends the run"
     motions = (run.tip, run.kind, run.spindle, run.tool, run.feed, run.work_offset, run.machine_frame, run.inches)
     modes = [getattr(run.state, name).column().tolist() for name in ("feed_mode", "compensation", "radius", "edge")]
     events = [(event.before_row, event.kind, event.value) for event in run.events if event.kind not in _OF_TEXT]
-    return repr(([column.tolist() for column in motions], modes, events, [each.code for each in run.diagnostics]))
+    return repr(
+        (
+            [column.tolist() for column in motions],
+            modes,
+            events,
+            run.spindle_holes,
+            [each.code for each in run.diagnostics],
+        )
+    )
 
 
 _OF_TEXT = ("plane", "cycle32")

@@ -18,7 +18,7 @@ from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
-from trunnion.readers.rs274.block import Block, Number
+from trunnion.readers.rs274.block import Block, Number, g_code_text
 from trunnion.readers.rs274.expressions import BlockError, Value
 from trunnion.readers.rs274.word_interpreter import WordInterpreter
 from trunnion.readers.rs274.word_table import Word
@@ -80,6 +80,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         number, repeats = block.take("P"), block.take("L")
         if number is None:
             raise BlockError(Wording("NC210", "call_macro_needs_p"))
+        self._words_beside_macro(block)
         arguments: dict[int, float] = {}
         for letter, word in block.words.items():
             if letter in "PL":
@@ -96,6 +97,16 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
             active.modal = macro
         else:
             self._enter_subprogram(macro.number, macro.repeats, macro.arguments)
+
+    def _words_beside_macro(self, block: Block) -> None:
+        """Execute the modes beside G65 and G66; refuse other codes, and a second M word: the first is an argument."""
+        name = g_code_text(next(code for code in block.g if code in words.MACROS))
+        for other in self.table.words("G", [code for code in block.g if code not in words.MACROS]):
+            if other.letters or not other.moves:
+                raise BlockError(Wording("NC210", "block_takes_no", block=name, word=other.text))
+            self._execute_word(other, block)
+        if len(block.m) > 1:
+            raise BlockError(Wording("NC210", "block_takes_no", block=name, word=f"M{block.m[1]}"))
 
     def _argument(self, letter: str, word: Number) -> float:
         if word.whole and word.value and not self.control.settings.calculator and letter not in "DEHMST":

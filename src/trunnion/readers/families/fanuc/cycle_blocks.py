@@ -70,7 +70,8 @@ class CycleInterpreter(OffsetInterpreter):
             return
         self._take_cycle_words(block, axes)
         repeats = block.take(letter)
-        block.take("L")
+        if "L" in block.words and block.words["L"].value == 1.0:
+            block.take("L")
         self._report_rotary_words(axes)
         self._require_words(self._modal_words)
         holes = 1 if repeats is None else int(repeats)
@@ -92,6 +93,8 @@ class CycleInterpreter(OffsetInterpreter):
         }
         if (along := "XYZ"[self.control.plane_axis]) in axes:
             given["Z"] = axes[along][0]
+        if self.motion_code in cycles.PECKS and self.motion_code in block.g:
+            self._modal_words.pop("P", None)  # the dwell of another cycle
         self._modal_words |= given
         self._warn_of_shift(given)
 
@@ -206,7 +209,15 @@ class CycleInterpreter(OffsetInterpreter):
 
     def _check_dwell(self, block: Block) -> None:
         settings = self.control.settings
+        if words.MACHINE in block.g:
+            raise BlockError(Wording("NC210", "block_takes_no", block=g_code_text(self.motion_code), word="G53"))
         dwell = block.words.get("P")
+        with_p = (*cycles.WITH_P, *(cycles.PECKS if settings.repeat_letter == "L" else ()))
+        for letter, codes in (("P", with_p), ("Q", cycles.WITH_Q)):
+            written = block.words.get(letter)
+            of_offset = letter == "P" and words.takes_number(block)
+            if written is not None and written.value and self.motion_code not in codes and not of_offset:
+                self._note(Wording("NC213", "unused_word", word=letter), Severity.ERROR)
         if dwell is not None and dwell.value < 0.0 and not words.takes_number(block):
             raise BlockError(Wording("NC215", "negative_dwell"))
         in_doubt = settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value

@@ -26,6 +26,13 @@ BACK_BORE: Final = 870
 #: Those with such words. Where others know I and J, they describe pecks or a retract.
 SHIFTED: Final = (FINE_BORE, BACK_BORE)
 
+#: Cycles of pecks.
+PECKS: Final = (730, 830)
+
+#: The cycles that have a use for a word: the dwell P, and the peck or shift Q.
+WITH_P: Final = (740, 760, 820, 840, 870, 880, 890)
+WITH_Q: Final = (*PECKS, 740, 760, 840, 870)
+
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "RZPQIJ"
 
@@ -118,7 +125,7 @@ def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
         return [HoleMotion(True, hole.retract), *([HoleMotion(True, height(above))] if above > 0.0 else [])]
 
     back = chip_break(height, CHIP_BREAK * hole.units, rapid=True, least=0.0)
-    return descent(peck_depths(total, hole.peck), height, out if full else back)
+    return descent(peck_depths(total, hole.peck), height, out if full else back, dwells=(0.0, hole.dwell))
 
 
 def _back_bore(hole: Hole) -> list[HoleMotion]:

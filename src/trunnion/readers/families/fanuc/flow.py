@@ -15,6 +15,11 @@ from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
 
 _WORD = re.compile(r"IF|GOTO|WHILE|DO|END(?=[0-9#\[])")
 
+#: A number, a variable, a function or a value in brackets, whose content is left out.
+_VALUE: Final = r"[-+]*(?:[A-Z]*\[\]|#+(?:[0-9]+|_[A-Z0-9_]+|\[\])|[0-9]+\.?[0-9]*|\.[0-9]+)"
+_NUMBER = re.compile(_VALUE)
+_ASSIGNMENT = re.compile(rf"#+(?:[0-9]+|_[A-Z0-9_]+|\[\])={_VALUE}(?:(?:[-+*/]|MOD|AND|XOR|OR){_VALUE})*")
+
 #: Block and loop numbers are smaller.
 _HIGHEST: Final = 10**9
 
@@ -86,13 +91,17 @@ class Flow:
     def _if(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         holds = self._holds(active, reader)
         if reader.accept("GOTO"):
+            end = _behind(_NUMBER, reader)
+            if end < len(reader.text):
+                reader.at = end
+                return  # what stands there is reported, and nothing jumps
             if holds:
                 self._goto(active, line, reader)
-            reader.at = len(reader.text)
+            reader.at = end
             return
         reader.expect("THEN")
         if not holds:
-            reader.at = len(reader.text)
+            reader.at = _behind(_ASSIGNMENT, reader)
             return
         reader.expect("#")
         key = reader.parameter_key()
@@ -141,6 +150,19 @@ def _whole(value: float | None) -> int:
     if value is None or abs(value - round(value)) > 1e-6 or not 0 <= value < _HIGHEST:
         raise BlockError(Wording("NC210", "whole_number_missing"))
     return round(value)
+
+
+def _behind(what: re.Pattern[str], reader: ExpressionReader) -> int:
+    """Return where something ends of which nothing is evaluated: it may stand on a way that the program does not go."""
+    places: list[int] = []
+    at = reader.at
+    while at < len(reader.text):
+        places.append(at)
+        at = _behind_bracket(reader.text, at) if reader.text[at] == "[" else at + 1
+        if reader.text[places[-1]] == "[":
+            places.append(at - 1)
+    match = what.match("".join(reader.text[place] for place in places))
+    return reader.at if match is None else [*places, len(reader.text)][match.end()]
 
 
 def _behind_bracket(text: str, at: int) -> int:

@@ -76,6 +76,9 @@ class CycleInterpreter(OffsetInterpreter):
         """Drill at the positions of a block."""
         along = "XYZ"[self.control.plane_axis]
         self._report_rotary_words(axes)
+        for letter in block.unused():
+            if code not in cycles.OWN_WORDS.get(letter, (code,)):
+                raise BlockError(Wording("NC213", "unused_word", word=letter))
         given = {letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None}
         given |= {"Z": axes[along][0]} if along in axes else {}
         begins = code != self.motion_code

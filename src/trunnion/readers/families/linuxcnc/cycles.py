@@ -13,6 +13,11 @@ from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 #: Words of cycles that hold until another cycle begins.
 MODAL_WORDS: Final = "RZPQIJK"
 
+#: The cycles that have a use for a word; the interpreter refuses it in any other.
+OWN_WORDS: Final = {
+    "P": (740, 820, 840, 860, 880, 890), "Q": (730, 830), "D": (730, 830), "I": (870,), "J": (870,), "K": (870,),
+}  # fmt: skip
+
 #: How far above the last depth the rapid approach of G83 ends, and how far G73 backs off, in inches.
 CLEARANCE: Final = 0.01
 
