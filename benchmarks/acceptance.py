@@ -2,26 +2,28 @@
 
 CL files are described, posted on one shipped machine for each control, posted again with stand-ins for the settings
 that errors ask for, verified against their CL file as programs of someone else, and converted back; NC programs are
-verified and converted to CL. What it prints is what ``trunnion survey`` prints, which stops behind the post, and the
-share of posts that are proven.
+verified, once more with the keys that ``trunnion check --program`` proposes where they are refused, and converted to
+CL. What it prints is what ``trunnion survey`` prints, which stops behind the post, and the shares of posts that are
+proven and of programs that are read.
 """
 
 import argparse
 from collections import Counter
+from collections.abc import Sequence
 
 from trunnion.cli import configure_process
 from trunnion.cli.many_files.counting_terminal import CountingTerminal
 from trunnion.cli.many_files.survey import survey_lines
 from trunnion.results import as_json, to_data
 from trunnion.survey.found_files import FileKind
-from trunnion.survey.result import Became, Survey
+from trunnion.survey.result import Became, Survey, SurveyedFile
 from trunnion.survey.taking import TIMEOUT, take_survey
 from trunnion.survey.trying import Step
 
 #: All that is tried.
 STEPS = {
     FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS, Step.VERIFY, Step.CONVERT),
-    FileKind.PROGRAM: (Step.VERIFY, Step.CONVERT),
+    FileKind.PROGRAM: (Step.VERIFY, Step.KEYS, Step.CONVERT),
 }
 ONLY = {"cl": FileKind.CL, "nc": FileKind.PROGRAM}
 
@@ -41,6 +43,18 @@ def shares(found: Survey) -> str:
     )
 
 
+def read_shares(programs: Sequence[SurveyedFile]) -> str:
+    """Return the shares of programs that are read as they are, and with one round of keys."""
+    became = Counter(each.became for each in programs if each.became is not Became.CALLED)
+    count = max(became.total(), 1)
+    read = sum(n for each, n in became.items() if each.passed) + became[Became.BEYOND]
+    keyed = read + became[Became.READ_KEYED]
+    return (
+        f"{became.total()} programs besides subprograms of others: {read} read as they are ({read / count:.1%}), "
+        f"{keyed} after one round of keys ({keyed / count:.1%})"
+    )
+
+
 def main() -> None:
     """Run from the command line."""
     configure_process()
@@ -57,7 +71,12 @@ def main() -> None:
         said.folder, machine=said.machine, timeout=said.timeout, workers=said.workers, steps=steps,
         observer=CountingTerminal(),
     )  # fmt: skip
-    print(as_json(to_data(found)) if said.json else "\n".join((*survey_lines(found), shares(found))))
+    programs = [file for file in found.files if file.kind is FileKind.PROGRAM]
+    print(
+        as_json(to_data(found))
+        if said.json
+        else "\n".join((*survey_lines(found), shares(found), read_shares(programs)))
+    )
 
 
 if __name__ == "__main__":

@@ -135,15 +135,22 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     )
 
 
-#: Parameters that are the word or the code that a message is about, and the value of a word that is no code: ``X12.5``.
-_WORDS: Final = ("word", "code")
-_VALUE: Final = re.compile(r"(?<=^[A-FH-LN-Z])[ =]*[-+.0-9].*$")
+#: Parameters that are what a message is about: a word or a code, or what is called. Variables are one kind.
+_WORDS: Final = frozenset({"word", "code", "words", "call", "label", "letter", "extension", "function", "cycle"})
+
+#: The value of a word that is no code: ``X12.5``; and what stands behind the name of a word: ``FL [ X ] = 9``.
+_VALUE: Final = re.compile(r"(?<=^[A-FH-LN-Z])[ =]*[-+.0-9].*$|(?<=[A-Z0-9_])[ ]*[=(\[].*$")
 
 
 def kind_of(wording: Wording) -> tuple[str, ...]:
     """Return of what kind a message is: its code and variant, with those of the wordings that are filled in."""
     parts = (kind_of(value) for _, value in wording.parameters if isinstance(value, Wording))
     return tuple(chain((wording.code, wording.variant), *parts))
+
+
+def mistake_of(wording: Wording) -> tuple[str, ...]:
+    """Return which mistake a message is about: its kind and its words, as another G code is another mistake."""
+    return (*kind_of(wording), *_words_of(wording))
 
 
 def _words_of(wording: Wording) -> tuple[str, ...]:
@@ -156,8 +163,8 @@ def _words_of(wording: Wording) -> tuple[str, ...]:
 def first_of_kinds(problems: Sequence[Problem], most: int) -> tuple[list[Problem], int]:
     """Where more than ``most`` lines have errors, keep the first error of each kind, with the number of its kind.
 
-    Errors of a file as a whole, and all that is no error, stay as they are. Kinds are those of one file (``kind_of``)
-    and word: another G code is another mistake.
+    Errors of a file as a whole, and all that is no error, stay as they are. Kinds are those of one file
+    (``mistake_of``).
 
     Returns the problems, with ``most`` kinds of errors at most, and the number of errors of the kinds left out.
     """
@@ -166,7 +173,7 @@ def first_of_kinds(problems: Sequence[Problem], most: int) -> tuple[list[Problem
         return list(problems), 0
     firsts, counts = dict[tuple[str, tuple[str, ...]], Problem](), Counter[tuple[str, tuple[str, ...]]]()
     for problem in in_lines:
-        kind = problem.file, (*kind_of(problem.wording), *_words_of(problem.wording))
+        kind = problem.file, mistake_of(problem.wording)
         firsts.setdefault(kind, problem)
         counts[kind] += 1
     named = list(firsts.items())[:most]

@@ -134,11 +134,6 @@ def test_files_of_a_folder_are_those_within(tmp_path: Path) -> None:
     assert folder_files(tmp_path / "in", tmp_path / "in/out") == ["a/x.cls", "same.cls"]
 
 
-def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="FIL110"):
-        folder_files(tmp_path / "no")
-
-
 def test_results_never_take_the_places_of_files_that_are_read(tmp_path: Path) -> None:
     """Not even where an earlier run of the same batch has written them."""
     nc = tmp_path / "nc"

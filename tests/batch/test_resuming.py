@@ -210,7 +210,12 @@ def test_a_file_that_leads_elsewhere_since_it_was_found_is_not_read(tmp_path: Pa
     batch = simple_batch(tmp_path / "in")
     (tmp_path / "in/x.cls").unlink()
     (tmp_path / "in/x.cls").symlink_to(tmp_path / "real.cls")
-    assert run_simply(batch, FolderStore(tmp_path / "out")).counts == {Status.UNUSABLE: 1}
+    result = run_simply(batch, FolderStore(tmp_path / "out"))
+    assert result.counts == {Status.UNUSABLE: 1}
+    (failure,) = result.failures()
+    assert failure.error is not None
+    assert (failure.file, failure.error.code) == ("x.cls", "FIL120")
+    assert failure.error.what == "leads out of the folder by a link"
 
 
 def test_results_that_lost_their_records_are_taken_over_where_they_are_the_same(tmp_path: Path) -> None:

@@ -110,6 +110,6 @@ def test_a_cycle_that_nothing_ends_is_refused(
 ) -> None:
     word = "CLEAR" if dialect in ("ncl", "catia") else "RAPTO"
     lines = ["FEDRAT/100,MMPM", f"CYCLE/DRILL,{'FEDTO' if word == 'RAPTO' else 'DEPTH'},3,{word},5", "GOTO/1,2,3"]
-    assert "is still on where another operation begins" in refused(dialect, *lines, begin, "GOTO/4,5,6")
+    assert "is still on where operation" in refused(dialect, *lines, begin, "GOTO/4,5,6")
     operation = apt(dialect, *lines, "CYCLE/OFF", begin, "RAPID", "GOTO/4,5,6", "GOTO/4,5,5")
     assert operation.moves.feed.tolist() == [100, 100]

@@ -114,7 +114,6 @@ def test_a_circle_in_two_parts_is_the_same_circle(tmp_path: Path, capfd: pytest.
         ("T=2", "T=3", "tool 2 against 3"),
         ("S2500 D1 M3", "S2500 D1 M3 M8", "coolant differs"),
         ("N520 X47.2619 Y-2.54083 Z-20.39393\n", "", "the first program has 1 more point"),
-        ("N420 TRAORI\n", "", "tips are"),
     ],
 )  # fmt: skip
 def test_a_difference_is_named_with_both_blocks(

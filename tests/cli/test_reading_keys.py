@@ -19,6 +19,12 @@ END = "G0 Z9.\nG49\nM30\n%\n"
         ("matsuura_mx330", FANUC + "G1 X5. F9. *\nX7.*\n" + END, {"block_ends": ["*"]}),
         ("matsuura_mx330", FANUC + "G1 X5. F9. ; FIRST\nX7. 'LAST\n" + END, {"more_comments": [";", "'"]}),
         ("matsuura_mx330", FANUC + "G1 X5. F9.\nG2 X7. Y2. I7. J0.\n" + END, {"arc_centres": "absolute"}),
+        ("matsuura_mx330", FANUC + "G1 X5. F9. (A (B))\n" + END, {"nested_comments": "counted"}),
+        (
+            "matsuura_mx330",
+            FANUC + "G1 X-40. Y50. F9.\nG3 X-30. Y40. I-40 J40\n" + END,
+            {"arc_centres": "absolute", "whole_numbers": "calculator"},
+        ),
         ("matsuura_mx330", FANUC + "G1 N5 X5. F9.\n" + END, {"numbers_anywhere": "anywhere"}),
         ("xyzac_trt", ":12\nG21 G90 G94\nG1 X5 F9\nM2\n", {"program_numbers": [":"]}),
         ("yl569", "G71 G90\nG1 X5 F9 ! FIRST\nM30\n", {"more_comments": ["!"]}),
@@ -46,3 +52,12 @@ def test_the_proposal_is_toml_to_copy_and_changes_nothing(tmp_path: Path, capsys
     assert ours.read_text() == before
     ours.write_text(before + said[said.index("[control.reading]") :])
     assert trunnion.read_program(program, machine=str(ours)).errors == ()
+
+
+def test_a_subprogram_is_named_before_what_is_proposed(tmp_path: Path) -> None:
+    program = tmp_path / "a.nc"
+    program.write_text("O77\nG91 G1 X1. F100.\nM99\n")
+    lines = list(proposed_reading(program, trunnion.load_machine("matsuura_mx330")).lines())
+    assert lines[0].startswith("this looks like a subprogram, by M99 in line 3; give the program that calls it")
+    program.write_text(FANUC + "G1 X5. F9.\n" + END)
+    assert len(list(proposed_reading(program, trunnion.load_machine("matsuura_mx330")).lines())) == 1

@@ -1,9 +1,11 @@
 """``trunnion post --suggest`` writes a project that posts, once the words in capitals are filled in."""
 
+import re
 from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.posting import FOOT, HEAD
 from trunnion.cli import main
 from trunnion.cli.suggest import NotingTerminal, suggestion
@@ -14,6 +16,7 @@ from trunnion.jobs.project.project import Judgement, Project
 from trunnion.jobs.registry import JOBS
 from trunnion.options.kinds import FileOut, Setting
 from trunnion.options.option import Option
+from trunnion.options.words import WORDS_TO_FILL
 
 _BARE = HEAD.replace("LOAD/TOOL,1,ADJUST,1\n", "").replace("SPINDL/RPM,4000.0000,CLW\n", "")
 TWO = _BARE + FOOT + _BARE.replace("OP1", "OP 2").replace("D10", "D12").replace("FEDRAT/MMPM,500.0\n", "") + FOOT
@@ -26,7 +29,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_the_project_posts_once_it_is_filled_in(folder: Path) -> None:
+def test_the_project_posts_once_it_is_filled_in(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     post = ["post", "part.cls", "--machine", "matsuura_mx330", "--set", "title=BLADE", "--suggest", "part.toml"]
     assert main([*post, "--output", "part.nc"]) == 2
     project = folder / "part.toml"
@@ -37,6 +40,10 @@ def test_the_project_posts_once_it_is_filled_in(folder: Path) -> None:
     assert 'missing_feed = "OP 2:MM_MIN"' in text
     assert '\n# standing_spindle = "allowed"' in text
     assert main(["post", "part.toml"]) == 2, "nothing is filled in"
+    assert main(["check", "part.toml"]) == 2
+    said = capsys.readouterr().err
+    for word in ("NUMBER", "RPM", "MM_MIN"):
+        assert f"has the word {word}, in whose place a value is to stand" in said
     filled = text.replace("NUMBER", "7", 1).replace("NUMBER", "8").replace("RPM", "900").replace("MM_MIN", "300")
     project.write_text(filled, encoding="utf-8")
     assert main(["post", "part.toml"]) == 0
@@ -68,6 +75,9 @@ def test_numbers_that_were_given_stand_under_their_keys(folder: Path) -> None:
     assert "tool_length_mm = 120.5" in text
     assert main(["post", "part.toml"]) == 0
 
+
+MESSAGES = Path(trunnion.__file__).parent / "messages" / "en"
+_SETTING = re.compile(r"\{setting:\w+=([^}]*)\}")
 
 #: Values of the options of a post that a project states; those of files are there.
 _GIVEN: dict[str, object] = {
@@ -155,7 +165,7 @@ def test_nothing_is_written_where_nothing_can_be_filled_in(folder: Path, capsys:
 
 def test_errors_that_no_setting_ends_are_counted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "part.cls").write_text(
-        _BARE + FOOT + HEAD.replace("4000.0000", "0.3").replace("OP1", "OP2") + FOOT, encoding="utf-8"
+        _BARE + FOOT + HEAD.replace("MMPM,500.0", "MMPR,0.0001").replace("OP1", "OP2") + FOOT, encoding="utf-8"
     )
     post = ["post", "part.cls", "--machine", "matsuura_mx330", "--output", "part.nc", "--suggest", "part.toml"]
     assert main(post) == 2
@@ -168,3 +178,9 @@ def test_a_file_that_no_project_names_is_refused(folder: Path, capsys: pytest.Ca
     assert main(["post", "a\\b.cls", "--machine", "yl569", "--output", "b.mpf", "--suggest", "part.toml"]) == 2
     assert "FIL320" in capsys.readouterr().err
     assert not (folder / "part.toml").exists()
+
+
+def test_every_word_that_messages_ask_to_fill_in_is_known_to_projects() -> None:
+    asked = [value for file in sorted(MESSAGES.glob("*.toml")) for value in _SETTING.findall(file.read_text("utf-8"))]
+    words = {value.rpartition(":")[2].lstrip("-") for value in asked}
+    assert {word for word in words if re.fullmatch("[A-Z_,]+|…", word)} <= {*WORDS_TO_FILL}

@@ -94,7 +94,7 @@ def test_a_mistake_in_a_definition_has_the_code_of_its_kind(text: str, code: str
     [
         ("hs664rt", ("FEDRAT/MMPR,0.1", "GOTO/5,0,5", "END-OF-PATH"), "CTL330"),  # what a family cannot express
         ("yl569", ("CYCLE/DRILL,RAPTO,3,MMPM,100", "GOTO/5,0,5", "CYCLE/OFF", "END-OF-PATH"), "PLN610"),  # a cycle
-        ("yl569", ("GOTO/5,0,5,0,0,-1", "END-OF-PATH"), "PLN120"),  # a pose
+        ("yl569", ("GOTO/5,0,5,0,0.1,-0.9949874", "END-OF-PATH"), "PLN120"),  # a pose
         ("yl569", ("GOTO/12345678,0,5,0,0,1", "END-OF-PATH"), "CL360"),
     ],
 )

@@ -5,16 +5,13 @@ import inspect
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from typing import get_args
 
 import pytest
 
 import trunnion
 from tests.support.locations import ROOT, YL569
-
-FUNCTIONS = [name for name in trunnion.__all__ if inspect.isfunction(getattr(trunnion, name))]
+from tests.support.public_api import FUNCTIONS, arguments_of
 
 
 def python(script: str, *arguments: str, folder: Path | None = None) -> str:
@@ -36,16 +33,6 @@ def test_every_public_name_is_there_and_documented() -> None:
         "sensitivity", "simulate", "verify", "verify_manifest",
         "write_curve_picture", "write_impeller_step", "write_placing_plot", "write_plot", "write_report", "write_view",
     ]  # fmt: skip
-
-
-def arguments_of(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
-    """The arguments of a function, those of its ``TypedDict`` among them."""
-    for each in signature.parameters.values():
-        if each.kind is not inspect.Parameter.VAR_KEYWORD:
-            yield each
-            continue
-        for name, kind in get_args(each.annotation)[0].__annotations__.items():
-            yield inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind)
 
 
 def undocumented(name: str) -> list[str]:

@@ -167,6 +167,22 @@ def test_turns_to_another_plane_are_not_skipped(
     assert "turns to another plane between blocks that may be skipped" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("machine", MACHINES)
+def test_what_may_be_skipped_ends_right_before_another_plane(machine: str, tmp_path: Path) -> None:
+    text = (
+        "RAPID\nGOTO/0,0,30\nCYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100\nGOTO/0,0,0\nOPSKIP/ON\n"
+        "GOTO/5,0,0\nOPSKIP/OFF\nGOTO/20,0,0,0.5,0,0.86602540378444\nGOTO/20,5,0\nCYCLE/OFF\n"
+    )
+    path, out = tmp_path / "part.cls", tmp_path / "part.nc"
+    path.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
+    assert main(["post", str(path), "--machine", machine, "--output", str(out)]) == 0
+    whole, short = (run_program(out, load_machine(machine), RunOptions(skip=skip)) for skip in (False, True))
+    assert len(short) < len(whole)
+    assert np.array_equal(short.axis[-1], whole.axis[-1])
+    assert (np.abs(whole.axis - (0.5, 0.0, 0.86602540378444)) < 1e-3).all(axis=1).any()
+    assert (np.abs(short.axis - (0.5, 0.0, 0.86602540378444)) < 1e-3).all(axis=1).any()
+
+
 #: One hole of several may be skipped.
 _ONE_HOLE = """\
 TOOL PATH/DRILLS,TOOL,D8

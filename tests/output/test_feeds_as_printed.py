@@ -35,6 +35,8 @@ ONE_DIGIT_TOO_FEW = [
     ("xyzac_trt", "MMPR,0.0001", f"error: a feed of 0.0001 is below the least that the control reads; {REV}"),
     ("hs664rt", "MMPM,0.2", f"error: a feed of 0.2 is below the least that the control reads; {PRINT}"),
     ("hs664rt", "MMPM,2.5", f"error: a feed of 2.5 prints as 2, which is 20 % off; {PRINT}"),
+    ("hs664rt", "MMPM,9.4", f"warning: a feed of 9.4 prints as 9, which is 4.3 % off; {PRINT}"),
+    ("hs664rt", "MMPM,8.5", f"error: a feed of 8.5 prints as 8, which is 5.9 % off; {PRINT}"),
     ("hs664rt", "MMPM,77.4", f"warning: a feed of 77.4 prints as 77, which is 0.52 % off; {PRINT}"),
     ("hs664rt", "MMPM,333.333", ""),
 ]

@@ -336,5 +336,5 @@ def test_another_tool_is_seen_in_an_operation_of_nothing_but_holes(tmp_path: Pat
     assert main(["post", str(cl), "--machine", "yl569", "--output", str(nc)]) == 0
     lines = nc.read_text(encoding="utf-8").splitlines()
     assert proven(lines, cl, tmp_path) == []
-    assert proven([line.replace("T=1", "T=2") for line in lines], cl, tmp_path) == ["holes"]
+    assert proven([line.replace("T=1", "T=2") for line in lines], cl, tmp_path) == ["tool", "holes"]
     assert "holes" in proven([line for line in lines if "S4000" not in line], cl, tmp_path)

@@ -101,8 +101,8 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
     "a way beyond a slide's limit": (
         slides(roomy("generic_head_head_ca"), Y=(-170.0, 170.0)),
         operation_of(two_points((40.0, 60.0), (40.0, 120.0))), OFF,
-        "part.cls:11: error: on the way to this point axis Y would go to 17\\d.\\d+, above its limit 170 mm",
-        "bring Y back by ",
+        "part.cls:11: error: on the way to this point axis Y would go to 175.168\\d+, above its limit 170 mm",
+        "bring Y back by 5.168 mm",
     ),
     "a step across the pole": (
         roomy("generic_head_head_ca"), operation_of(two_points((0.3, 0.0), (0.3, 150.0))),

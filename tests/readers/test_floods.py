@@ -8,6 +8,8 @@ import trunnion
 from trunnion.cli import main
 from trunnion.errors import Problem, first_of_kinds
 from trunnion.messages import Wording
+from trunnion.readers.program.error_tally import ErrorTally
+from trunnion.readers.program.limits import MAX_ERRORS
 
 Capture = pytest.CaptureFixture[str]
 
@@ -80,6 +82,22 @@ def test_other_words_are_other_kinds() -> None:
     assert left == 0
     assert "the first of 4 of this kind" in found[0].what
     assert "the first of 10 of this kind" in found[3].what
+
+
+def test_other_names_are_other_kinds_in_lists_and_in_what_ends_a_program() -> None:
+    wordings = [Wording("NC132", "unknown_or_missing", call=f"SUB{k % 2}") for k in range(6)]
+    wordings += [Wording("NC220", "known_not_simulated", words=f"{word} [ X ] = {k}") for k, word in enumerate("FLFV")]
+    wordings += [
+        Wording("NC211", "unknown_extended_word", letter="V", extension=str(k % 2), number=k) for k in (1, 2, 3)
+    ]
+    found, left = first_of_kinds([Problem("a.nc", 1 + k, each) for k, each in enumerate(wordings)], 10)
+    assert ([each.line for each in found], left) == ([1, 2, 7, 8, 10, 11, 12], 0)
+    tally = ErrorTally()
+    codes = ["91.1", "92.1"] * (MAX_ERRORS // 2)
+    for each in codes[1:]:
+        tally.add("a.nc", 1, Wording("NC211", "unknown_g_word", code=each))
+    with pytest.raises(trunnion.InputError, match=r"G92\.1.*G91\.1"):
+        tally.add("a.nc", 1, Wording("NC211", "unknown_g_word", code="93.1"))
 
 
 def test_a_program_in_place_of_a_cl_file_is_named(program: Path, capsys: Capture) -> None:

@@ -40,6 +40,14 @@ SAME_WITH_KEY = [
         "0 BEGIN PGM A MM\n1 L X+5 R0 F9 ! FIRST\n2 M30\n3 END PGM A MM\n",
         "0 BEGIN PGM A MM\n1 L X+5 R0 F9\n2 M30\n3 END PGM A MM\n",
     ),
+    (
+        'nested_comments = "counted"',
+        FANUC,
+        "O1\nG21 G1 X5. F9. (A (B) (C(D)))\n(E (F))\nX7. (G) Y1.\nM30\n",
+        "O1\nG21 G1 X5. F9. (A)\n(E)\nX7. (G) Y1.\nM30\n",
+    ),
+    ('nested_comments = "counted"', LINUXCNC, "G21 G1 X5 F9 (A (B))\nM2\n", "G21 G1 X5 F9 (A)\nM2\n"),
+    ('nested_comments = "counted"', FIDIA, "G71 G90\nG1 X5 F9 (A (B))\nM2\n", "G71 G90\nG1 X5 F9\nM2\n"),
     ('block_ends = ["*"]', FANUC, "O1*\nG21 G1 X5. F9.*(A)\nM30*\n", "O1\nG21 G1 X5. F9.(A)\nM30\n"),
     ('block_ends = ["LF", "$"]', SINUMERIK, "G1 X5 F9 LF\nX7$\nM30LF\n", "G1 X5 F9\nX7\nM30\n"),
     ('start_distances = "incremental"', FANUC, "O1\nG21 G1 X5. F9.\nX5.\nM30\n", "O1\nG91 G21 G1 X5. F9.\nX5.\nM30\n"),
@@ -70,6 +78,30 @@ SAME_WITH_KEY = [
         FIDIA,
         "G71 G90\nG1 X5 F9\nG2 X7 Y2 I2 J0\nM2\n",
         "G71 G90\nG1 X5 F9\nG2 X7 Y2 I7 J0\nM2\n",
+    ),
+    (
+        'arc_vectors = "from_centre"',
+        FANUC,
+        "O1\nG21 G1 X5. Y0. F9.\nG3 X0. Y5. I5. J0.\nM30\n",
+        "O1\nG21 G1 X5. Y0. F9.\nG3 X0. Y5. I-5. J0.\nM30\n",
+    ),
+    (
+        'arc_vectors = "unsigned"',
+        FANUC,
+        "O1\nG21 G1 X3. Y4. F9.\nG3 X0. Y5. I3. J4.\nG2 X4. Y3. I0. J5.\nG3 X1. Y0. I0. J3.\nM30\n",
+        "O1\nG21 G1 X3. Y4. F9.\nG3 X0. Y5. I-3. J-4.\nG2 X4. Y3. I0. J-5.\nG3 X1. Y0. I0. J-3.\nM30\n",
+    ),
+    (
+        'arc_vectors = "from_centre"',
+        LINUXCNC,
+        "G21 G1 X5 Y0 F9\nG3 X0 Y5 I5 J0\nM2\n",
+        "G21 G1 X5 Y0 F9\nG3 X0 Y5 I-5 J0\nM2\n",
+    ),
+    (
+        'arc_vectors = "from_centre"\narc_centres = "incremental"',
+        FIDIA,
+        "G71 G90\nG1 X5 Y0 F9\nG3 X0 Y5 I5 J0\nM2\n",
+        "G71 G90\nG1 X5 Y0 F9\nG3 X0 Y5 I0 J0\nM2\n",
     ),
     (
         'behind_circles = "line"',
@@ -145,6 +177,18 @@ def test_a_program_reads_with_the_key_as_in_the_form_of_the_family(
     assert moved(with_key) == moved(plain)
     without = read(tmp_path, machine, text)
     assert without.errors or moved(without) != moved(plain)
+
+
+@pytest.mark.parametrize(
+    "block",
+    ["G3 X-3. Y4. I0. J5.", "G2 X-5. Y0. I0. J5.", "G3 X5. Y0. I0. J5.", "G3 X-4. Y3. I0. J-5.", "G3 X0. Y5. I0. J5."],
+)
+def test_without_signs_no_circle_leaves_its_quadrant(block: str, tmp_path: Path) -> None:
+    run = read(tmp_path, FANUC, f"O1\nG21 G1 X0. Y5. F9.\n{block}\nM30\n", 'arc_vectors = "unsigned"')
+    signed = f"O1\nG21 G1 X0. Y5. F9.\n{block.replace('J', 'J-').replace('--', '-')}\nM30\n"
+    is_quadrant = block == "G3 X-3. Y4. I0. J5."
+    assert [each.code for each in run.errors] == ([] if is_quadrant else ["NC320"])
+    assert (moved(run) == moved(read(tmp_path, FANUC, signed))) == is_quadrant
 
 
 def test_what_the_definition_states_is_not_assumed(tmp_path: Path) -> None:

@@ -19,11 +19,11 @@ KLARTEXT = (
 #: Machines, their programs, and what is assumed of one that says nothing.
 PROGRAMS = [
     ("matsuura_mx330", FANUC, ("G90", "G17", "G40", "G94", "G69")),
-    ("haas_umc750", FANUC, ("G90", "G17", "G40", "G94")),
+    ("haas_umc750", FANUC, ("G90", "G17", "G40", "G94", "G255")),
     ("xyzac_trt", FANUC.replace("%\nO0001\n", "").replace("%\n", ""), ("G90", "G17", "G40", "G94", "M429")),
     ("hs664rt", OTHERS, ("G90", "G17", "G40", "G69", "G197")),
     ("dmu65", KLARTEXT, ("M137", "PLANE RESET", "M129")),
-    ("yl569", OTHERS, ("G90", "G17", "G40", "G94", "G71", "TRAFOOF")),
+    ("yl569", OTHERS, ("G90", "G17", "G40", "G94", "G71", "TRAFOOF", "CYCLE800()")),
 ]
 
 
@@ -60,6 +60,9 @@ def test_any_word_of_a_motion_ends_a_cycle(tmp_path: Path) -> None:
         assert set(found) == {*words, "G80"}
 
 
+#: What ends a plane, a rotation or TCP that was left on.
+PLANE_OFF = {"matsuura_mx330": "G69", "haas_umc750": "G255", "xyzac_trt": "M429"}
+
 CYCLE = "G0 X0. Y0. Z50.\n{}G81 X10. Y0. Z-5. R3. F100.\nX20. Y0.\nG80\nG0 Z50."
 
 
@@ -68,7 +71,7 @@ CYCLE = "G0 X0. Y0. Z50.\n{}G81 X10. Y0. Z-5. R3. F100.\nX20. Y0.\nG80\nG0 Z50."
     [("matsuura_mx330", FANUC, "G98"), ("haas_umc750", FANUC, "G98"), ("xyzac_trt", PROGRAMS[2][1], "G99")],
 )
 def test_a_cycle_relies_on_where_it_ends(machine: str, text: str, word: str, tmp_path: Path) -> None:
-    text = text.format(said=" G90 G17 G40 G94 G69 G80" if "xyz" not in machine else " G90 G17 G40 G94 G80 M429")
+    text = text.format(said=f" G90 G17 G40 G94 G80 {PLANE_OFF[machine]}")
     drilled = text.replace(MOVES, CYCLE)
     assert assumed(machine, drilled.format(""), tmp_path) == (word,)
     for said in ("G98 ", "G99 ", "G99\n", "G98\n"):
@@ -85,7 +88,7 @@ def test_a_cycle_relies_on_where_it_ends(machine: str, text: str, word: str, tmp
 @pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750", "xyzac_trt"])
 def test_a_move_at_the_part_relies_on_the_length_being_off(machine: str, tmp_path: Path) -> None:
     text = (FANUC if "xyz" not in machine else PROGRAMS[2][1]).replace("G43 H1\n", "")
-    said = " G90 G17 G40 G94 G80" + (" M429" if "xyz" in machine else " G69")
+    said = f" G90 G17 G40 G94 G80 {PLANE_OFF[machine]}"
     assert assumed(machine, text.format(said=said), tmp_path) == ("G49",)
     assert assumed(machine, text.format(said=said + "\nG49"), tmp_path) == ()
     home = text.format(said=said).replace("T1 M6", "G53 G0 Z0.\nT1 M6").replace("G54 S500", "G49 G54 S500")
@@ -143,12 +146,32 @@ def test_rotary_axes_of_a_fidia_rely_on_tcp_being_off(tmp_path: Path) -> None:
 def test_tcp_of_a_sinumerik_relies_on_how_the_tool_axis_turns(
     axis: str, words: tuple[str, ...], tmp_path: Path
 ) -> None:
-    text = OTHERS.format(said="G90 G17 G40 G94 G71").replace("M3\n", f"M3\nTRAORI\n{{}}G0 X0. Y0. Z60. {axis}\n", 1)
+    said = "G90 G17 G40 G94 G71 CYCLE800()"
+    text = OTHERS.format(said=said).replace("M3\n", f"M3\nTRAORI\n{{}}G0 X0. Y0. Z60. {axis}\n", 1)
     assert assumed("yl569", text.format(""), tmp_path) == words
     for said in ("ORIAXES ORIWKS", "ORIVECT ORIMKS"):
         assert assumed("yl569", text.format(f"{said}\n"), tmp_path) == ()
     assert assumed("yl569", text.format(f"{words[0]}\n"), tmp_path) == ("ORIWKS",)
     assert assumed("yl569", text.replace(f" {axis}", "").format(""), tmp_path) == (), "the tool axis stays"
+
+
+def test_a_plane_of_the_rotary_position_that_was_left_on_is_assumed_off(tmp_path: Path) -> None:
+    text = FANUC.format(said=" G90 G17 G40 G94 G80{}")
+    for said, words in (("", ("G255",)), ("\nG255", ()), ("\nG53 G0 B0. C0.\nG254", ())):
+        assert assumed("haas_umc750", text.format(said), tmp_path) == words, said
+    own = tmp_path / "own.toml"
+    own.write_text('extends = "haas_umc750"\n[control.reading]\nstart_modes = ["G69", "G255"]\n', encoding="utf-8")
+    assert assumed(str(own), text.format(""), tmp_path) == ()
+    own.write_text('extends = "matsuura_mx330"\n[control.reading]\nstart_modes = ["G255"]\n', encoding="utf-8")
+    with pytest.raises(InputError, match="G255"):
+        assumed(str(own), text.format(""), tmp_path)
+
+
+def test_positions_of_a_sinumerik_rely_on_its_plane_being_off(tmp_path: Path) -> None:
+    text = OTHERS.format(said="G90 G17 G40 G94 G71 TRAFOOF\n{}")
+    assert assumed("yl569", text.format(""), tmp_path) == ("CYCLE800()",)
+    assert assumed("yl569", text.format("CYCLE800()\n"), tmp_path) == ()
+    assert assumed("yl569", text.format("SUPA G0 Z0 D0\nCYCLE800()\nD1\n"), tmp_path) == ()
 
 
 def test_what_only_a_skipped_block_says_is_assumed(tmp_path: Path) -> None:

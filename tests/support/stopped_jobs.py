@@ -66,12 +66,12 @@ def die() -> NoReturn:
     os._exit(9)
 
 
-def write_job(folder: Path, text: bytes, *more: str) -> None:
+def write_job(folder: Path, text: bytes, *more: str, edited: str = "") -> None:
     """Write two programs in two folders, with subprograms, and a report in a third one; for a project."""
     report = resolve_output(folder / "reports" / "one.html")
     with output_group() as group:
         first = resolve_output(folder / "nc" / "one.mpf")
-        with group.open(first, papers=[report]) as files:
+        with group.open(first, papers=[report], edited=edited) as files:
             files.main.write(text)
             for name in ("SUB.SPF", *more):
                 files.add_file(name).write(text)

@@ -12,6 +12,8 @@ from typing import Any, Self
 import pytest
 
 from tests.support.locations import TESTS, YL569
+from tests.support.open_cycles import OPEN
+from tests.support.posting import FOOT, HEAD
 from trunnion.batch.worker_task import Outcome, Status
 from trunnion.batch.workers import timed_out
 from trunnion.cli import main
@@ -25,7 +27,7 @@ from trunnion.survey.found_files import FileKind, FoundFile, found_files
 from trunnion.survey.result import Became, Survey, SurveyedMachine, surveyed, trying
 from trunnion.survey.stand_ins import stand_ins
 from trunnion.survey.taking import MACHINES, take_survey
-from trunnion.survey.trying import Step, Trial, try_steps
+from trunnion.survey.trying import SETTINGS, STEP, Step, Trial, try_steps
 
 KLARTEXT = b"""0 BEGIN PGM 1 MM
 1 TOOL CALL 1 Z S1000
@@ -199,6 +201,36 @@ def test_programs_are_read_for_all_shipped_machines(tmp_path: Path, monkeypatch:
     assert [each.machine for each in found.files[0].tries] == ["mikron_600u"]  # which has a B, unlike dmu65
 
 
+def test_a_program_that_goes_through_is_tried_on_no_other_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = []
+
+    class Listing(Here):
+        def run(self, tasks: Iterable[tuple[Any, Trial]]) -> Iterator[tuple[Any, Outcome]]:
+            for place, trial in tasks:
+                tried.append((trial.machine, trial.steps))
+                yield place, try_steps(trial)
+
+    monkeypatch.setattr(taking, "LocalWorkers", Listing)
+    (tmp_path / "sound.h").write_bytes(KLARTEXT)
+    (tmp_path / "turned.h").write_bytes(KLARTEXT.replace(b"Z+50", b"Z+50 UNHEARD"))
+    take_survey(tmp_path)
+    plain = (Step.VERIFY,)
+    others = [("mikron_600u", plain), ("ucp800", plain)]
+    assert tried == [("dmu65", plain), ("dmu65", plain), *others, ("dmu65", (Step.VERIFY, Step.KEYS))]
+
+
+def test_a_refused_program_is_read_once_more_with_keys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    start = "O1\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X0 Y0\nG43 H1 Z50\n"
+    (tmp_path / "nested.nc").write_text(f"{start}G1 Z1 F100 (A (B))\nM30\n")
+    (tmp_path / "worse.nc").write_text(f"{start}G1 Z1 F100 (A (B))\nG1 UNHEARD\nM30\n")
+    nested, worse = take_survey(tmp_path, machine=["matsuura_mx330"]).files
+    assert (nested.became, nested.tries[0].codes) == (Became.READ_KEYED, ("NC210",))
+    assert (worse.became, worse.tries[0].count) == (Became.REFUSED, 1)
+
+
 def test_programs_find_the_subprograms_beside_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(taking, "LocalWorkers", Here)
     call = KLARTEXT.replace(b"3 L Z+10 F100", b"3 CALL PGM tnc:\\\\parts\\\\plunge.h")
@@ -311,3 +343,54 @@ def test_nothing_is_decided_that_lets_through_what_is_refused() -> None:
     speed = Problem("part.cls", 3, Wording("CTL510", "operation_cuts_while", operation="OP1"))
     assert stand_ins([asks]) == {}
     assert stand_ins([asks, speed]) == {"spindle": "OP1:1000"}
+
+
+def _after(path: Path, text: str, machine: str) -> Outcome:
+    path.write_text(text)
+    return try_steps(Trial(path.name, path, machine, (Step.INFO, Step.POST, Step.SETTINGS, Step.VERIFY)))
+
+
+def test_a_file_that_cannot_be_described_without_settings_is_posted_with_stand_ins(tmp_path: Path) -> None:
+    outcome = _after(tmp_path / "part.apt", OPEN, "dmu65")
+    assert (outcome.status, outcome.figures[STEP]) == (Status.PASSED, Step.VERIFY)
+    assert list(outcome.figures[SETTINGS]) == ["open_cycle"]
+
+
+def test_a_program_is_verified_with_what_it_was_posted_with(tmp_path: Path) -> None:
+    turned = HEAD.replace("1.0000000,0.0000000\nINTOL", "-1.0000000,0.0000000\nINTOL").replace(
+        "0.0,0.0,1.0", "0.0,0.0,-1.0"
+    )
+    assert turned.count("-1.0") == 2
+    outcome = _after(tmp_path / "part.cls", turned + FOOT, "hs664rt")
+    assert (outcome.status, outcome.figures[STEP]) == (Status.PASSED, Step.VERIFY)
+    assert outcome.figures[SETTINGS] == {"frame": "absolute"}
+
+
+def test_subprograms_are_read_through_the_programs_beside_them_that_call_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = "G21 G90 G94 G17 G54\nT1 M6\nS500 M3\nG43 H1 Z50.\nG0 X0. Y0.\n"
+    back = "G91 G1 X1. F100.\nG90\nM99\n"
+    contents = {
+        "O0001.nc": f"O0001\n{head}M98 P77\nG49\nM30\n",
+        "O0077.nc": f"O0077\nM98 P88\n{back}",
+        "O0088.nc": f"O0088\n{back}",
+        "O0099.nc": f"O0099\n{back}",
+        "O0101.nc": f"O0101\nM98 P102\n{back}",
+        "O0102.nc": f"O0102\nM98 P101\n{back}",
+        "other/O0077.nc": f"O0077\n{back}",
+        "MAIN.MPF": "G90 G54 G17 G71\nT1 D1\nM6\nS500 M3\nPOCKET\nM30\n",
+        "POCKET.SPF": "G91 G1 X1 F100\nG90\nM17\n",
+    }
+    for name, content in contents.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(content, encoding="utf-8")
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    found = take_survey(tmp_path, machine=["haas_umc750", "yl569"], timeout=5)
+    assert {each.file: (each.looks, len(each.tries)) for each in found.files if each.became is Became.CALLED} == {
+        "O0077.nc": ("a subprogram of O0001.nc", 0),
+        "O0088.nc": ("a subprogram of O0077.nc", 0),
+        "POCKET.SPF": ("a subprogram of MAIN.MPF", 0),
+    }
+    assert {each.file for each in found.files if each.tries} == contents.keys() - {"O0077.nc", "O0088.nc", "POCKET.SPF"}
+    assert [each.became for each in found.files if each.file in ("O0001.nc", "MAIN.MPF")] == [Became.READ] * 2

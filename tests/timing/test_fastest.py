@@ -102,7 +102,15 @@ def test_a_straight_motion_is_the_s_curve_of_its_farthest_axis(
     limits = AxisDynamics(np.full(5, speed), np.full(5, acceleration), np.full(5, jerk))
     run = fastest_run(straight(length * np.array([1.0, *shares])), limits, 40)
     least = s_curve_seconds(length, speed, acceleration, jerk)
-    assert least * (1.0 - 1e-9) <= run.duration <= 1.05 * least
+    assert least * (1.0 - 1e-9) <= run.duration <= 1.02 * least
+    assert greatest_share(run.at(dense_seconds(run)), limits) <= 1.0 + 1e-6
+
+
+@pytest.mark.parametrize("pieces", [40, 80])
+def test_short_ramps_at_the_ends_of_a_long_way_do_not_slow_the_whole(pieces: int) -> None:
+    limits = AxisDynamics(np.full(1, 1.0), np.full(1, 5000.0), np.full(1, 100.0))
+    run = fastest_run(straight(np.array([2000.0])), limits, pieces)
+    assert run.duration <= 1.002 * s_curve_seconds(2000.0, 1.0, 5000.0, 100.0)
     assert greatest_share(run.at(dense_seconds(run)), limits) <= 1.0 + 1e-6
 
 

@@ -61,3 +61,18 @@ def test_clearance_behind_an_approach_at_a_machine_height_is_no_low_rapid(tmp_pa
     )
     found = check(verified(tmp_path, text, "dmu65"), "modal")
     assert found.passed, found.told
+
+
+@pytest.mark.parametrize("retract", ["L Z+0 R0 FMAX M91\n", "L M140 MB MAX FMAX\n"])
+def test_a_rapid_in_a_tilted_plane_without_z_behind_a_retract_is_named_as_not_known(
+    retract: str, tmp_path: Path
+) -> None:
+    text = (
+        "BEGIN PGM T MM\nTOOL CALL 1 Z S1000\nM3\nPLANE SPATIAL SPA-30 SPB+0 SPC+0 TURN FMAX SEQ-\n"
+        "L X+0 Y+0 R0 FMAX\nL Z+50 R0 FMAX\nL Z-2 F500\nL X+30\nL Z+50 R0 FMAX\n"
+    )
+    found = check(verified(tmp_path, f"{text}{retract}L X+100 Y-50 R0 FMAX\nM30\nEND PGM T MM\n", "dmu65"), "travel")
+    assert found.passed, found.told
+    assert "Z 508.000 mm left in line 6, it needs 52.000 of 560" in found.told
+    assert found.coverage is not None
+    assert [place.nc_line for place in found.coverage.left_out] == [5, 11]

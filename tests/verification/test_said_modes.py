@@ -158,3 +158,50 @@ def test_a_path_may_be_approached_from_home_in_more_legs(
         assert compared(folder, machine, text, changed, path=True).same is is_same, each
         if is_same and "99" not in each:
             assert not compared(folder, machine, text, changed).same
+
+
+#: Programs of two cuts, by machine: what stands before them, and behind.
+CUTS = {
+    "haas_umc750": ("G21 G17 G90 G94 G54\nT1 M6\nS500 M3\nG43 H1 Z50.\n", "\nG1 X10. F100.\nX20.\nG49\nM30\n"),
+    "matsuura_mx330": ("G21 G17 G90 G94 G54\nT1 M6\nS500 M3\nG43 H1 Z50.\n", "\nG1 X10. F100.\nX20.\nG49\nM30\n"),
+    "yl569": ("G17 G90 G71 G94 G54\nT1 D1\nM6\nS500 M3\n", "\nM3\nG1 X10 F100\nX20\nTRAFOOF\nM30\n"),
+    "ucp800": ("BEGIN PGM A MM\nTOOL CALL 1 Z S500\nM3\n", "\nL X+10 R0 F100\nL X+20\nM129\nM30\nEND PGM A MM\n"),
+    "xyzac_trt": ("G21 G17 G90 G94 G54\nT1 M6\nS500 M3\nG43\n", "\nM3\nG1 X10 F100\nX20\nM2\n"),
+}
+
+#: Two ways to say a mode, and what the comparison says of them; empty: they are the same.
+WAYS = [
+    ("haas_umc750", "G187 P1", "G187 P3", "smoothness G187 P1 against G187 P3"),
+    ("haas_umc750", "G187 P1 E0.1", "G187 P3 E0.1", "smoothness G187 P1 E0.1 against G187 P3 E0.1"),
+    ("haas_umc750", "G187", "", "smoothness G187 against not stated"),
+    ("haas_umc750", "G103 P1", "G103 P9", "look-ahead G103 P1 against G103 P9"),
+    ("xyzac_trt", "G64 P0.1", "G64 P0.05 Q0.1", "tolerances of G64 P0.1 Q0.1 against P0.05 Q0.1"),
+    ("xyzac_trt", "G64 P0.1", "G64 P0.1 Q0.1", ""),
+    ("xyzac_trt", "G64", "G64 P0", ""),
+    ("xyzac_trt", "M100 P1", "M100 P2", "M100 P1 against P2"),
+    ("xyzac_trt", "M19 R0", "M19 R90", "M19 R0 against R90"),
+    ("ucp800", "M128 F1000", "M128 F2000", "compensating motions F1000 against F2000"),
+    ("ucp800", "M128", "M128 F2000", "compensating motions stated against F2000"),
+    ("ucp800", "M128", "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", ""),
+    ("ucp800", "M128", "FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", "tool axis under TCP AXIS POS against AXIS SPAT"),
+    ("yl569", "SPOS=0", "SPOS=90", "SPOS 0 against 90"),
+    ("yl569", "SPOS[2]=0", "SPOS[2]=90", "SPOS[2] 0 against 90"),
+    ("yl569", "M2=3", "M2=4", "M2 3 against 4"),
+    ("yl569", "S2=100", "S2=200", "S2 100 against 200"),
+    ("yl569", "TRAORI\nORIWKS", "TRAORI\nORIMKS", "tool axis under TCP ORIWKS against ORIMKS"),
+    ("yl569", "ORIWKS", "ORIMKS", ""),
+    ("yl569", "TRAORI\nORIVECT", "TRAORI\nORIPLANE", ""),
+    ("matsuura_mx330", "G43.4 H1", "G43.5 H1", "tool axis under TCP G43.4 against G43.5"),
+    ("matsuura_mx330", "G43.4 H1", "G43.4 H1 P0", ""),
+]  # fmt: skip
+
+
+def test_two_ways_to_say_a_mode_that_no_path_shows_are_a_difference(tmp_path: Path) -> None:
+    wrong = []
+    for machine, one, two, told in WAYS:
+        before, behind = CUTS[machine]
+        found = compared(tmp_path, machine, before + one + behind, before + two + behind)
+        said = "" if found.first is None else found.first.text
+        if not said.startswith(told) or bool(said) != bool(told):
+            wrong.append((machine, one, two, said))
+    assert not wrong

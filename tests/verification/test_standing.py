@@ -66,7 +66,7 @@ def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured
     ok, every = sound.standing.ok, len(sound.checks)
     assert sound.standing.told == (
         f"Passed in part: {ok} of {every} checks; {every - ok} not checked; stands on 2 values nobody measured; "
-        "assumed: the control starts with G40, TRAFOOF"
+        "assumed: the control starts with G40, TRAFOOF, CYCLE800()"
     )
 
 

@@ -106,10 +106,8 @@ def folder_files(folder: Path, without: Path | None = None) -> list[str]:
 
     Links to folders are not followed, and links to files elsewhere are left out.
 
-    Raises ``InputError`` if there is no such folder, or it has too many files.
+    Raises ``InputError`` if it has too many files.
     """
-    if not folder.is_dir():
-        raise InputError(Problem(str(folder), 0, Wording("FIL110", "no_such")))
     found: list[str] = []
     for at, folders, names in os.walk(folder):
         here = Path(at)

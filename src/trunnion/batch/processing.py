@@ -195,9 +195,9 @@ def _told(text: str, folder: Path) -> str:
     return text
 
 
-def _machine(name: str) -> Machine | str:
+def _machine(given: Machine | str) -> Machine | str:
     """Return a machine that is shipped is loaded once; definitions of others lie in the folder of the task."""
-    return name if name.endswith(".toml") else shipped_machine(name)
+    return given if isinstance(given, Machine) or given.endswith(".toml") else shipped_machine(given)
 
 
 _Done = tuple[Status, Sequence[Problem]]

@@ -15,7 +15,7 @@ from trunnion.arrays import Codes, Flags, Floats, Lines
 from trunnion.cl.scan import PointColumns
 from trunnion.messages import Wording
 from trunnion.model.splines import SplineRows
-from trunnion.model.toolpath import Event, Frame, Sense, Tool
+from trunnion.model.toolpath import CycleOn, Event, Frame, Sense, Tool
 
 
 @dataclass(slots=True, eq=False)
@@ -168,6 +168,7 @@ class OperationBuilder:
     stated     what is true of the whole operation: the line that states it, and its value
     curves     the splines in mm, once their points are known, with the rows of these
     points     what the file says of its points
+    open_cycle  the cycle that is still on where it begins; None: there is none
     """
 
     name: str
@@ -194,3 +195,4 @@ class OperationBuilder:
     stated: dict[str, tuple[int, object]] = field(default_factory=dict)
     curves: list[SplineRows] = field(default_factory=list)
     points: StatedPoints | None = None
+    open_cycle: CycleOn | None = None

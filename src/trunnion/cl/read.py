@@ -4,8 +4,8 @@ The file is read twice, in pieces: first for its encoding and the length of its 
 sized; then for its content. Points never become Python objects.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import BinaryIO, Final
 
@@ -19,6 +19,7 @@ from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.joining import join_cuts, join_first_tool
 from trunnion.cl.kept_states import report_kept_states
+from trunnion.cl.open_cycles import OpenCycle, settle_open_cycles
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, Piece
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
@@ -69,6 +70,8 @@ class ClReading:
                       OUTTOL say
     cutcom            what points under CUTCOM are where the file does not say it, ``"centreline"`` or ``"contour"``;
                       None: those of the tool's centre
+    open_cycles       what becomes of a cycle that is still on where another operation begins, by the name of that
+                      operation; that of all others has no name
     """
 
     units: str | None = None
@@ -76,6 +79,7 @@ class ClReading:
     strict: bool = False
     spline_tolerance: float | None = None
     cutcom: str | None = None
+    open_cycles: Mapping[str, OpenCycle] = field(default_factory=dict)
 
 
 #: As the file itself says, with remarks about what is unknown.
@@ -138,6 +142,7 @@ def read_source(
     if unit != 1.0:
         columns.tip[: scanner.rows] *= unit
     builders = join_first_tool(interpreter.builders, diagnostics)
+    settle_open_cycles(builders, how.open_cycles, diagnostics)
     report_kept_states(builders, diagnostics)
     builders = join_cuts(builders, diagnostics, in_sections=recognized.dialect.in_sections)
     columns = with_spline_points(builders, columns, scanner.rows, unit, how.spline_tolerance, diagnostics)

@@ -8,7 +8,7 @@ from trunnion.cl.conventions import Conventions
 from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.statement import Statement
 from trunnion.messages import Wording
-from trunnion.model.toolpath import CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
+from trunnion.model.toolpath import CycleOff, CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
 
 MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8
@@ -137,14 +137,11 @@ class ReaderState:
     def split_operation(self) -> None:
         """Begin another operation here, where the dialect has no sections; feed, tool and tool axis go on.
 
-        A cycle that is on is refused. An operation without rows goes on itself.
+        Of a cycle that is on somebody must say whether it goes on. An operation without rows goes on itself.
         """
         before = self.builder
         if self.dialect.in_sections or self.row == before.first:
             return
-        if self.cycle_line:
-            self.diagnostics.error(self.line, Wording("CL840", "cycle_line_still_where", cycle_line=self.cycle_line))
-            self.cycle_line = 0
         at = self.operation_row
         self.builder = OperationBuilder(
             f"OPERATION {len(self.builders) + 2}", self.line, self.row, continues=True, tool=before.tool,
@@ -153,10 +150,19 @@ class ReaderState:
             rapids=[0] if at in before.rapids else [],
             starts=[start._replace(row=0) for start in before.starts if start.row == at],
             axes=[AxisStatement(0, self.line, None, self.no_axis, self.vectors)], tilted=before.tilted,
+            open_cycle=self._open_cycle(),
         )  # fmt: skip
+        self.cycle_line = 0
         before.stop = self.row
         self._check_tool(before)
         self.builders.append(before)
+
+    def _open_cycle(self) -> CycleOn | None:
+        """Return the cycle that is on, or that has been since the operation before, if it went on there."""
+        if self.cycle_line:
+            return self.cycle
+        own = any(isinstance(event, CycleOn | CycleOff) for event in self.builder.events)
+        return None if own else self.builder.open_cycle
 
     def name_operation(self, name: str) -> None:
         """Begin an operation with a name; what was stated for one without motion no longer counts."""

@@ -117,7 +117,7 @@ def _project(given: Given) -> "PlacedSetup | None":
         raise InputError(Problem(projects[0], 0, Wording("ARG130", "project_among_files")))
     from trunnion.jobs.place.project import placed_setup
 
-    return placed_setup(Path(projects[0]), given.setup)
+    return placed_setup(Path(projects[0]), given.setup, has_zero=given.zero is not None)
 
 
 def placement_lines(found: Placement) -> Iterator[str]:

@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import trunnion.jit
+from trunnion.cl.open_cycles import open_cycles
 from trunnion.cl.read import ClReading
 from trunnion.cli.cl_files import begin_reading, spline_tolerance
 from trunnion.jobs.job import Given
@@ -32,7 +33,10 @@ def post_files(given: Given, group: "OutputGroup | None" = None, observer: "Obse
     try:
         settings = dict(given.settings)
         within = spline_tolerance(settings.get("spline_tolerance", ""))
-        how = ClReading(settings.get("cl_units"), settings.get("dialect"), given.strict, within, settings.get("cutcom"))
+        how = ClReading(
+            settings.get("cl_units"), settings.get("dialect"), given.strict, within, settings.get("cutcom"),
+            open_cycles(settings.get("open_cycle", "")),
+        )  # fmt: skip
         coming = begin_reading(given.cl, how, executor)
         from trunnion.cli.post import post
 

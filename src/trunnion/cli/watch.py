@@ -15,7 +15,7 @@ from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of
 from trunnion.cli.terminal import warn_of_old
 from trunnion.cli.wording import problem_lines
-from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
+from trunnion.errors import Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk, output_group
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
@@ -28,7 +28,6 @@ from trunnion.jobs.project.file import load_project
 from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Project
 from trunnion.jobs.simulate.posted import simulation_files
-from trunnion.messages import Wording
 from trunnion.wording import counted, one_line
 
 
@@ -97,8 +96,8 @@ class _Told:
             with output_group() as group:
                 may_run, written = self._work.post(group)
                 if not is_unchanged():
-                    raise _ChangedError(Problem(self._work.name, 0, Wording("PRJ160", "changed_while_posted")))
-        except (TrunnionError, OSError) as error:
+                    raise _ChangedError
+        except (_ChangedError, TrunnionError, OSError) as error:
             self._tell(_failure(error, is_unchanged()))
             self._warn_of_old_programs()
             return
@@ -112,11 +111,11 @@ class _Told:
         warn_of_old(self._work.outputs())
 
 
-class _ChangedError(InputError):
+class _ChangedError(Exception):
     """Files have changed while they were posted."""
 
 
-def _failure(error: TrunnionError | OSError, is_unchanged: bool) -> str:
+def _failure(error: _ChangedError | TrunnionError | OSError, is_unchanged: bool) -> str:
     """Return what a round that failed says, after its problems are printed."""
     if isinstance(error, _ChangedError) or not is_unchanged:
         return "has changed while it was posted; it is posted again when it rests"

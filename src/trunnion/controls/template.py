@@ -134,9 +134,9 @@ class Template:
         def field_text(match: re.Match[str]) -> str:
             value = values[match[1]]
             if match[2]:
-                return number_text(match[1], self._number(match[1], value), formats[match[2]])
+                return number_text(match[1], self._number(match[0], value), formats[match[2]])
             if printing.unit != 1.0 and match[1] in printing.lengths:
-                return f"{self._number(match[1], value) / printing.unit:.6g}"
+                return f"{float(value or 0.0) / printing.unit:.6g}"
             return f"{value:g}" if isinstance(value, float) else str(value)
 
         def is_complete(text: str) -> bool:
@@ -146,14 +146,14 @@ class Template:
         complete = [_FIELD.sub(field_text, text) for text in lines if is_complete(text)]
         return [_NUMBER_FIELD.sub(lambda field: formats[field[2]].text(float(field[1])), text) for text in complete]
 
-    def _number(self, name: str, value: Value) -> float:
+    def _number(self, field: str, value: Value) -> float:
         assert value is not None  # such lines are left out
         try:
             return float(value)
         except ValueError:
-            raise InputError(
-                Problem(self.file, self.line, Wording("ARG220", "setting", name=name, value=repr(value)))
-            ) from None
+            plain = f"{field.partition(':')[0]}}}"
+            wording = Wording("DEF510", "text_with_format", field=field, value=repr(value), plain=plain)
+            raise InputError(Problem(self.file, self.line, wording)) from None
 
 
 def number_text(name: str, number: float, number_format: NumberFormat) -> str:

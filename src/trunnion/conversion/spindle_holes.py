@@ -148,7 +148,7 @@ def _made(run: Run, rows: Ints, hole: SpindleHole, events: Sequence[ProgramEvent
     motions = np.arange(hole.first, hole.end)
     lines = motions[run.kind[motions] != Kind.RAPID]
     if not len(lines) or lines[0] - 1 < rows[0]:
-        warn.refuse(hole.line, Wording("CNV171", "cycle_position_not"), hole.file)
+        warn.refuse(hole.line, Wording("CNV176", "cycle_does_not"), hole.file)
         return None
     start, axis = run.tip[lines[0] - 1], run.axis[lines[0]]
     offset = run.tip[motions] - start

@@ -4,6 +4,7 @@ A test holds names and types to the declarations in ``jobs.registry``: a new opt
 declaration. Functions say in their docstrings what each means; here it stands under the names of groups.
 """
 
+import os
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -12,14 +13,15 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, TypeVar, cast
 
 from trunnion.errors import InputError, argument_problem
+from trunnion.jobs.inputs.arguments import is_output, no_mapping, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
 from trunnion.jobs.inputs.settings import Settings, reported_as_arguments
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike
 from trunnion.jobs.registry import JOBS
 from trunnion.jobs.result_output import OutputLike
-from trunnion.messages import Wording
-from trunnion.options.kinds import Choice, Number, Setting, Switch, WrongValueError
-from trunnion.options.option import Option
+from trunnion.messages import Wording, phrase
+from trunnion.options.kinds import Choice, FileOut, Number, Setting, Switch, WrongValueError
+from trunnion.options.option import SEVERAL, Option
 from trunnion.wording import nearest_word
 
 if TYPE_CHECKING:  # modules that few of the functions need
@@ -137,7 +139,7 @@ class VerifyArguments(ReadingArguments, ClampingArguments, SetUpArguments, State
     columns: bool
 
 
-class DiffArguments(StatedArguments, total=False):
+class DiffArguments(SetUpArguments, StatedArguments, total=False):
     """Arguments of ``trunnion.diff``."""
 
     to_machine: MachineLike | None
@@ -272,6 +274,8 @@ def taken(kind: type[_Given], command: str, given: _Given) -> _Given:
     found |= {name: None for name, each in options.items() if isinstance(each.kind, Setting) or each.setting}
     for name in stated.keys() & options.keys():
         _check(options[name], stated[name])
+    if (settings := stated.get("settings")) is not None and not isinstance(settings, Mapping):
+        raise no_mapping("settings", settings)
     found |= stated
     for name, option in options.items():
         if option.setting and found[name] is not None:
@@ -286,9 +290,13 @@ def reported_by_arguments(command: str, given: Mapping[str, Any]) -> AbstractCon
 
 
 def _check(option: Option, value: Any) -> None:
-    """Refuse a value in the words of the command line; texts and lists are up to the function."""
+    """Refuse a value in the words of the command line; other texts and lists are up to the function."""
     kind = option.kind
-    if value is None or not isinstance(kind, Number | Choice | Switch) or isinstance(value, list | tuple):
+    if isinstance(kind, FileOut) and not isinstance(value, str | os.PathLike | bool | None) and not is_output(value):
+        raise wrong_argument(option.name, value, phrase("give_path"))
+    if value is None or not isinstance(kind, Number | Choice | Switch):
+        return
+    if isinstance(value, list | tuple) and (option.many in SEVERAL or isinstance(kind, Number)):
         return
     if isinstance(kind, Number) and isinstance(value, str):
         return

@@ -6,6 +6,7 @@ Units: degrees, mm.
 """
 
 import re
+from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -38,6 +39,10 @@ _TILTED: Final = re.compile(rf"{TILTED_NOTICE} {_NUMBER} DEG FIRST, ABOUT ITS X,
 _TURNED: Final = re.compile(rf"{TURNED_NOTICE} {_NUMBER} DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM \+Z")
 _DRAWN: Final = re.compile(f"{DRAWN_NOTICE}, NOT TURNED")
 _ZERO: Final = re.compile(rf"{ZERO_NOTICE}{_NUMBER} Y{_NUMBER} Z{_NUMBER} MM ON THE MACHINE, AXES AT 0")
+_WITHOUT_TCP: Final = re.compile(
+    rf"WITHOUT TCP, FOR A WORKPIECE ZERO AT X{_NUMBER} Y{_NUMBER} Z{_NUMBER} OF THE MACHINE,? "
+    rf"AND A TOOL LENGTH OF {_NUMBER}"
+)
 # Not every control has a colon.
 _LENGTH: Final = re.compile(
     rf"{LENGTH_NOTICE} (?:{_NUMBER} MM, FROM GAUGE POINT TO TIP|0 MM[:-] (?:NONE|NO LENGTH) WAS STATED)"
@@ -80,6 +85,17 @@ def zero_notices(zero: tuple[float, float, float], tool_length: float | None) ->
         yield f"{LENGTH_NOTICE} 0 MM: NO LENGTH WAS STATED"
     else:
         yield f"{LENGTH_NOTICE} {number(tool_length)} MM, FROM GAUGE POINT TO TIP"
+
+
+def read_places_without_tcp(lines: Iterable[str]) -> set[tuple[float, ...]]:
+    """Return the zeros and lengths for which the operations of a program without TCP were written, (4,) each, mm."""
+    found, texts = set[tuple[float, ...]](), deque[str](maxlen=3)
+    for line in lines:
+        comment = _COMMENT.fullmatch(line)
+        texts.append(" ".join(comment[1].upper().split()) if comment else "")
+        if stated := _WITHOUT_TCP.search(" ".join(texts)):
+            found.add(tuple(map(float, stated.groups())))
+    return found
 
 
 def may_be_notice(comment: str) -> bool:

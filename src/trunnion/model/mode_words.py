@@ -15,6 +15,13 @@ CONSTANT_FEED: Final = "constant compensation"
 DIMENSIONS: Final = "dimensions of compensation"
 OF_COMPENSATION: Final = frozenset({WAY_TO_CONTOUR, CORNERS, BOTTLENECKS, FEED_ALONG, CONSTANT_FEED, DIMENSIONS})
 
+#: The mode that says by what the tool axis is programmed under TCP: rotary words or vectors, and in which frame.
+TOOL_AXIS: Final = "tool axis under TCP"
+
+#: Modes that count under TCP alone; the other one is how fast the linear axes may follow the rotary ones.
+FOLLOWING: Final = "compensating motions"
+UNDER_TCP: Final = frozenset({TOOL_AXIS, FOLLOWING})
+
 
 @dataclass(frozen=True, slots=True)
 class ModeWord:

@@ -1,10 +1,11 @@
-"""What is impossible about a tool, by the sizes that a CL file or a program states.
+"""What is wrong with a tool, by the sizes that a CL file or a program states, and what tells two tools apart.
 
 In:     a ``Tool`` in mm and degrees; 0 is a size that nothing states.
 Out:    its faults: with an error there is no such tool; a warning says that two lengths contradict each other.
 """
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
 from trunnion.errors import Severity
@@ -32,6 +33,20 @@ _RADII: Final = frozenset({"corner_radius", "upper_radius"})
 
 _RIGHT_ANGLE: Final = 90.0
 _ANGLE_ROUNDING: Final = 0.01
+
+
+#: Sizes of a tool that are compared, mm and degrees, with what two files may differ by when they write the same size:
+#: one in inches rounds to the fourth decimal.
+_COMPARED: Final[Mapping[str, float]] = {
+    "diameter": 0.002,
+    "corner_radius": 0.002,
+    "length": 0.002,
+    "taper_angle": 0.01,
+    "tip_angle": 0.01,
+}
+
+#: Sizes of which 0 says that the file does not know them.
+_UNKNOWN_AT_ZERO: Final = frozenset({"diameter", "length"})
 
 
 class ToolFault(NamedTuple):
@@ -87,3 +102,27 @@ def _lengths(tool: Tool) -> Iterator[ToolFault]:
             Wording("CL770", "tool_flutes_mm", flute_length=tool.flute_length, length=tool.length),
             severity=Severity.WARNING,
         )
+
+
+def told_apart(one: Tool, two: Tool) -> Iterator[str]:
+    """Yield how a CL file tells two tools apart, by their names and forms, in words."""
+    if one.name and two.name and one.name != two.name:
+        yield f"name {one.name} and {two.name}"
+    yield from tool_differences(one, two)
+
+
+def tool_differences(one: Tool, two: Tool) -> Iterator[str]:
+    """Yield what both tools state of their form and where they differ, in words."""
+    if "UNKNOWN" in (one.kind, two.kind):
+        return
+    if one.kind != two.kind:
+        yield f"form {one.kind} and {two.kind}"
+    for size, tolerance in _COMPARED.items():
+        a, b = float(getattr(one, size)), float(getattr(two, size))
+        is_stated = size not in _UNKNOWN_AT_ZERO or (a != 0.0 and b != 0.0)
+        # Angles of different forms are different angles.
+        if is_stated and abs(a - b) > tolerance and (one.kind == two.kind or not size.endswith("angle")):
+            yield f"{size.replace('_', ' ')} {a:g} and {b:g}"
+    here, there = one.corner_centre, two.corner_centre
+    if here and there and math.dist(here, there) > _COMPARED["corner_radius"]:
+        yield f"corner centre {here[0]:g},{here[1]:g} and {there[0]:g},{there[1]:g}"

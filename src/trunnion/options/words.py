@@ -15,8 +15,11 @@ EDITED: Final = ("refuse", "keep", "replace")
 PROOF_SETTINGS: Final = (
     "same_tool", "operation_clearance", "first_approach", "stop_between", "radius_offset", "edge_from", "rapid_feed",
     "rigid_tap", "swivel_data", "delta_length", "delta_radius", "tolerance", "three_axis_tolerance",
-    "fallback_tolerance", "spindle", "missing_feed",
+    "fallback_tolerance", "spindle", "missing_feed", "open_cycle", "compensation",
 )  # fmt: skip
+
+#: Words in cures of messages in whose place a value is to be written.
+WORDS_TO_FILL: Final = ("RPM", "MM_MIN", "PITCH_MMPR", "MM", "DEGREES", "NUMBER", "X,Y,Z", "…")
 
 #: What the best place is best for.
 GOALS: Final = ("margin", "rotary", "slides", "time", "overspeed", "collisions")

@@ -13,7 +13,14 @@ from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
 from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import SAME, Clamping, are_one_angle, number
-from trunnion.model.clamping_notices import HeadNotices, clamped_notices, head_comments, read_place, zero_notices
+from trunnion.model.clamping_notices import (
+    HeadNotices,
+    clamped_notices,
+    head_comments,
+    read_place,
+    read_places_without_tcp,
+    zero_notices,
+)
 
 #: So much of a program is its head at most, bytes.
 _HEAD: Final = 1 << 16
@@ -39,6 +46,20 @@ def stated_place(program: Path) -> HeadNotices:
     except OSError:
         return HeadNotices()
     return read_place(list(head_comments(enumerate(head.splitlines(), 1))))
+
+
+def place_without_tcp(program: Path) -> tuple[Vector, float] | None:
+    """Return the workpiece zero and the tool length, mm, for which a program without TCP was written; None: it states
+    none, or several.
+    """
+    if not program.is_file():
+        return None
+    with program.open("rb") as stream:
+        found = read_places_without_tcp(line.decode("latin-1").rstrip() for line in stream)
+    if len(found) != 1:
+        return None
+    x, y, z, length = found.pop()
+    return (x, y, z), length
 
 
 def damaged_notices(program: Path, stated: HeadNotices) -> list[Problem]:

@@ -5,8 +5,9 @@ In:     operations as their CL files have them.
 Out:    ``PreparedOperation``: other arcs are lines now, other cycles are rows of motion.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -40,6 +41,9 @@ from trunnion.planning.request import OperationPart, PlanRequest, PreparedOperat
 #: A move at 45 degrees is no plunge, whatever the noise of its coordinates.
 _ACROSS = 1e-6
 
+#: Two tool axes are opposite above this negative cosine: printed decimals would choose the way between them.
+_OPPOSITE: Final = 1.0 - 1e-12
+
 #: Modes in which the tool axis may change.
 _SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
 
@@ -63,8 +67,10 @@ def prepare_operations(
     for (file, original), request in zip(sources, requests, strict=True):
         try:
             operation, conflicts = _in_mode(_in_frame(request, file, original, frame))
-            errors += conflicts
-            prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
+            turned_over = list(_axes_turned_over(file, operation.operation))
+            errors += (*conflicts, *turned_over)
+            if not turned_over:
+                prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
         except HoleCycleError as error:
             errors.append(Problem(file, error.line, error.wording))
         lines += max(len(prepared[-1].operation.moves) - len(original.moves), 0) if prepared else 0
@@ -75,6 +81,14 @@ def prepare_operations(
     if errors:
         raise RefusedError(errors)
     return prepared
+
+
+def _axes_turned_over(file: str, operation: Operation) -> Iterator[Problem]:
+    """Yield cuts along which the tool axis turns to the opposite direction: no one great circle leads there."""
+    moves = operation.moves
+    cosines = np.einsum("ij,ij->i", moves.axis[:-1], moves.axis[1:])
+    for row in (1 + np.flatnonzero((cosines < -_OPPOSITE) & (moves.kind[1:] != Kind.RAPID))).tolist():
+        yield Problem(file, int(moves.line[row]), Wording("PLN130", "axis_turns_over"))
 
 
 def _in_frame(request: PlanRequest, file: str, original: Operation, frame: Frame) -> PreparedOperation:

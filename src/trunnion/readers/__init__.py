@@ -10,7 +10,7 @@ from trunnion.readers.program.known_words import KnownWord, known_words
 from trunnion.readers.program.options import RunOptions
 from trunnion.readers.program.settings import GIVEN
 from trunnion.readers.program.stated_words import with_reading, with_stated
-from trunnion.readers.registry import can_read, check_reading, reader_of, run_program
+from trunnion.readers.registry import can_read, check_reading, reader_of, role_of, run_program, with_role
 from trunnion.readers.scan.letter_blocks import read_blocks
 from trunnion.readers.scan.rows import execute_blocks
 
@@ -19,6 +19,6 @@ KERNELS = (write_joints, forward_rows, read_blocks, execute_blocks, resolve_turn
 
 __all__ = [
     "GIVEN", "KERNELS", "KnownWord", "RunOptions", "can_read", "check_reading", "kind_problem", "known_words",
-    "program_for_cl_file", "reader_of", "run_program", "with_kind", "with_reading",
-    "with_stated",
+    "program_for_cl_file", "reader_of", "role_of", "run_program", "with_kind", "with_reading",
+    "with_role", "with_stated",
 ]  # fmt: skip

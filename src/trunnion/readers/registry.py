@@ -5,11 +5,12 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, Severity
 from trunnion.families import FAMILIES, load_reader
 from trunnion.files import WriteProgress
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.model.diagnostics import Diagnostic
 from trunnion.model.run import Run, SkippedRun
 from trunnion.model.skip_switches import skip_combinations
 from trunnion.readers.control.setup_recorder import lengths_of_other_tools
@@ -122,6 +123,21 @@ def check_reading(machine: Machine) -> None:
             problems += [problem for problem in error.problems if problem not in problems]
     if problems:
         raise InputError(problems)
+
+
+def role_of(program: Path, machine: Machine) -> Wording | None:
+    """Return that a program looks like a subprogram of others; None: it runs by itself."""
+    words = reader_of(machine).call_words
+    mark = None if words is None else words.mark_of(program)
+    return None if mark is None else Wording("NC114", "is_subprogram", word=mark[0], line=mark[1])
+
+
+def with_role(run: Run, program: Path, machine: Machine) -> Run:
+    """Return a run that says first that its program looks like a subprogram of others, if it does."""
+    told = role_of(program, machine)
+    if told is None:
+        return run
+    return replace(run, diagnostics=(Diagnostic(1, told, Severity.WARNING, run.files[0]), *run.diagnostics))
 
 
 def can_read(machine: Machine) -> bool:

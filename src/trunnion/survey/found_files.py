@@ -42,6 +42,7 @@ class FoundFile:
     looks      dialect of a CL file; what another one looks like, or why it is not tried; empty: it says too little
     languages  folders of the readers that read a program; None: its content does not tell
     is_tried   whether anything is to be tried
+    caller     the file beside it that calls it: a subprogram is read through that one
     """
 
     name: str
@@ -50,6 +51,7 @@ class FoundFile:
     looks: str = ""
     languages: tuple[str, ...] | None = None
     is_tried: bool = True
+    caller: str = ""
 
 
 def found_files(folder: Path) -> Iterator[FoundFile]:

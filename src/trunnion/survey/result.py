@@ -11,7 +11,7 @@ from trunnion.batch.worker_task import Outcome, Status
 from trunnion.errors import Problem, Severity
 from trunnion.results import Figure, OptionalText
 from trunnion.survey.found_files import FileKind, FoundFile
-from trunnion.survey.trying import SETTINGS, STEP, Step
+from trunnion.survey.trying import KEYS, SETTINGS, STEP, Step
 
 
 class Became(StrEnum):
@@ -22,6 +22,8 @@ class Became(StrEnum):
     PROVEN_FILLED  refused as it is; proven with stand-ins for the settings that its errors ask for
     READ          a program: read and run, and no check of it alone fails
     READ_WARNED   the same, with warnings
+    READ_KEYED    refused as it is; read and run with the keys of ``[control.reading]`` under which it reads best
+    CALLED        a subprogram, read through a program beside it that calls it
     BEYOND        understood, and nothing is wrong but that this machine cannot go so far, or turn its spindle so fast
     CHECK_FAILED  a program: read and run, and a check of it fails
     PROOF_FAILED  posted, and the program does not do what the CL file says: it is not written
@@ -37,6 +39,8 @@ class Became(StrEnum):
     PROVEN_FILLED = "proven with settings"
     READ = "read"
     READ_WARNED = "read with warnings"
+    READ_KEYED = "read with keys"
+    CALLED = "called by another"
     BEYOND = "beyond the machine"
     CHECK_FAILED = "check failed"
     PROOF_FAILED = "proof failed"
@@ -59,8 +63,11 @@ class Became(StrEnum):
 
 _PASSED: Final = frozenset({Became.PROVEN, Became.PROVEN_WARNED, Became.READ, Became.READ_WARNED})
 _BLOCKED: Final = frozenset(
-    {Became.PROVEN_FILLED, Became.BEYOND, Became.CHECK_FAILED, Became.PROOF_FAILED, Became.REFUSED, Became.BROKEN}
-)
+    {
+        Became.PROVEN_FILLED, Became.READ_KEYED, Became.BEYOND, Became.CHECK_FAILED, Became.PROOF_FAILED,
+        Became.REFUSED, Became.BROKEN,
+    }
+)  # fmt: skip
 
 #: The check that fails where something is not understood.
 _WORDS: Final = "words"
@@ -275,6 +282,8 @@ def _passed(kind: FileKind, outcome: Outcome) -> Became:
         return Became.PROVEN_FILLED
     if kind is FileKind.CL:
         return Became.PROVEN_WARNED if outcome.warnings else Became.PROVEN
+    if KEYS in outcome.figures:
+        return Became.READ_KEYED
     return Became.READ_WARNED if outcome.warnings else Became.READ
 
 
@@ -299,11 +308,13 @@ _BECAME: Final[Mapping[Status, Callable[[FileKind, Outcome], Became]]] = {
 
 def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     """Return what became of a file: of a CL file each try counts, of a program the best."""
+    if file.caller:
+        return SurveyedFile(file.name, file.kind, f"a subprogram of {file.caller}", Became.CALLED)
     if not tries:
         is_other = file.is_tried and file.kind is FileKind.OTHER
         became = Became.NOT_OURS if is_other else Became.NOT_TRIED
         return SurveyedFile(file.name, file.kind, file.looks, became)
-    counted = tuple(tries) if file.kind is FileKind.CL else (min(tries, key=_worth),)
+    counted = tuple(tries) if file.kind is FileKind.CL else (min(tries, key=worth),)
     if not file.looks and _OTHER_CONTROL in counted[0].codes:
         return SurveyedFile(file.name, FileKind.OTHER, "understood by no reader", Became.NOT_OURS)
     if file.kind is FileKind.CL and all(_TURNING in each.codes for each in counted):
@@ -313,5 +324,6 @@ def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     )
 
 
-def _worth(each: Trying) -> tuple[int, int]:
+def worth(each: Trying) -> tuple[int, int]:
+    """Return what became of a file on a machine as something that is the smaller the better."""
     return _ORDER[each.became], each.count

@@ -24,6 +24,7 @@ def stand_ins(problems: Iterable[Problem]) -> dict[str, str]:
     Nothing is decided that lets through what is refused otherwise, and nothing is said of where a part sits.
     """
     found: dict[str, list[str]] = {}
+    taken = set[str]()
     numbers = count(_FIRST_TOOL)
     for problem in problems:
         if problem.severity is not Severity.ERROR:
@@ -34,9 +35,13 @@ def stand_ins(problems: Iterable[Problem]) -> dict[str, str]:
             if ":" not in each.value and values:
                 continue
             stated = {value.rpartition(":")[0] for value in values}
-            values += [
-                _filled(one, numbers) for one in each.values if one.rpartition(":")[0] not in stated or not values
+            new = [
+                one
+                for one in each.values
+                if one not in taken and (each.to_fill or one.rpartition(":")[0] not in stated)
             ]
+            values += [_filled(one, numbers) for one in new]
+            taken |= {*new}
     return {name: ",".join(values) for name, values in found.items() if all(values)}
 
 

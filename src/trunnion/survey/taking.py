@@ -1,7 +1,8 @@
 """The front door of surveys: what is asked for, and how it goes through the workers."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final, TypedDict, Unpack
 
@@ -16,9 +17,11 @@ from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine, shipped_machines
 from trunnion.messages import Wording
+from trunnion.readers import can_read, reader_of
 from trunnion.readers.program.settings import family_of
+from trunnion.survey.called_files import callers
 from trunnion.survey.found_files import FileKind, FoundFile, count_files, found_files
-from trunnion.survey.result import Survey, SurveyedMachine, Trying, surveyed, trying
+from trunnion.survey.result import Became, Survey, SurveyedMachine, Trying, surveyed, trying, worth
 from trunnion.survey.trying import Step, Trial, try_in_worker
 
 #: One shipped machine for each control: CL files are posted for them. Programs are read for all that are shipped, as a
@@ -31,7 +34,7 @@ TIMEOUT: Final = 60.0
 #: What is tried of CL files and programs.
 STEPS: Final[Mapping[FileKind, tuple[Step, ...]]] = {
     FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS),
-    FileKind.PROGRAM: (Step.VERIFY,),
+    FileKind.PROGRAM: (Step.VERIFY, Step.KEYS),
 }
 
 
@@ -96,10 +99,11 @@ def take_survey(
         observer.progress("survey", count_files(root), "files") as advance,
         LocalWorkers[tuple[int, int], Trial](count, try_in_worker, seconds) as processes,
     ):
-        for (number, on), outcome in processes.run(team.trials(root, advance)):
-            team.keep(number, on, trying(team.machines[on], team.files[number].kind, outcome))
-            if len(team.tries[number]) == team.expected[number]:
-                advance(1)
+        for trials in (team.trials(root), team.other_machines(), team.keyed()):
+            for (number, on), outcome in processes.run(trials):
+                team.keep(number, on, trying(team.machines[on], team.files[number].kind, outcome))
+                advance(team.is_now_finished(number))
+        advance(team.unfinished)
     files = tuple(surveyed(file, team.tried(number)) for number, file in enumerate(team.files))
     said = {str(kind): tuple(map(str, some)) for kind, some in steps.items()}
     return Survey(root.as_posix().encode("utf-8", "replace").decode(), team.machines, seconds, said, files)
@@ -111,13 +115,23 @@ def _absolute(name: FilePath) -> str:
 
 
 class _Team:
-    """The machines, the files as they are found, and what became of each on each machine."""
+    """The machines, the files as they are found, and what became of each on each machine.
+
+    There are three rounds: each file on the machines that are asked for, or one for each control; programs that do not
+    go through on other machines, as one for A and C says nothing of a machine with B; and then, once more for each
+    language, with the keys of ``[control.reading]`` under which they read best.
+    """
 
     def __init__(
         self, loaded: Sequence[tuple[str, Machine]], others: int, steps: Mapping[FileKind, tuple[Step, ...]]
     ) -> None:
         self._names, self._steps = [name for name, _ in loaded], steps
         self._languages = [_language(machine) for _, machine in loaded]
+        self._readers = {
+            language: reader_of(machine)
+            for language, (_, machine) in zip(self._languages, loaded, strict=True)
+            if can_read(machine)
+        }
         self.machines = tuple(
             SurveyedMachine(
                 Path(name).name if name.endswith(".toml") else name,
@@ -128,30 +142,76 @@ class _Team:
         )
         self.files = list[FoundFile]()
         self.tries = list[dict[int, Trying]]()
-        self.expected = list[int]()
+        self._expected = list[int]()
+        self._finished = set[int]()
 
-    def trials(self, root: Path, advance: Callable[[int], None]) -> Iterator[tuple[tuple[int, int], Trial]]:
-        """Yield what is to be tried, file by file."""
-        for number, file in enumerate(found_files(root)):
-            machines = list(self._machines_for(file))
+    def trials(self, root: Path) -> Iterator[tuple[tuple[int, int], Trial]]:
+        """Yield what is to be tried of each file first."""
+        files = list(found_files(root))
+        called = callers(files, self._readers) if self._steps[FileKind.PROGRAM] else {}
+        for number, file in enumerate(files):
+            if number in called:
+                file = replace(file, caller=called[number].name)
+            machines = [on for on in self._machines_for(file) if self.machines[on].posts]
             self.files.append(file)
             self.tries.append({})
-            self.expected.append(len(machines))
-            if not machines:
-                advance(1)
+            self._expected.append(len(machines))
             for on in machines:
-                yield (number, on), Trial(file.name, file.path, self._names[on], self._steps[file.kind])
+                yield (number, on), self._trial(file, on)
+
+    def other_machines(self) -> Iterator[tuple[tuple[int, int], Trial]]:
+        """Yield programs that did not go through, on the other machines."""
+        for number, file in enumerate(self.files):
+            if file.kind is FileKind.PROGRAM and not self._went_through(number):
+                for on in self._machines_for(file):
+                    if not self.machines[on].posts:
+                        yield (number, on), self._trial(file, on)
+
+    def keyed(self) -> Iterator[tuple[tuple[int, int], Trial]]:
+        """Yield programs that are still refused, on the machine of each language that reads them best."""
+        for number, file in enumerate(self.files):
+            steps = self._steps[file.kind] if file.kind is FileKind.PROGRAM else ()
+            if Step.KEYS not in steps or self._went_through(number):
+                continue
+            best: dict[str, int] = {}
+            for on, found in sorted(self.tries[number].items(), key=lambda each: worth(each[1])):
+                if found.became is Became.REFUSED:
+                    best.setdefault(self._languages[on], on)
+            for on in best.values():
+                yield (number, on), Trial(file.name, file.path, self._names[on], steps)
 
     def keep(self, number: int, on: int, found: Trying) -> None:
-        """Keep what became of a file on a machine."""
-        self.tries[number][on] = found
+        """Keep what became of a file on a machine: of two rounds the better."""
+        before = self.tries[number].get(on)
+        self.tries[number][on] = found if before is None else min(before, found, key=worth)
+
+    def is_now_finished(self, number: int) -> bool:
+        """Whether a file has just been tried where it is, and nothing more will be: others may have further rounds."""
+        is_cl = self.files[number].kind is FileKind.CL
+        is_last = len(self.tries[number]) == self._expected[number] and (is_cl or self._went_through(number))
+        if not is_last or number in self._finished:
+            return False
+        self._finished.add(number)
+        return True
+
+    @property
+    def unfinished(self) -> int:
+        """How many files are left."""
+        return len(self.files) - len(self._finished)
 
     def tried(self, number: int) -> list[Trying]:
         """Return what became of a file, in the order of the machines."""
         return [each for _, each in sorted(self.tries[number].items())]
 
+    def _trial(self, file: FoundFile, on: int) -> Trial:
+        steps = tuple(each for each in self._steps[file.kind] if each is not Step.KEYS)
+        return Trial(file.name, file.path, self._names[on], steps)
+
+    def _went_through(self, number: int) -> bool:
+        return any(each.became.passed for each in self.tries[number].values())
+
     def _machines_for(self, file: FoundFile) -> Iterator[int]:
-        if file.kind is FileKind.OTHER or not self._steps[file.kind]:
+        if file.kind is FileKind.OTHER or file.caller or not self._steps[file.kind]:
             return
         for on, language in enumerate(self._languages):
             is_cl, languages = file.kind is FileKind.CL, file.languages

@@ -20,9 +20,11 @@ from trunnion.batch.workers import hindered, hindrance
 from trunnion.controls import load_control
 from trunnion.errors import Severity, TrunnionError
 from trunnion.jobs.describe.cl_files import describe_cl
+from trunnion.jobs.describe.reading_keys import Value, proposed_reading
 from trunnion.jobs.inputs.reading import as_machine
+from trunnion.machines import Machine
 from trunnion.options.words import PROOF_SETTINGS
-from trunnion.readers import reader_of
+from trunnion.readers import reader_of, with_reading
 from trunnion.survey.found_files import MOST_BYTES, is_touchable
 from trunnion.survey.stand_ins import stand_ins
 
@@ -36,9 +38,13 @@ _NAME: Final = "survey"
 _CALLS_FILE: Final = "NC132"
 _MOST_BESIDE: Final = 50_000_000
 
-#: Of an outcome: the step that it is of, and the settings without which it would not have passed.
+#: Settings of a post that ``verify`` has as arguments, by the names of these.
+_REPEATED: Final = {"cl_units": "units", "dialect": "dialect", "frame": "frame", "cutcom": "cutcom"}
+
+#: Of an outcome: the step that it is of, and the settings or keys without which it would not have passed.
 STEP: Final = "step"
 SETTINGS: Final = "filled_in"
+KEYS: Final = "reading_keys"
 
 
 class Step(StrEnum):
@@ -48,6 +54,7 @@ class Step(StrEnum):
     POST = "post"
     SETTINGS = "settings"
     VERIFY = "verify"
+    KEYS = "keys"
     CONVERT = "convert"
 
 
@@ -58,6 +65,7 @@ class Trial:
     file     its name from the folder on
     machine  name of a shipped one, or an absolute path
     steps    in their order; ``SETTINGS`` posts again where errors ask for settings, with stand-ins for them;
+             ``KEYS`` reads a program again with the keys under which it reads best, if it fails without;
              ``VERIFY`` and ``CONVERT`` of a CL file are of the program that was posted
     """
 
@@ -72,7 +80,8 @@ class _Subject:
     """What the steps work on: files by their logical names, the CL file, and the program with its subprograms.
 
     settings  stand-ins with which it was posted
-    asked     the outcome that asked for them
+    keys      keys of ``[control.reading]`` with which it was read
+    asked     the outcome without either
     """
 
     trial: Trial
@@ -81,6 +90,7 @@ class _Subject:
     program: str = ""
     subprograms: tuple[str, ...] = ()
     settings: Mapping[str, str] = field(default_factory=dict)
+    keys: Mapping[str, Value] = field(default_factory=dict)
     asked: Outcome | None = None
 
 
@@ -105,20 +115,28 @@ def try_steps(trial: Trial) -> Outcome:
         subject.program = name
     outcome, warnings = Outcome(Status.PASSED), 0
     for step in trial.steps:
-        if step is Step.SETTINGS:
+        if step in _AGAIN:
             continue
         outcome = _DOING[step](subject)
         if step is Step.POST and Step.SETTINGS in trial.steps and outcome.status is not Status.PASSED:
             outcome = _with_settings(subject, outcome)
+        if step is Step.VERIFY and Step.KEYS in trial.steps and outcome.status is Status.FAILED:
+            outcome = _with_keys(subject, outcome)
         warnings += outcome.warnings
         outcome = replace(outcome, figures={**outcome.figures, STEP: str(step)})
-        if outcome.status is not Status.PASSED:
+        if outcome.status is not Status.PASSED and not _is_asked_for_settings(step, trial, outcome):
             break
     if subject.asked is not None and outcome.status is Status.PASSED:
-        figures = {**subject.asked.figures, **outcome.figures, SETTINGS: dict(subject.settings)}
+        filled = {SETTINGS: dict(subject.settings)} if subject.settings else {KEYS: dict(subject.keys)}
+        figures = {**subject.asked.figures, **outcome.figures, **filled}
         outcome = replace(outcome, problems=subject.asked.problems, figures=figures)
     told = tuple(replace(each, file=_shown(each.file, trial)) for each in outcome.problems)
     return replace(outcome, files={}, warnings=warnings, problems=told)
+
+
+def _is_asked_for_settings(step: Step, trial: Trial, outcome: Outcome) -> bool:
+    """Whether a CL file cannot even be described without settings, and is posted with stand-ins for them."""
+    return step is Step.INFO and Step.SETTINGS in trial.steps and bool(stand_ins(outcome.problems))
 
 
 def _shown(file: str, trial: Trial) -> str:
@@ -157,6 +175,15 @@ def _with_settings(subject: _Subject, outcome: Outcome) -> Outcome:
     return _post(subject) if subject.settings else outcome
 
 
+def _with_keys(subject: _Subject, outcome: Outcome) -> Outcome:
+    """Return what comes of a program with the keys under which it reads best."""
+    subject.keys = proposed_reading(subject.trial.path, as_machine(subject.trial.machine)).keys
+    if not subject.keys:
+        return outcome
+    subject.asked = outcome
+    return _verified(subject)
+
+
 def _post(subject: _Subject) -> Outcome:
     machine = subject.trial.machine
     arguments: dict[str, Any] = {"machine": machine, "settings": dict(subject.settings)}
@@ -192,15 +219,22 @@ def _take_beside(subject: _Subject) -> bool:
 
 
 def _verified(subject: _Subject) -> Outcome:
-    arguments: dict[str, Any] = {"machine": subject.trial.machine, "subprograms": list(subject.subprograms)}
+    arguments: dict[str, Any] = {"machine": _reading(subject), "subprograms": list(subject.subprograms)}
     if subject.cl:
         proven = {name: value for name, value in subject.settings.items() if name in PROOF_SETTINGS}
-        arguments |= {"cl": [subject.cl], "settings": proven}
+        repeated = {_REPEATED[name]: value for name, value in subject.settings.items() if name in _REPEATED}
+        arguments |= {"cl": [subject.cl], "settings": proven, **repeated}
     return _worked(subject, Action.VERIFY, subject.program, arguments, "")
 
 
+def _reading(subject: _Subject) -> Machine | str:
+    """Return the machine, with the keys of the program."""
+    name = subject.trial.machine
+    return with_reading(as_machine(name), subject.keys) if subject.keys else name
+
+
 def _convert(subject: _Subject) -> Outcome:
-    arguments = {"machine": subject.trial.machine, "to_cl": True, "subprograms": list(subject.subprograms)}
+    arguments = {"machine": _reading(subject), "to_cl": True, "subprograms": list(subject.subprograms)}
     return _worked(subject, Action.CONVERT, subject.program, arguments, f"{_NAME}.cls")
 
 
@@ -213,6 +247,9 @@ def _worked(subject: _Subject, action: Action, file: str, arguments: Mapping[str
 def _extension(machine: str) -> str:
     return load_control(as_machine(machine).control).extension
 
+
+#: Steps that do the one before them again.
+_AGAIN: Final = frozenset({Step.SETTINGS, Step.KEYS})
 
 _DOING: Final[Mapping[Step, Callable[[_Subject], Outcome]]] = {
     Step.INFO: _info,

@@ -26,6 +26,10 @@ _MOST_PROGRAMS: Final = 40
 #: Places in each piece at which the result is measured, ends included.
 _MEASURED: Final = 65
 
+#: A run may be beyond a limit by this share before it is looked for again with lower limits there, so often at most.
+_BEYOND: Final = 1e-3
+_MOST_TIGHTENED: Final = 6
+
 #: Parameters that differ by no more than this share of the whole are the same.
 _SAME: Final = 1e-14
 
@@ -158,9 +162,7 @@ def fastest_run(path: SmoothPath, limits: AxisDynamics, pieces: int = 200) -> Fa
         rates = finer
         coefficients = faster(rates, motion, coefficients, _LEAST_GAIN, _MOST_PROGRAMS)
     assert rates is not None
-    coefficients /= unit**2
-    coefficients /= _measured_excess(path, rates, coefficients, table) ** 2
-    square = rates.spline(coefficients)
+    square = rates.spline(_within_limits(path, rates, motion, (coefficients, unit), table))
     taken = _seconds_between(square, rates.edges[:-1], rates.edges[1:])
     begins = np.concatenate(([0.0], np.cumsum(taken)))
     return FastestRun(path, float(begins[-1]), rates.edges, begins, square)
@@ -203,8 +205,38 @@ def _edges(breaks: Floats, pieces: int) -> Floats:
     return np.concatenate((*parts, breaks[-1:]))
 
 
-def _measured_excess(path: SmoothPath, rates: SquareRates, coefficients: Floats, table: Floats) -> float:
-    """By what time must be stretched so that no limit is exceeded anywhere.
+def _within_limits(
+    path: SmoothPath, rates: SquareRates, motion: MotionLimits, found: tuple[Floats, float], table: Floats
+) -> Floats:
+    """Coefficients of a run that keeps all limits, also between the places of the programs, in seconds.
+
+    ``found``: those of the programs, and the unit of their time. A run that is beyond a limit within some pieces, as at
+    the ends of a long way with short ramps, is looked for again with limits that are lower in these pieces: to stretch
+    the whole would make all of it slower.
+    """
+    coefficients, unit = found
+    least, best = math.inf, coefficients
+    for _ in range(_MOST_TIGHTENED):
+        shares = _measured_shares(path, rates, coefficients / unit**2, table)
+        excess = _excess(shares)
+        slowed = coefficients / (unit * excess) ** 2
+        seconds = float(_seconds_between(rates.spline(slowed), rates.edges[:-1], rates.edges[1:]).sum())
+        if seconds < least:
+            least, best = seconds, slowed
+        if excess <= 1.0 + _BEYOND:
+            break
+        motion = motion.tightened(np.maximum(shares, 1.0))
+        coefficients = faster(rates, motion, coefficients, _LEAST_GAIN, _MOST_PROGRAMS)
+    return best
+
+
+def _excess(shares: Floats) -> float:
+    """By what time must be stretched for shares of speed, acceleration and jerk (3, …)."""
+    return max(math.pow(share.max(), 1.0 / order) for order, share in enumerate(shares, 1)) * (1.0 + 1e-9)
+
+
+def _measured_shares(path: SmoothPath, rates: SquareRates, coefficients: Floats, table: Floats) -> Floats:
+    """Greatest shares of speed, acceleration and jerk in each piece, (3, pieces).
 
     Measured at many places of each piece; between them a value is above the higher of both by an eighth of its second
     difference at most, of which twice as much is added.
@@ -212,13 +244,13 @@ def _measured_excess(path: SmoothPath, rates: SquareRates, coefficients: Floats,
     places, before = rates.places(even=_MEASURED)
     q = warped(path, places, before)[1]
     shares = MotionLimits.of(q, rates.matrices(even=_MEASURED), table).shares(coefficients)
-    worst = 0.0
-    for order, share in enumerate(shares, 1):
-        pieces = share.reshape(len(rates.edges) - 1, _MEASURED, -1)
+    worst = np.empty((3, len(rates.edges) - 1))
+    for k, share in enumerate(shares):
+        pieces = share.reshape(worst.shape[1], _MEASURED, -1)
         bends = np.abs(np.diff(pieces, 2, axis=1))
         margin = np.pad(bends, ((0, 0), (1, 1), (0, 0)), mode="edge") / 4.0
-        worst = max(worst, float((np.abs(pieces) + margin).max()) ** (1.0 / order))
-    return worst * (1.0 + 1e-9)
+        worst[k] = (np.abs(pieces) + margin).max(axis=(1, 2))
+    return worst
 
 
 def _seconds_between(square: Any, begin: Floats, end: Floats) -> Floats:

@@ -137,6 +137,17 @@ class MotionLimits:
             jerk=tuple(matrix / seconds**3 for matrix in self.jerk),
         )
 
+    def tightened(self, shares: Floats) -> "MotionLimits":
+        """Return the same with limits of speed, acceleration and jerk that are so many times lower, (3, pieces)."""
+        speed, acceleration, jerk = np.repeat(shares, len(_WEIGHTS), axis=1)
+        diagonal = import_extra("scipy.sparse", "geometry").diags
+        return replace(
+            self,
+            speed=self.speed * speed[:, None],
+            acceleration=tuple(diagonal(acceleration) @ matrix for matrix in self.acceleration),
+            jerk=tuple(diagonal(jerk) @ matrix for matrix in self.jerk),
+        )
+
     def shares(self, coefficients: Floats) -> tuple[Floats, Floats, Floats]:
         """Shares of speed, acceleration and jerk, (places, axes) each."""
         rate = np.sqrt(self.value @ coefficients)[:, None]

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.support.plates import bodies, floor, necked, slot
 from trunnion.arrays import Flags, Floats
 from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller, rotated
 from trunnion.impeller.linear_program import solve_linear_program
-from trunnion.impeller.paths.cell_trees import STEPS, cell_tree, joined
+from trunnion.impeller.paths.cell_trees import STEPS
 from trunnion.impeller.paths.clearance import Obstacles, obstacles_of
-from trunnion.impeller.paths.clearance_kernel import BodyData
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.passes import Pass, PassFamily, Way
 from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
@@ -21,60 +21,6 @@ from trunnion.simulation.tools.profile import Role, ToolShape
 from trunnion.simulation.tools.shapes import BodyPiece, ball
 
 PUBLISHED = Path(__file__).resolve().parents[3] / "examples" / "impeller" / "impeller.toml"
-
-
-def necked(diameter: float, neck: float, length: float = 45.0) -> ToolShape:
-    return ball(
-        diameter,
-        flute_length=2.5 * diameter,
-        length=length,
-        neck_diameter=0.9 * diameter,
-        neck_length=neck,
-        shank_diameter=6.0,
-        holder=(BodyPiece(20, 24, 30), BodyPiece(40, 40, 20)),
-    )
-
-
-def sheet(corner: Floats, one: Floats, other: Floats, counts: tuple[int, int] = (32, 32)) -> Floats:
-    """A grid of points of a parallelogram, without thickness."""
-    s, t = np.meshgrid(*(np.linspace(0.0, 1.0, STEPS * count + 1) for count in counts), indexing="ij")
-    points = corner + s[..., None] * one + t[..., None] * other
-    return np.concatenate((points, np.zeros((*s.shape, 1))), axis=2)
-
-
-def bodies(*grids: Floats) -> Obstacles:
-    trees = [
-        cell_tree(grid, np.ones(((grid.shape[0] - 1) // STEPS, (grid.shape[1] - 1) // STEPS), bool)) for grid in grids
-    ]
-    cells, children, roots = joined(trees)
-    turns = np.tile([1.0, 0.0], (len(grids), 1))
-    return Obstacles(BodyData(cells, children, roots, turns), tuple(f"plate {k + 1}" for k in range(len(grids))))
-
-
-def rows(centre: Floats, normal: Floats, shares: Floats) -> PassFamily:
-    """Passes (m, n, 3) as a family: along them, and across by shares."""
-    along = np.linspace(0.0, 1.0, centre.shape[1])
-    passes = [
-        Pass(line, np.broadcast_to(normal, line.shape), np.column_stack((along, np.full(len(along), share))))
-        for line, share in zip(centre, shares, strict=True)
-    ]
-    return PassFamily(tuple(passes), 2.0, Way.BOTH_WAYS)
-
-
-def floor(width: float, count: int = 3) -> PassFamily:
-    """Rows along x on the floor z = 0 of a slot about y = 0, so wide for centres."""
-    x, y = np.linspace(0.0, 40.0, 21), np.linspace(-width / 2.0, width / 2.0, count)
-    centre = np.stack([np.column_stack((x, np.full(21, one), np.full(21, 2.0))) for one in y])
-    return rows(centre, np.array([0.0, 0.0, 1.0]), np.linspace(0.0, 1.0, count))
-
-
-def slot(half: float, height: float, lean: float = 0.0) -> Obstacles:
-    """Two plates about y = 0 whose feet are ``half`` from it; both lean outward, so that they make a wedge."""
-    up = height * np.array([0.0, np.tan(lean), 1.0])
-    side = np.array([440.0, 0.0, 0.0])
-    left = sheet(np.array([-200.0, half, 0.0]), side, up)
-    right = sheet(np.array([-200.0, -half, 0.0]), side, up * np.array([1.0, -1.0, 1.0]))
-    return bodies(left, right)
 
 
 def axes_of(found: ToolAxes) -> Floats:

@@ -79,6 +79,23 @@ def test_holes_with_the_speed_of_another_tool_are_told(part: Path) -> None:
     assert not [each for each in found.problems if each.code == "CTL520"]
 
 
+@pytest.mark.parametrize("machine", MACHINES)
+def test_a_speed_at_which_nothing_cuts_is_replaced_and_told(part: Path, machine: str) -> None:
+    part.write_text(_only_holes("THREAD", 1, TAP).replace("RAPID", "SPINDL/RPM,0.398,CLW\nRAPID", 1))
+    found = trunnion.post(part, machine=machine, settings={"spindle": "THREAD:398"})
+    assert found.passed
+    assert [each.code for each in found.problems if "0.398" in each.what] == ["CTL320"]
+    assert found.text is not None
+    assert "S398" in found.text.replace("=", "")
+
+
+@pytest.mark.parametrize("speed", ["398", "THREAD:-398"])
+def test_a_low_speed_is_replaced_only_as_its_operation_and_sense_are_stated(part: Path, speed: str) -> None:
+    part.write_text(_only_holes("THREAD", 1, TAP).replace("RAPID", "SPINDL/RPM,0.398,CLW\nRAPID", 1))
+    with pytest.raises((InputError, RefusedError), match=r"prints as 0|turns otherwise"):
+        trunnion.post(part, machine="yl569", settings={"spindle": speed})
+
+
 def test_every_operation_without_a_speed_or_feed_is_asked_at_once(
     part: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -105,6 +122,40 @@ def test_a_tap_takes_no_feed_per_minute(part: Path, machine: str, feed: str) -> 
     settings = {"spindle": "THREAD:400", "missing_feed": feed}
     with pytest.raises((InputError, RefusedError), match="missing_feed=OPERATION:PITCH_MMPR"):
         trunnion.post(part, machine=machine, settings=settings)
+
+
+_BOTH = "{}\nGOTO/30,0,0\n{}\nGOTO/10,0,0\nCYCLE/OFF\nRAPID\nGOTO/20,0,50\n"
+BOTH = _only_holes("HOLES", 2, "").replace("\nGOTO/10,0,0\nGOTO/20,0,0\nCYCLE/OFF\nRAPID\nGOTO/20,0,50\n", _BOTH)
+BARE_DRILL = "CYCLE/DRILL,FEDTO,-10,RAPTO,3"
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("feed", ["HOLES:120,HOLES:1.25MMPR", "120,HOLES:1.25MMPR", "HOLES:1.25MMPR,HOLES:120"])
+def test_a_drill_and_a_tap_of_one_operation_have_a_feed_and_a_pitch(part: Path, machine: str, feed: str) -> None:
+    part.write_text(BOTH.format(BARE_DRILL, BARE_TAP))
+    program = part.with_suffix(".nc")
+    settings = {"spindle": "400", "missing_feed": feed}
+    assert trunnion.post(part, machine=machine, settings=settings, output=program).passed
+    part.write_text(BOTH.format(f"{BARE_DRILL},MMPM,120", f"{BARE_TAP},MMPR,1.25"))
+    assert trunnion.verify(program, machine=machine, cl=[part], settings={"spindle": "400"}).passed
+
+
+def test_a_pitch_is_no_feed_of_the_drill_beside_the_tap(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part.write_text(BOTH.format(BARE_DRILL, BARE_TAP))
+    post = ["post", str(part), "--machine", "yl569", "--output", str(part.with_name("part.mpf"))]
+    assert main([*post, "--set", "spindle=400"]) == 2
+    assert "missing_feed=HOLES:MM_MIN,HOLES:PITCH_MMPR" in capsys.readouterr().err
+    assert main([*post, "--set", "spindle=400", "--set", "missing_feed=HOLES:1.25MMPR"]) == 2
+    assert "missing_feed=OPERATION:MM_MIN" in capsys.readouterr().err
+    assert main([*post, "--set", "spindle=400", "--set", "missing_feed=HOLES:120"]) == 2
+    assert "missing_feed=OPERATION:PITCH_MMPR" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("feed", ["HOLES:1MMPR,HOLES:2MMPR", "HOLES:100,HOLES:200", "300,1.25MMPR"])
+def test_two_feeds_of_one_kind_are_refused(part: Path, feed: str) -> None:
+    part.write_text(BOTH.format(BARE_DRILL, BARE_TAP))
+    with pytest.raises(InputError, match="two values"):
+        trunnion.post(part, machine="yl569", settings={"spindle": "400", "missing_feed": feed})
 
 
 @pytest.mark.parametrize("feed", ["300MMPR", "FACE:10.1MMPR"])

@@ -20,7 +20,7 @@ def test_results_are_one_line_in_a_notebook() -> None:
     planned, run = trunnion.plan(CL, machine="yl569"), trunnion.read_program(PROGRAM, machine="yl569")
     converted = trunnion.convert(PROGRAM, machine="yl569", to_cl=True)
     standing = "19 of 21 checks; 2 not checked; stands on 5 values nobody measured; "
-    standing += "assumed: no work offset is in force at N370"
+    standing += "assumed: the control starts with CYCLE800(); assumed: no work offset is in force at N370"
     assert repr(result.verification) == f"Verification(passed=True, {standing}, 30 motions)"
     assert repr(run) == f"Run({str(PROGRAM)!r}, yl569, 30 motions, 0 diagnostics)"
     assert repr(planned) == "Plan(1 motions, 0 errors, 0 warnings)"

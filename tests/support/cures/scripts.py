@@ -1,6 +1,7 @@
 """What tries a cure by commands: a script of a few lines, each run in this process, in a folder of its own.
 
-A line is a command of Trunnion; an expression of Python; or one of the words of ``_WORDS``, which change files. The
+A line is a command of Trunnion, which may end in ``< FILE`` for its stdin; an expression of Python; or one of the
+words of ``_WORDS``, which change files. The
 files of ``FILES`` that a script names are there before it begins. ``set`` and ``fails`` change the computer until the
 script ends: a smaller limit, a function in place of another one, an operation that the system refuses.
 """
@@ -25,6 +26,7 @@ from unittest.mock import patch
 from warnings import catch_warnings, simplefilter
 from zipfile import ZipFile
 
+import numpy as np
 import pytest
 
 import trunnion
@@ -34,6 +36,7 @@ from tests.support.program_heads import HEADS
 from trunnion.cli import main
 from trunnion.errors import Problem, TrunnionError
 from trunnion.messages import Wording
+from trunnion.simulation.meshes import box_mesh, save_mesh
 
 _PROJECT: Final = 'machine = "yl569"\ncl = ["part.cls"]\noutput = "out.mpf"\n'
 
@@ -120,9 +123,16 @@ def _tar(name: str, *files: str) -> None:
             archive.add(file)
 
 
+def _box(name: str, low: str, high: str) -> None:
+    """Write the mesh of a box between two corners."""
+    ends = [[float(each) for each in corner.split(",")] for corner in (low, high)]
+    save_mesh(box_mesh(np.array(ends[0]), np.array(ends[1])), name)
+
+
 #: Words of scripts, which change files as those of a shell do.
 _WORDS: Final[Mapping[str, Callable[..., object]]] = {
     "append": _append,
+    "box": _box,
     "latin": _latin,
     "edit": _edit,
     "zip": _zip,
@@ -198,6 +208,7 @@ def _call(expression: str, problems: list[Problem]) -> bool:
 
 def _command(words: list[str], problems: list[Problem]) -> bool:
     """Run a command, and note every message that it prints; return whether it ends well."""
+    words, stdin = (words[:-2], Path(words[-1]).read_bytes()) if "<" in words else (words, b"")
     found: list[tuple[Wording, str]] = []
     text_of = Wording.text
 
@@ -206,7 +217,7 @@ def _command(words: list[str], problems: list[Problem]) -> bool:
         found.append((self, text))
         return text
 
-    streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(3)]
+    streams = [io.TextIOWrapper(io.BytesIO(content), encoding="utf-8") for content in (stdin, b"", b"")]
     with (
         patch.object(Wording, "text", noted), patch.object(sys, "stdin", streams[0]),
         redirect_stdout(streams[1]), redirect_stderr(streams[2]),

@@ -37,7 +37,7 @@ def cycle(state: ReaderState, statement: Statement) -> None:
     """Switch a cycle off, repeat the last one, or begin another."""
     row, line = state.operation_row, state.line
     if statement.values == ("OFF",):
-        if not state.cycle_line and state.operation_row:
+        if not state.cycle_line and state.operation_row and state.builder.open_cycle is None:
             state.diagnostics.remark(line, Wording("CL850", "cycle_off_where"))
         state.add(CycleOff(row, line))
         state.cycle_line = 0

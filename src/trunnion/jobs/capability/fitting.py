@@ -160,6 +160,7 @@ def fit(
     [('yl569', 'fits'), ('hs664rt', 'open')]
     """
     stated = taken(FitArguments, "fit", given)
+    check_paths("hooks", stated["hooks"])
     asked, tool_length = _asked(stated["machines"]), stated["tool_length"]
     _check_are_there(asked)
     toolpaths = _toolpaths(files, stated, observer)

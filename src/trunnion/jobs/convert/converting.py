@@ -3,7 +3,7 @@
 import warnings
 from dataclasses import replace
 from pathlib import Path
-from typing import BinaryIO, Unpack
+from typing import BinaryIO, Final, Unpack
 
 from trunnion import conversion, readers
 from trunnion.cl.writers import WRITERS
@@ -21,6 +21,7 @@ from trunnion.jobs.convert.result import ConvertResult
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path, check_paths, is_stream
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, as_machine, read_program
+from trunnion.jobs.inputs.stated_operations import with_stated_operations
 from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.inputs.stated_words import with_stated
 from trunnion.jobs.observer import SILENT, Observer
@@ -32,6 +33,9 @@ from trunnion.messages import Wording
 from trunnion.options.words import POSITIONS
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
 from trunnion.verification import stated_texts
+
+#: Settings that say how CL files are read.
+_OF_CL_FILES: Final = frozenset({"cutcom", "open_cycle", "spline_tolerance"})
 
 
 def convert(
@@ -186,7 +190,11 @@ def _converted_program(
         run = read_program(program, machine=source, subprograms=others)
         converter.refuse(conversion.unsaid_positions(run, given["positions"]))
         converted = converter.read(run, control, None if to_cl else job)
-        converted = replace(converted, toolpath=conversion.with_registers(converted.toolpath, registers))
+        known = conversion.with_registers(converted.toolpath, registers)
+        (toolpath,) = with_stated_operations([known], job.settings)
+        said = [each for each in toolpath.remarks if each not in known.remarks]
+        (converter.report if to_cl else observer.problems)(said)  # those of a post are in its result
+        converted = replace(converted, toolpath=toolpath)
         if not to_cl and RADIUS_NUMBER_WORD not in job.control.family.WORDS:
             converter.refuse(conversion.unsaid_registers(converted.toolpath, job.control.name))
         if others and not (divided or to_cl):
@@ -241,6 +249,8 @@ def check_conversion_settings(job: PostJob, to_cl: bool) -> None:
         raise InputError(setting_problem("dialect", Wording("CNV111", "no_dialect_of_programs")))
     if "cl_units" in job.settings:
         raise InputError(setting_problem("cl_units", Wording("CNV111", "program_states_unit")))
+    for name in sorted(_OF_CL_FILES & {*job.settings}):
+        raise InputError(setting_problem(name, Wording("CNV111", "only_of_cl_files")))
     if "units" in job.settings and to_cl:
         raise InputError(setting_problem("units", Wording("CNV111", "cl_file_in_mm")))
     if "zero" in job.settings and to_cl:

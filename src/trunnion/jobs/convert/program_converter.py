@@ -103,11 +103,9 @@ class ProgramConverter:
         """
         target, given = job.control, {*job.printed, *(key for own in job.own_settings.values() for key in own)}
         carried = conversion.transfer_settings(stated, control, target)
-        if "work_offset" in job.settings:
-            carried.pop("work_offset", None)
         carried |= self._carried_offset(stated, control, job, source)
-        lost = stated.keys() - carried.keys() - {"work_offset"}
-        if carried.keys() & target.method_defaults.keys():
+        lost = stated.keys() - carried.keys() - job.printed.keys() - {"work_offset"}
+        if (carried.keys() | job.printed.keys()) & target.method_defaults.keys():
             lost -= control.method_defaults.keys()  # the modes of both follow from the machining method
         for key in sorted(lost):
             self.report(
@@ -125,6 +123,8 @@ class ProgramConverter:
                     )
                 ]
             )
+        # What the job states for all operations takes their place, whatever the program has.
+        carried = {key: value for key, value in carried.items() if key not in job.printed}
         for key, remedy in _setting_faults(carried, job).items():
             self._not_carried(key, carried.pop(key), target.name, remedy, key in given)
         carried = _with_own(carried | job.printed, job)

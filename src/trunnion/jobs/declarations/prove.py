@@ -135,6 +135,14 @@ _DIFF: Final = job(
     Option(
         "path", "--path", Switch(), "compare where the tool goes, but not feed, spindle, tool and coolant",
     ),
+    ZERO.but(
+        key="", level=Level.WHOLE,
+        help="workpiece zero in the machine frame of programs that need it and whose heads state none, mm",
+    ),
+    TOOL_LENGTH.but(
+        key="", level=Level.WHOLE,
+        help="tool length of programs that need it and whose heads state none, gauge point to tip",
+    ),
     VARIABLES,
     ASSUME,
     JSON,

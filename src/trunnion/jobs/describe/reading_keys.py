@@ -34,6 +34,7 @@ _TELLS: Final[tuple[tuple[str, Value, str, str], ...]] = (
     ("more_comments", ["!"], r"!", ""),
     ("more_comments", ["//"], r"//", ""),
     ("more_comments", ["{"], r"\{", ""),
+    ("nested_comments", "counted", r"\([^()\n]*\(", ""),
     ("program_numbers", ["O"], r"^[ \t]*O[ \t]*[0-9]+[ \t]*(?:\(.*)?$", ""),
     ("program_numbers", [":"], r"^[ \t]*:[ \t]*[0-9]+", ""),
     ("program_numbers", ["%"], r"^[ \t]*%[ \t]*[0-9]+", ""),
@@ -41,13 +42,18 @@ _TELLS: Final[tuple[tuple[str, Value, str, str], ...]] = (
     ("numbers_anywhere", "anywhere", r"[0-9.][ \t]*N[0-9]+", ""),
     ("arc_centres", "absolute", r"[IJK][ \t]*[-+]?[.0-9]", r"G9[01]\.1"),
     ("arc_centres", "incremental", r"[IJK][ \t]*[-+]?[.0-9]", r"G9[01]\.1"),
+    ("arc_vectors", "from_centre", r"[IJK][ \t]*[-+]?[.0-9]", ""),
+    ("arc_vectors", "unsigned", r"[IJK][ \t]*\+?[.0-9]", r"[IJK][ \t]*-"),
     ("start_distances", "incremental", r"[XYZ][ \t]*[-+]?[.0-9]", r"G9[01](?![.0-9])"),
     ("start_plane", "G18", r"G0?[23](?![0-9])", r"G1[789]"),
     ("start_plane", "G19", r"G0?[23](?![0-9])", r"G1[789]"),
     ("behind_circles", "line", r"G0?[23](?![0-9])", ""),
     ("end_in_subprogram", "returns", r"M98", ""),
-    ("whole_numbers", "calculator", r"[XYZ][ \t]*[-+]?[0-9]+(?![.0-9])", ""),
+    ("whole_numbers", "calculator", r"[XYZIJKR][ \t]*[-+]?[0-9]+(?![.0-9])", ""),
 )
+
+#: Keys of which either may help only with the other: a centre is right where its place and its numbers are.
+_TOGETHER: Final = frozenset({("arc_centres", "whole_numbers"), ("arc_vectors", "whole_numbers")})
 
 #: Longer programs are judged by their beginning.
 _MOST_BYTES: Final = 200_000
@@ -61,15 +67,19 @@ class Proposal:
     before  errors, and axes beyond their travel, without the keys
     after   with them
     why     what each key changes
+    role    what the program is, if it looks like a subprogram
     """
 
     keys: dict[str, Value]
     before: tuple[int, int]
     after: tuple[int, int]
     why: tuple[Wording, ...]
+    role: Wording | None = None
 
     def lines(self) -> Iterator[str]:
         """Yield the proposal as TOML to copy, with why as comments."""
+        if self.role is not None:
+            yield self.role.with_cure().what
         if not self.keys:
             yield str(phrase("reads_best_so", errors=self.before[0]))
             return
@@ -89,14 +99,19 @@ def proposed_reading(program: Path, machine: Machine) -> Proposal:
     keys: dict[str, Value] = {}
     why: dict[str, Wording] = {}
     first = best = _score(program, machine)
-    for key, value in _candidates(text, machine):
-        tried = {**keys, key: _joined(keys.get(key), value)}
+    single = list(_candidates(text, machine))
+    pairs = [[each, other] for each in single for other in single if (each[0], other[0]) in _TOGETHER]
+    for added in [*([each] for each in single), *pairs]:
+        if best == (0, 0):
+            break
+        tried = {**keys, **{key: _joined(keys.get(key), value) for key, value in added}}
         score = _score(program, readers.with_reading(machine, tried))
         if score < best:
             variant = "fewer_errors" if score[0] < best[0] else "within_travel"
-            why[key] = phrase(variant, before=best[0], after=score[0], axes=best[1] - score[1])
+            said = phrase(variant, before=best[0], after=score[0], axes=best[1] - score[1])
+            why |= {key: said for key, _ in added}
             keys, best = tried, score
-    return Proposal(keys, first, best, tuple(why[key] for key in keys))
+    return Proposal(keys, first, best, tuple(why[key] for key in keys), readers.role_of(program, machine))
 
 
 def _candidates(text: str, machine: Machine) -> Iterator[tuple[str, Value]]:

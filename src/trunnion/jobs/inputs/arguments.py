@@ -28,6 +28,16 @@ def check_path(name: str, value: object) -> Path:
     raise wrong_argument(name, value, phrase("give_path"))
 
 
+def no_mapping(name: str, value: object) -> InputError:
+    """Return the error for an argument that is no mapping."""
+    return InputError(argument_problem(name, Wording("ARG140", "no_mapping", type=type(value).__name__)))
+
+
+def is_output(value: object) -> bool:
+    """Whether something can be written as a stream."""
+    return hasattr(value, "write")
+
+
 def is_stream(value: object) -> TypeGuard[BinaryIO]:
     """Whether something can be read as a stream."""
     return hasattr(value, "read") and not isinstance(value, str | os.PathLike)

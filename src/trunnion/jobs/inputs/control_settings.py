@@ -29,6 +29,11 @@ def blocks_in_compensation(machine: Machine) -> int:
     return control.blocks_in_compensation if control else 1
 
 
+def greatest_feed(control: Control | None) -> float | None:
+    """Return the largest F per minute that a control takes: no block need be faster; None: no limit is known."""
+    return control.formats["feed"].five_axis.greatest if control else None
+
+
 def rapid_feed_of(machine: Machine) -> float | None:
     """Return the feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
     feed = default_settings(written_control(machine)).get("rapid_feed")

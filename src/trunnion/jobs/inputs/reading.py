@@ -24,6 +24,7 @@ from trunnion.jobs.inputs.arguments import (
 from trunnion.jobs.inputs.cl_or_program import read_cl_file
 from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.jobs.inputs.settings import number_setting
+from trunnion.jobs.inputs.stated_cycles import stated_cycles
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
@@ -126,10 +127,14 @@ def _read(cl: object, how: ClReading, observer: Observer, argument: str) -> list
 def cl_reading(settings: Mapping[str, str], strict: bool = False) -> ClReading:
     """Return how settings say that CL files are read.
 
-    Raises ``InputError`` if the tolerance of splines is no number, or out of range.
+    Raises ``InputError`` if the tolerance of splines is no number, or out of range, or no such value is stated of a
+    cycle.
     """
     within = number_setting(settings, "spline_tolerance")
-    return ClReading(settings.get("cl_units"), settings.get("dialect"), strict, within, settings.get("cutcom"))
+    return ClReading(
+        settings.get("cl_units"), settings.get("dialect"), strict, within, settings.get("cutcom"),
+        stated_cycles(settings),
+    )  # fmt: skip
 
 
 def _is_spline_tolerance(value: object) -> bool:
@@ -219,6 +224,7 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
         if doubt := readers.kind_problem(program, on):
             raise InputError((doubt, *error.problems)) from None
         raise
+    run = readers.with_role(run, program, on)
     if not run.errors:
         return run
     _refuse_cl_file(program)

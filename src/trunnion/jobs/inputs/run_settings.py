@@ -106,6 +106,13 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         "contour",
         default="what the CL files say; else centreline",
     ),
+    "compensation": RunSetting(
+        "What becomes of CUTCOM: programmed, or left_out, so that the tool's centre goes along the points and no "
+        "radius corrects it; OPERATION:left_out is that of one alone. Points of a contour are refused without CUTCOM.",
+        "programmed",
+        form="programmed or left_out or OPERATION:left_out",
+        example="WALL:left_out",
+    ),
     "spindle": RunSetting(
         "Speed of the spindle, rev/min, of operations without a SPINDL that cut while it stands or with another tool; "
         "OPERATION:RPM is that of one alone. Clockwise; with a minus counter-clockwise.",
@@ -114,9 +121,17 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
     ),
     "missing_feed": RunSetting(
         "Feed of cuts and holes that have none in the CL file, mm/min; with MMPR behind it mm a revolution. A tap "
-        "takes its pitch alone, such as TAP:1.25MMPR.",
+        "takes its pitch alone, such as TAP:1.25MMPR; an operation may have both.",
         form="MM_MIN or OPERATION:MM_MIN",
         example="300,TAP:1.25MMPR",
+    ),
+    "open_cycle": RunSetting(
+        "What becomes of a cycle of the CL file that is still on where another operation begins: it ends there, or "
+        "goes_on, and the points of that operation are holes too. Every point before is a hole. OPERATION:ends is "
+        "that of one alone; without it such a CL file is refused.",
+        "refused",
+        form="ends or goes_on or OPERATION:ends",
+        example="HOLES:goes_on,FACE:ends",
     ),
     "spline_tolerance": RunSetting(
         "How far the points that splines (NURBS) of CL files become may leave them between each other.",

@@ -20,6 +20,7 @@ from trunnion.controls.vocabulary import TCP_SETTINGS
 from trunnion.definitions.messages import meant_word
 from trunnion.definitions.setting_text import setting_text
 from trunnion.errors import InputError, Problem, argument_problem, setting_problem
+from trunnion.jobs.inputs.arguments import no_mapping
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
@@ -36,7 +37,7 @@ Settings: TypeAlias = Mapping[str, SettingValue]
 SINGLE_VALUES: Final = ("zero", "tool_length")
 
 #: Settings of a post that may have a value for each operation.
-BY_OPERATION: Final = ("missing_feed", "mode", "spindle")
+BY_OPERATION: Final = ("compensation", "missing_feed", "mode", "open_cycle", "spindle")
 
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6
@@ -50,7 +51,7 @@ def as_texts(settings: Settings | None) -> dict[str, str]:
     if settings is None:
         return {}
     if not isinstance(settings, Mapping):
-        raise InputError(argument_problem("settings", Wording("ARG140", "no_mapping", type=type(settings).__name__)))
+        raise no_mapping("settings", settings)
     problems = [
         argument_problem("settings", Wording("ARG140", "no_name_of_setting", key=repr(key), type=type(key).__name__))
         for key in settings

@@ -1,6 +1,6 @@
 """Settings that state one thing of operations whose CL file leaves it out: ``8000,DRILL:1200``."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeVar
 
 from trunnion.errors import InputError, setting_problem
@@ -21,16 +21,32 @@ def stated_by_operation(
     Raises ``InputError`` if the setting is none, or states two values of one operation.
     """
     found: dict[str, _Value] = {}
+    for name, value in stated_values(key, settings, value_of):
+        if name in found:
+            raise value_twice(key, settings)
+        found[name] = value
+    return found
+
+
+def stated_values(
+    key: str, settings: Mapping[str, str], value_of: Callable[[str], _Value | None]
+) -> Iterator[tuple[str, _Value]]:
+    """Yield what a setting states, each value with the operation that it is of; none: all others.
+
+    Raises ``InputError`` if the setting is none.
+    """
     text = settings.get(key, "")
     for entry in text.split(",") if text else ():
         name, _, written = entry.rpartition(":")
         value = value_of(written)
         if value is None:
             raise InputError(setting_problem(key, RUN_SETTINGS[key].fault(key, text)))
-        if name in found:
-            raise InputError(setting_problem(key, Wording("ARG220", "value_twice", name=key, value=repr(text))))
-        found[name] = value
-    return found
+        yield name, value
+
+
+def value_twice(key: str, settings: Mapping[str, str]) -> InputError:
+    """Return the error of a setting with two values of one operation."""
+    return InputError(setting_problem(key, Wording("ARG220", "value_twice", name=key, value=repr(settings[key]))))
 
 
 def check_operations(key: str, names: Iterable[str], toolpaths: Iterable[Toolpath]) -> None:

@@ -1,13 +1,13 @@
 """The setting ``spindle``: speeds of operations whose CL file turns the spindle on too late, or not at all."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
 from typing import Final
 
 import numpy as np
 
-from trunnion.errors import InputError, setting_problem
+from trunnion.errors import InputError, setting_problem, warning
 from trunnion.jobs.inputs.stated_by_operation import check_operations, stated_by_operation
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Event, Kind, LoadTool, Operation, Sense, SpindleOff, SpindleOn, Toolpath
@@ -40,7 +40,7 @@ def _speed(text: str) -> float | None:
 
 def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> list[Toolpath]:
     """Turn the spindle on at the speeds that settings state: that of an operation in it alone, and the one without a
-    name in all others that have none of their own.
+    name in all others that have none of their own. A SPINDL below 1 rev/min is no speed: what is stated replaces it.
 
     Raises ``InputError`` for the speed of an operation that is not there, or has a SPINDL of its own before its first
     cut.
@@ -51,9 +51,16 @@ def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str
     running: SpindleOn | SpindleOff = _STANDS
     tool = ToolInSpindle()
     for toolpath in toolpaths:
-        operations = list[Operation]()
+        operations, remarks = list[Operation](), list(toolpath.remarks)
         for operation in toolpath.operations:
             before, tool = tool, tool.then(operation)
+            if operation.name in speeds and (low := _too_low(operation)):
+                new, stated = _replacing(operation, low, speeds[operation.name]), abs(speeds[operation.name])
+                said = Wording("CTL320", "speed_replaced", rpm=low[0].rpm, stated=stated)
+                remarks.append(warning(toolpath.file, low[0].line, said))
+                operations.append(new)
+                running = _last_switch(new, running)
+                continue
             at_cut = _at_first_cut(operation, running)
             own = at_cut is not running and isinstance(at_cut, SpindleOn)
             if own and operation.name in speeds:
@@ -64,10 +71,36 @@ def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str
                 speed = _speed_of_others(speeds, at_cut, tool.is_another(before))
             new = operation if speed is None else _turning(operation, speed)
             operations.append(new)
-            running = next((each for each in reversed(new.events) if isinstance(each, SpindleOn | SpindleOff)), running)
-        found.append(replace(toolpath, operations=tuple(operations)))
+            running = _last_switch(new, running)
+        found.append(replace(toolpath, operations=tuple(operations), remarks=tuple(remarks)))
     check_operations(_KEY, speeds, found)
     return found
+
+
+def _last_switch(operation: Operation, running: SpindleOn | SpindleOff) -> SpindleOn | SpindleOff:
+    """Return what the spindle does when an operation ends, where ``running`` is what it does before it."""
+    return next((each for each in reversed(operation.events) if isinstance(each, SpindleOn | SpindleOff)), running)
+
+
+def _too_low(operation: Operation) -> list[SpindleOn]:
+    """Return where the CL file turns the spindle on at a speed at which nothing cuts, as of another unit."""
+    return [each for each in operation.events if isinstance(each, SpindleOn) and each.rpm < _BOUNDS[0]]
+
+
+def _replacing(operation: Operation, low: Sequence[SpindleOn], speed: float) -> Operation:
+    """Return an operation with a speed in place of those that are too low.
+
+    Raises ``InputError`` if its sign says that the spindle turns otherwise than in the CL file.
+    """
+    stated = _turned_on(0, 0, speed)
+    if any(each.sense is not stated.sense for each in low):
+        said = Wording("ARG230", "states_other_sense", operation=operation.name, sense=str(low[0].sense))
+        raise InputError(setting_problem(_KEY, said))
+    events = [
+        replace(each, rpm=stated.rpm, stated=True) if isinstance(each, SpindleOn) and each in low else each
+        for each in operation.events
+    ]
+    return replace(operation, events=tuple(events))
 
 
 def _speed_of_others(speeds: Mapping[str, float], at_cut: SpindleOn | SpindleOff, another_tool: bool) -> float | None:

@@ -10,6 +10,7 @@ from typing import Final
 
 from trunnion import readers
 from trunnion.errors import InputError, Problem, argument_problem, setting_problem
+from trunnion.jobs.inputs.arguments import no_mapping
 from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
 from trunnion.machines import Machine
 from trunnion.messages import Wording
@@ -56,10 +57,14 @@ def assumed_words(assume: object) -> dict[str, str]:
     """
     if assume is None:
         return {}
-    pairs = dict(assume) if isinstance(assume, Mapping | list) else None
-    if pairs is None or not all(isinstance(text, str) for pair in pairs.items() for text in pair):
-        raise InputError(argument_problem("assume", Wording("ARG140", "no_mapping", type=type(assume).__name__)))
-    return pairs
+    found = list(assume.items()) if isinstance(assume, Mapping) else assume
+    if not isinstance(found, list) or not all(_is_pair_of_texts(each) for each in found):
+        raise no_mapping("assume", assume)
+    return dict(found)
+
+
+def _is_pair_of_texts(value: object) -> bool:
+    return isinstance(value, tuple | list) and len(value) == 2 and all(isinstance(text, str) for text in value)
 
 
 def _number(name: str, text: str) -> float:

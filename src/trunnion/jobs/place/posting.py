@@ -4,13 +4,14 @@ from typing import Any, Unpack
 
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.arguments import PlacedArguments
+from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import MachineLike
 from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.placing.placement import Placement
 
 
@@ -53,6 +54,8 @@ def post_placed(
     >>> trunnion.post_placed(found, machine="yl569").passed
     True
     """
+    if not isinstance(found, Placement):
+        raise wrong_argument("found", found, phrase("give_placement"))
     if not found.toolpaths:
         raise InputError(nc_program_stays(found.files[0]))
     if found.best is None or not found.fits:

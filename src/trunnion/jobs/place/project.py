@@ -37,9 +37,11 @@ class PlacedSetup:
     bodies: BodiesInput = field(default_factory=BodiesInput)
 
 
-def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
+def placed_setup(project: Path, name: str | None = None, *, has_zero: bool = False) -> PlacedSetup:
     """Return the CL files, the machine, the settings of a set-up, the zero among them, and what is clamped and cuts
     there.
+
+    has_zero  the zero of the part as it is drawn is given, in place of the project's
 
     Raises ``InputError`` if the project cannot be read, has hooks, or it is not clear which set-up is meant.
     """
@@ -49,7 +51,7 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
     setup = _setup(loaded, project, name)
     settings = dict(setup.settings)
     angles, problems = checked_angles(*setup.angles), list[Problem]()
-    if Clamping(*angles).is_turned and settings.pop("zero", None) is not None:
+    if Clamping(*angles).is_turned and settings.pop("zero", None) is not None and not has_zero:
         problems.append(warning(str(project), 0, Wording("PLC330", "zero_of_turned_part", clamping=Clamping(*angles))))
     bodies = _bodies(loaded.simulation, loaded.posted.index(setup), problems)
     return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems), bodies)

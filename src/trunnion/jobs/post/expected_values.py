@@ -42,15 +42,13 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
     by_operation = {name: program.effective_settings(operation) for name, operation in operations.items()}
     own = {name: values for name, values in by_operation.items() if name in program.own_settings}
     without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
-    axis_tolerance, inverse_time = options.axis_tolerance_between_points, control.formats.get("inverse_time")
+    axis_tolerance = options.axis_tolerance_between_points
     return replace(
         expected_values(control, program.machine, settings, own),
         span=axis_tolerance if without_tcp or math.isfinite(axis_tolerance) else None,
         span_tip=options.tip_tolerance if without_tcp else None,
         axis_tolerance=options.default_axis_tolerance,
         absolute=options.absolute_frame,
-        max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
-        max_feed=control.formats["feed"].five_axis.greatest,
         fastest_feed=options.fastest_feed,
         feed_limit=options.feed_limit,
     )

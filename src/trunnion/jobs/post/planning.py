@@ -15,8 +15,7 @@ from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths, cl_reading
 from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
-from trunnion.jobs.inputs.stated_feeds import with_stated_feeds
-from trunnion.jobs.inputs.stated_speeds import with_stated_speeds
+from trunnion.jobs.inputs.stated_operations import with_stated_operations
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.forced_program import forced_notices
 from trunnion.jobs.post.inserts import insert_problems
@@ -124,7 +123,7 @@ def load_toolpaths(
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
     toolpaths = replace_unknown_statements(changed(_with_repeated(toolpaths)), job.control, job.machine)
-    toolpaths = with_stated_feeds(with_stated_speeds(toolpaths, job.settings), job.settings)
+    toolpaths = with_stated_operations(toolpaths, job.settings)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths

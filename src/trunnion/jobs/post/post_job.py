@@ -24,6 +24,7 @@ from trunnion.jobs.inputs.settings import (
     split_by_operation,
     with_limit_margin,
 )
+from trunnion.jobs.inputs.stated_cycles import stated_cycles
 from trunnion.jobs.inputs.stated_setup import apply_setup
 from trunnion.jobs.result_output import PaperFiles
 from trunnion.machines import Machine
@@ -185,6 +186,7 @@ def prepare(
     control = in_units(control, texts.get("units") or control.settings.get("units", MM))
     texts, own = split_by_operation(texts, control, machine)
     check_settings(texts, control, machine)
+    stated_cycles(texts)  # before the CL files are read by it
     control = _with_numbers(control, texts.get("numbers"))
     control = _with_first_number(control, texts)
     machine = apply_setup(machine, texts)

@@ -5,7 +5,7 @@ Out:    the program: planned, written, read back, run and compared with its tool
         written unless it is forced.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final, Unpack
@@ -15,7 +15,7 @@ from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
 from trunnion.jobs.arguments import PostArguments, reported_by_arguments, taken
-from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles
+from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles, no_mapping, wrong_argument
 from trunnion.jobs.inputs.hooked import loaded_hooks
 from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
@@ -35,8 +35,12 @@ from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.jobs.post.writing import write_and_read_back
 from trunnion.jobs.result_output import Target, open_target, paper_files
 from trunnion.machines.loading import DEMANDS
+from trunnion.messages import phrase
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
+
+#: What ``sheet_tools`` may have.
+_SHEET_TOOLS: Final = ("tools", "tool_libraries", "unit")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -190,6 +194,10 @@ def post_beside(
     if (tools := found["sheet_tools"]) is not None:
         from trunnion.jobs.inputs.bodies import known_tools
 
+        if not isinstance(tools, Mapping):
+            raise no_mapping("sheet_tools", tools)
+        if unknown := next((name for name in tools if name not in _SHEET_TOOLS), None):
+            raise wrong_argument("sheet_tools", unknown, phrase("give_one_of", choices=_SHEET_TOOLS))
         libraries = check_paths("tool_libraries", tools.get("tool_libraries") or ())
         known = known_tools(tools.get("tools") or (), libraries, tools.get("unit"), ())
         job, inputs = replace(job, sheet_tools=known), [*inputs, *libraries]

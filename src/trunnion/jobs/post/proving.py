@@ -16,7 +16,7 @@ from trunnion.jobs.post.machining_times import operation_times
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram
 from trunnion.jobs.post.writing import named_run, named_verification
-from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
+from trunnion.jobs.verify.program_warnings import program_warnings, speed_warnings, stated_words
 from trunnion.messages import Wording
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
@@ -89,6 +89,7 @@ def report_proof(posting: Posting, planned: PlannedProgram, proof: Proof) -> Pos
         problems += [remark for remark in proof.simulation.remarks if remark.severity is Severity.WARNING]
     if found is not None:
         words = program_warnings(found.run, stated_words(job.control, {**job.control.settings, **job.settings}))
+        words += speed_warnings(found)
         problems += words
         observer.problems(words)
     remarks = [remark for toolpath in posting.toolpaths for remark in toolpath.remarks]

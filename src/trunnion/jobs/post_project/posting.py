@@ -23,6 +23,7 @@ from trunnion.jobs.post_project.left_over_setups import left_over_setups, rememb
 from trunnion.jobs.post_project.operation_programs import programs_of_operations
 from trunnion.jobs.post_project.replaced_files import check_replaced
 from trunnion.jobs.post_project.setups import NO_OPTIONS, PostedPrograms, ProjectOptions, ProjectPosting, post_setups
+from trunnion.jobs.post_project.unsimulated import unsimulated_problems
 from trunnion.jobs.project.file import load_project, told_by_keys
 from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.outputs import reported_at_outputs
@@ -163,8 +164,9 @@ def _judged(posting: ProjectPosting, posted: Sequence[PostedPrograms]) -> _Found
     check_within(programs, project)
     with told_by_keys(project.path):
         simulation, of_setups = check_project(project, posted, posting.observer)
+        unsimulated = list(unsimulated_problems(project, posted))
     used = [Path(name) for name in posting.inputs]
-    found = [problem for each in of_setups for problem in each.problems]
+    found = [*unsimulated, *(problem for each in of_setups for problem in each.problems)]
     found += _left_over(posted, [*programs, *posting.papers, *used])
     found += left_over_setups(project, [*programs, *posting.papers], [Path(each.file) for each in found], used)
     return _Found(simulation, of_setups, found)

@@ -70,10 +70,10 @@ def load_project(path: Path) -> Project:
 
 def read_whole(path: Path, elsewhere: Collection[str] = (), *, is_posted: bool) -> Project:
     """Read a project for posts or for simulations; errors as ``load_project`` or ``read_project``."""
-    if path.suffix != ".toml":
-        raise InputError(Problem(str(path), 0, Wording("SIM112", "project_of_other_ending")))
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
+    if path.suffix != ".toml":
+        raise InputError(Problem(str(path), 0, Wording("SIM112", "project_of_other_ending")))
     try:
         root = load_table(path, files(__package__), kind="project")
     except InputError as error:

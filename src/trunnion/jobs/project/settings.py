@@ -7,10 +7,12 @@ from typing import Any, Final
 
 from trunnion.definitions import Table
 from trunnion.errors import InputError, Problem, key_subject
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
 from trunnion.jobs.project.keys import SETTINGS
 from trunnion.jobs.project.project import PostedSetup
 from trunnion.messages import Wording
+from trunnion.options.words import WORDS_TO_FILL
 
 #: Settings that a table may have.
 _MOST_SETTINGS: Final = 500
@@ -41,6 +43,9 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
                 for each in error.problems
             )
             continue
+        if word := _word_to_fill(name, value):
+            own.add_problem(name, Wording("DEF330", "word_to_fill", word=word))
+            continue
         found[name], places[name] = value, (*own.location(name), own.key_path(name))
     own.mark_read(*own.keys())
     for name, key in ((each.setting, each.key) for each in SETTINGS if each.key in table):
@@ -52,6 +57,16 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
     if "divide" in table:
         places["programs"] = (*table.location("divide"), table.key_path("divide"))
     return found, places
+
+
+def _word_to_fill(name: str, value: object) -> str:
+    """Return the word of a suggested project in whose place nobody has written a value yet; empty if there is none."""
+    if not isinstance(value, str):
+        return ""
+    if name in RUN_SETTINGS and value in WORDS_TO_FILL:
+        return value
+    entries = [entry.rpartition(":") for entry in value.split(",")]
+    return next((word for _, colon, word in entries if colon and word in WORDS_TO_FILL), "")
 
 
 #: How a project writes what parameters of messages about the setting ``programs`` say: by its key ``divide``.

@@ -65,7 +65,7 @@ def simulation_input(given: SimulationLike, machine: Machine, radius_register: s
     for name in stated:
         if name not in (*_WHOLE, *_OF_SETUP):
             names = ("project", *_WHOLE, *_OF_SETUP)
-            near = meant_word(name, names)
+            near = meant_word(str(name), names)
             raise InputError(
                 argument_problem(
                     "simulation",
@@ -189,8 +189,8 @@ def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> Simu
 def simulation_files(given: SimulationLike) -> list[FilePath]:
     """Return the files that a simulation reads, none of which may be written over."""
     given = with_present_names(given) if isinstance(given, Mapping) else {"project": given}
-    project = given.get("project")
-    named = [] if project is None else [project, *project_files([project], ("nc",))]
+    project = None if given.get("project") is None else check_path("simulation", given["project"])
+    named: list[FilePath] = [] if project is None else [project, *project_files([project], ("nc",))]
     for option in (each for each in _STATED if isinstance(each.kind, FileIn)):
         value = given.get(option.name)
         several = [value] if isinstance(value, str | os.PathLike) or not isinstance(value, Iterable) else value

@@ -1,6 +1,6 @@
 """Comparison of two NC programs by what they make the tool do."""
 
-from collections.abc import Sequence
+import math
 from dataclasses import replace
 from functools import partial
 from typing import Final, Unpack
@@ -8,14 +8,20 @@ from typing import Final, Unpack
 from trunnion import readers
 from trunnion.jit import compile_ahead
 from trunnion.jobs.arguments import DiffArguments, taken
-from trunnion.jobs.inputs.control_settings import blocks_in_compensation, rapid_feed_of
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
+from trunnion.jobs.inputs.control_settings import (
+    blocks_in_compensation,
+    greatest_feed,
+    rapid_feed_of,
+    written_control,
+)
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine
 from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.jobs.inputs.stated_words import refuse_settings, with_stated
+from trunnion.jobs.verify.compared_programs import ComparedProgram, read_both
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.verification import restore_rapids
-from trunnion.verification.comparison import Comparison, compare
+from trunnion.verification.comparison import Comparison, ControlRules, compare
 from trunnion.verification.skip_meanings import other_meanings, words_of
 
 #: How far tips may be apart, mm: the last digit of most programs; and that of programs in inches.
@@ -46,6 +52,9 @@ def diff(
         is in inches: their last digit is 0.0001 inch.
     path
         Compare where the tool goes, and whether at rapid, but not feed, spindle, tool and coolant.
+    zero, tool_length
+        The workpiece zero in the machine frame and the tool length, mm, of programs that cut with rotary axes turned
+        and without TCP; those that the head of such a program states come first.
     settings, assume
         Values of variables that the programs read and do not set, such as ``{"#100": 5}``, and what words do that
         the reader does not know, as for ``verify``.
@@ -58,7 +67,8 @@ def diff(
     Raises
     ------
     InputError
-        When a file or an argument cannot be used, or no reader knows a control.
+        When a file or an argument cannot be used, or no reader knows a control. Also when one program cuts without TCP
+        as the other does not, and the zero or the tool length that this depends on is unknown.
 
     Examples
     --------
@@ -78,27 +88,33 @@ def diff(
     for each in (one, two):
         readers.reader_of(each)
     compile_ahead(readers.KERNELS)
-    runs = (
-        _run(first, one, found["subprograms"], ("first", "subprograms")),
-        _run(second, two, found["to_subprograms"], ("second", "to_subprograms")),
-    )
+    both = read_both(
+        ComparedProgram(first, one, found["subprograms"], ("first", "subprograms")),
+        ComparedProgram(second, two, found["to_subprograms"], ("second", "to_subprograms")),
+        found["zero"], found["tool_length"],
+    )  # fmt: skip
+    runs = both.one, both.two
     coarse = tolerance == _DEFAULT_TOLERANCE and any(run.state.inches.values.any() for run in runs)
     limits = _INCH_TOLERANCE if coarse else tolerance
-    blocks = blocks_in_compensation(one), blocks_in_compensation(two)
-    compared = partial(compare, tolerance=limits, axis_tolerance=tolerance, path=found["path"], blocks=blocks)
-    result = replace(compared(*runs), not_needed=_not_needed(runs))
+    rules = _rules(one), _rules(two)
+    compared = partial(compare, tolerance=limits, axis_tolerance=tolerance, path=found["path"], rules=rules)
+    result = compared(*runs)
+    if not result.same:
+        both.refuse_unknown()
+    result = replace(result, not_needed=_not_needed(runs), stated=(*result.stated, *both.stands_on))
     for levels in other_meanings(*runs) if result.same else ():
         others = (_skipping(runs[0], levels), _skipping(runs[1], levels))
         other = compared(*others)
         if not other.same:
-            other = replace(other, not_needed=result.not_needed)
+            other = replace(other, not_needed=result.not_needed, stated=result.stated)
             return other.within("with_meaning", meaning=words_of(levels, *runs))
     return result
 
 
-def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], names: tuple[str, str]) -> Run:
-    """Return the run of a program, with lines at the feed of rapids as rapids."""
-    return restore_rapids(as_run(program, machine, subprograms, names), rapid_feed_of(machine))
+def _rules(machine: Machine) -> ControlRules:
+    """Return the rules of a machine's control."""
+    feed = greatest_feed(written_control(machine))
+    return ControlRules(blocks_in_compensation(machine), math.inf if feed is None else feed)
 
 
 def _not_needed(runs: tuple[Run, Run]) -> tuple[str, ...]:

@@ -8,9 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
-from trunnion.controls import Control
+from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
-from trunnion.errors import InputError, setting_problem
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.control_settings import default_settings
 from trunnion.jobs.inputs.settings import as_texts, check_operation_names, check_settings, split_by_operation
@@ -18,7 +17,6 @@ from trunnion.jobs.verify.arguments import DEFAULT_TOLERANCE
 from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine
 from trunnion.machines.loading import DEMANDS
-from trunnion.messages import Wording
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification import ExpectedValues, PrintedDigits, Tolerances, tolerances_in_planes
 
@@ -36,7 +34,7 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
     """Return what the program is expected to be; without CL files it may have any work offset and edge.
 
     Raises ``InputError`` if a work offset is none of the control's, or that of an operation which there is not; or if a
-    setting of the post is none of the control's.
+    setting of the post is none of the control's, or its definition has mistakes.
     """
     usual = default_settings(on.control)
     settings = {"work_offset": "G54", **usual}
@@ -71,10 +69,9 @@ def _repeated(
     texts = given["settings"]
     if not texts:
         return {}, {}
-    if on.control is None:
-        raise InputError([setting_problem(key, Wording("ARG210", "not_of_read_control")) for key in texts])
-    program, own = split_by_operation(as_texts(texts), on.control, on.machine)
-    check_settings(program, on.control, on.machine)
+    control = on.control or load_control(on.machine.control)
+    program, own = split_by_operation(as_texts(texts), control, on.machine)
+    check_settings(program, control, on.machine)
     check_operation_names(own, program, [each.name for toolpath in read.toolpaths for each in toolpath.operations])
     return program, own
 

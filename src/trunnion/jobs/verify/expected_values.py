@@ -10,6 +10,7 @@ from typing import Final
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.controls import Control
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, RADIUS_REGISTER_SETTING
+from trunnion.jobs.inputs.control_settings import greatest_feed
 from trunnion.jobs.inputs.settings import m_code, work_offset_setting
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
@@ -38,6 +39,7 @@ def expected_values(
     every = _operation_settings(settings, machine, control)
     everywhere = (settings, *own_settings.values())
     rapid_feed = float(settings["rapid_feed"]) if settings.get("rapid_feed") else None
+    inverse_time = control.formats.get("inverse_time") if control else None
     slower = None if rapid_feed is None or control is None else rapid_feed - control.formats["feed"].five_axis.digit
     return ExpectedValues(
         tool=every.tool,
@@ -49,6 +51,8 @@ def expected_values(
         by_operation={name: _operation_settings(own, machine, control) for name, own in own_settings.items()},
         swivel_data=tuple({each["swivel_data"] for each in everywhere if "swivel_data" in each}),
         rapid_feed=rapid_feed,
+        max_feed=greatest_feed(control),
+        max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
         clearance=float(settings["operation_clearance"]) if settings.get("same_tool") == "clearance" else None,
         operation_clearance=float(settings.get("operation_clearance") or math.inf),
         in_turn=settings.get("first_approach") == "in_turn",

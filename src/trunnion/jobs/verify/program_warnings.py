@@ -1,9 +1,10 @@
-"""Warnings of what the reader has noted of a program and every user should know, although it proves nothing wrong.
+"""Warnings of what was found of a program and every user should know, although it proves nothing wrong.
 
-In:     a program that was run, and the words that the definition of its control states as its own.
+In:     a program that was run, and the words that the definition of its control states as its own; its proof.
 Out:    a warning for each word of the machine's builder that the definition does not declare, where it stands first,
         for each block at which the program waits or stops, or passes the end of a turn by a way that no source
-        confirms, and for each mode and each work offset that it leaves to the next program.
+        confirms, and for each mode and each work offset that it leaves to the next program; and one for the axis
+        whose rapid speed is far too low for its feeds.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,6 +14,7 @@ from trunnion.controls import Control
 from trunnion.errors import Problem, Severity, warning
 from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic, Run
+from trunnion.verification import Verification
 
 _OF_BUILDER: Final = "NC225"
 _WAITS: Final = "NC226"
@@ -20,10 +22,13 @@ _END_OF_TURN: Final = "NC342"
 _LEFT_ON: Final = "NC351"
 
 #: Kinds of which a program has few, told as they were noted.
-_FEW: Final = ("NC161", "NC228")
+_FEW: Final = ("NC114", "NC161", "NC228")
 
 #: Warnings of a kind that are told one by one; a program with more words is hardly one for this machine.
 _MOST_TOLD: Final = 20
+
+#: Where an axis needs more of its rapid speed than this, the tool goes at less than two thirds of its feed.
+_SLOWS: Final = 1.5
 
 _KINDS: Final = (_OF_BUILDER, _WAITS, _END_OF_TURN, _LEFT_ON)
 
@@ -40,6 +45,16 @@ def program_warnings(run: Run, stated: frozenset[str] = frozenset()) -> list[Pro
         told += _of_kind(run, code, [each for each in run.diagnostics if _is_told(each, code, stated)])
     told += [_told(each, each.wording) for code in _FEW for each in run.diagnostics if _is_told(each, code, stated)]
     return told
+
+
+def speed_warnings(found: Verification) -> list[Problem]:
+    """Return the warning of the axis that the feeds ask for most, if it cannot follow them."""
+    check = next((each for each in found.checks if each.key == "speed"), None)
+    if check is None or not check.places or check.worst is None or check.worst <= _SLOWS:
+        return []
+    first = check.places[0]
+    wording = Wording("NC390", "too_slow_for_feed", fault=first.wording, block=first.block_name)
+    return [warning(first.nc_file or found.run.files[0], first.nc_line, wording)]
 
 
 def _is_told(noted: Diagnostic, code: str, stated: frozenset[str]) -> bool:

@@ -14,8 +14,8 @@ from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import as_texts
-from trunnion.jobs.inputs.stated_feeds import with_stated_feeds
-from trunnion.jobs.inputs.stated_speeds import with_stated_speeds
+from trunnion.jobs.inputs.stated_cycles import stated_cycles
+from trunnion.jobs.inputs.stated_operations import with_stated_operations
 from trunnion.jobs.inputs.tool_lengths import with_lengths_of_tools
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.verify.arguments import angles_of
@@ -54,7 +54,10 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
 
     Raises ``InputError`` if a file cannot be used, or a CL file states that its part is clamped otherwise.
     """
-    how = ClReading(given["units"], given["dialect"], given["strict"], cutcom=given["cutcom"])
+    settings = as_texts(given["settings"])
+    how = ClReading(
+        given["units"], given["dialect"], given["strict"], cutcom=given["cutcom"], open_cycles=stated_cycles(settings)
+    )
     toolpaths = as_toolpaths(given["cl"], observer, how)
     on = replace(on, machine=with_lengths_of_tools(on.machine, toolpaths))
     run = as_run(nc, on.machine, given["subprograms"])
@@ -66,8 +69,7 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
     if given["hooks"]:
         toolpaths = _changed_by_hooks(toolpaths, on, given)
     toolpaths = replace_unknown_statements(toolpaths, on.control, on.machine)
-    settings = as_texts(given["settings"])
-    toolpaths = with_stated_feeds(with_stated_speeds(toolpaths, settings), settings)
+    toolpaths = with_stated_operations(toolpaths, settings)
     stated, clamping = stated_clamping(toolpaths), None
     if toolpaths:
         clamping = clamped_after(stated, angles_of(given), toolpaths[0].file)

@@ -18,6 +18,7 @@ from trunnion.jobs.inputs.tool_lengths import library_tools, with_lengths_of_too
 from trunnion.jobs.observer import SILENT, Observer, Remembering
 from trunnion.jobs.verify.arguments import checked
 from trunnion.jobs.verify.expectation import expected, tolerances
+from trunnion.jobs.verify.program_warnings import speed_warnings
 from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine, read_program
 from trunnion.machines import Machine
 from trunnion.messages import Wording
@@ -149,7 +150,7 @@ def verify(
     )  # fmt: skip
     proof = with_other_meanings(proof, partial(_skipping, on, read, found), has_toolpaths=bool(read.toolpaths))
     proof = replace(proof, clamping=read.clamping)
-    observer.problems(_without_motion(read.run))
+    observer.problems([*_without_motion(read.run), *speed_warnings(proof)])
     proof = replace(proof, remarks=tuple(observer.found))
     if recording is None:
         return proof

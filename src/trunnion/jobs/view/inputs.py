@@ -43,7 +43,7 @@ _OF_SETUP: Final = tuple(each.name for each in OF_SETUP if each.name in _VIEWED)
 _OF_PROJECT: Final = tuple(each.name for each in OF_PROJECT if each.name in _VIEWED)
 
 #: Settings that say how CL files are read.
-_OF_READING: Final = frozenset(("cl_units", "dialect", "spline_tolerance", "cutcom"))
+_OF_READING: Final = frozenset(("cl_units", "dialect", "spline_tolerance", "cutcom", "open_cycle"))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -105,8 +105,6 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
     cycles = _cycle_by_row(operation)
     for row, cycle in cycles.items():
         line = int(moves.line[row])
-        if moves.kind[row] != Kind.RAPID:
-            yield HoleCycleError(Wording("CTL380", "rewind_rotary_axes"), line)
         if row == 0:
             continue
         before = cycles.get(row - 1)

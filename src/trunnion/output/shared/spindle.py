@@ -17,7 +17,7 @@ def dwell_seconds(event: Dwell, rpm: float | None) -> float:
     if not event.revolutions:
         return event.amount
     if rpm is None or not rpm > 0.0:
-        raise UnsupportedFeatureError(Wording("CTL420", "dwell_spindle_revolutions"))
+        raise UnsupportedFeatureError(Wording("CTL420", "dwell_spindle_revolutions_while"))
     return 60.0 * event.amount / rpm
 
 

@@ -1,7 +1,8 @@
 """Events that a control cannot carry out, or not where they are."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import replace
+from itertools import pairwise
 from typing import TypeGuard
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
@@ -20,6 +21,7 @@ from trunnion.model.toolpath import (
     Insert,
     Kind,
     LoadTool,
+    Operation,
     SelectTool,
     SpindleOn,
 )
@@ -96,6 +98,19 @@ def _compensates_by_register(event: Event) -> TypeGuard[CutterComp]:
     return isinstance(event, CutterComp) and event.side != "OFF" and event.register != 0
 
 
+def _skipped_feeds(program: Program, operation: Operation) -> Iterator[Problem]:
+    """Yield stretches to skip without a motion or a word between a feed and another one, which no block could skip."""
+    moves, events = operation.moves, operation.events
+    for on, off in pairwise(events):
+        if not (isinstance(on, BlockSkip) and isinstance(off, BlockSkip) and on.on and not off.on):
+            continue
+        row = on.row
+        if row != off.row or not 0 < row < len(moves) or int(moves.kind[row]) == Kind.RAPID:
+            continue
+        if moves.feed[row] != moves.feed[row - 1]:
+            yield Problem(program.file_of(operation), on.line, Wording("CTL460", "feed_alone", off=off.line))
+
+
 def block_skip_problems(program: Program) -> list[Problem]:
     """Return operations that end, or turn to another plane, among blocks that may be skipped.
 
@@ -103,7 +118,7 @@ def block_skip_problems(program: Program) -> list[Problem]:
     either: without it, the blocks after it would be somewhere else.
     """
     motions = program.motions
-    problems: list[Problem] = []
+    problems = [problem for motion in motions for problem in _skipped_feeds(program, motion.operation)]
     skip: BlockSkip | None = None
     for k, motion in enumerate(motions):
         for event in motion.operation.events:

@@ -14,10 +14,13 @@ from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.output.program import Program
 
-#: A feed that is printed with a greater error, as a share of it, is told; one of mm/min with an error above the second
-#: share is refused, and so is every feed per revolution that is told: its share of a chip is small.
+#: A feed that is printed with a greater error, as a share of it, is told; one with an error above the second, refused.
 TOLD_ERROR: Final = 0.001
 REFUSED_ERROR: Final = 0.01
+
+#: The same of a feed in mm/min that the control cannot print nearer: no other unit cures it, and half a step of the
+#: dial by which the operator overrides feeds breaks no tool.
+_REFUSED_PER_MINUTE: Final = 0.05
 
 
 def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -103,7 +106,7 @@ def rounding_problem(
     error = abs(printed - feed) / feed
     if error <= TOLD_ERROR:
         return None
-    refused = error > REFUSED_ERROR
+    refused = error > (REFUSED_ERROR if per_rev else _REFUSED_PER_MINUTE)
     return Problem(
         file,
         line,

@@ -34,22 +34,6 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
     return problems
 
 
-def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
-    """Refuse a machining mode for which the control has no templates."""
-    if program.template_suffix(motion):
-        return []
-    operation = motion.operation
-    return [
-        Problem(
-            program.file_of(operation),
-            operation.line,
-            Wording(
-                "CTL210", "operation_no_words", operation=operation.name, control=program.control.name, mode=motion.mode
-            ),
-        )
-    ]
-
-
 def _is_of_holes(operation: Operation) -> bool:
     """Whether an operation makes holes by cycles, and cuts nothing between them."""
     in_cycle = cycle_rows(operation)

@@ -17,8 +17,6 @@ def tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
     row = first_row_at_other_pose(program.machine, motion, program.block_words(motion))
     if row < 0:
         return []
-    what = "for the tool's vector here the control could choose another rotary position than the planned one: operation"
-    what = f"{what} {motion.operation.name} is written with rotary positions"
     return [
         warning(
             program.file_of(motion.operation),

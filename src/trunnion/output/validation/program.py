@@ -11,7 +11,6 @@ from trunnion.output.validation.events import block_skip_problems, event_problem
 from trunnion.output.validation.feeds import missing_feed_problems, rapid_feed_problems, rounded_feed_problems
 from trunnion.output.validation.machine import machine_problems
 from trunnion.output.validation.operations import (
-    machining_mode_problems,
     next_axis_problems,
     plane_entry_problems,
     tolerance_problems,
@@ -57,7 +56,6 @@ def check_program(program: Program) -> list[Problem]:
             continue
         problems += tool_problems(program, operation, tool_in_spindle)
         tool_in_spindle = operation.tool.name
-        problems += machining_mode_problems(program, motion)
         problems += tolerance_problems(program, motion)
     problems += [*register_problems(program), *block_skip_problems(program)]
     return [*problems, *machine_problems(program), *text_problems(program)]

@@ -1,28 +1,14 @@
 """Operations that call one tool although their CL data describe several."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Final
+from collections.abc import Iterator, Sequence
 
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
-from trunnion.model.toolpath import LoadTool, Operation, Tool
+from trunnion.model.tool_faults import tool_differences
+from trunnion.model.toolpath import LoadTool, Operation
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls, edge_setting
-
-#: Sizes of a tool that are compared, mm and degrees, with what two files may differ by when they write the same size:
-#: one in inches rounds to the fourth decimal.
-_SIZES: Final[Mapping[str, float]] = {
-    "diameter": 0.002,
-    "corner_radius": 0.002,
-    "length": 0.002,
-    "taper_angle": 0.01,
-    "tip_angle": 0.01,
-}
-
-#: Sizes of which 0 says that the file does not know them.
-_UNKNOWN_AT_ZERO: Final = frozenset({"diameter", "length"})
 
 
 def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Problem]:
@@ -83,7 +69,7 @@ def _lost_register(program: Program, operation: Operation, load: LoadTool) -> It
 def _conflict(call: str, before: Sequence[Operation], operation: Operation, file: str) -> Iterator[Problem]:
     """Yield what an operation states of a tool otherwise than those before it that call it."""
     for other in before:
-        differing = list(_differences(other.tool, operation.tool))
+        differing = list(tool_differences(other.tool, operation.tool))
         if differing:
             yield Problem(
                 file,
@@ -114,20 +100,3 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
                 operation=operation.name,
             ),
         )
-
-
-def _differences(one: Tool, two: Tool) -> Iterator[str]:
-    """Yield what both tools state and where they differ, in words."""
-    if "UNKNOWN" in (one.kind, two.kind):
-        return
-    if one.kind != two.kind:
-        yield f"form {one.kind} and {two.kind}"
-    for size, tolerance in _SIZES.items():
-        a, b = float(getattr(one, size)), float(getattr(two, size))
-        is_stated = size not in _UNKNOWN_AT_ZERO or (a != 0.0 and b != 0.0)
-        # Angles of different forms are different angles.
-        if is_stated and abs(a - b) > tolerance and (one.kind == two.kind or not size.endswith("angle")):
-            yield f"{size.replace('_', ' ')} {a:g} and {b:g}"
-    here, there = one.corner_centre, two.corner_centre
-    if here and there and math.dist(here, there) > _SIZES["corner_radius"]:
-        yield f"corner centre {here[0]:g},{here[1]:g} and {there[0]:g},{there[1]:g}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
-from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Kind, Operation
+from trunnion.model.toolpath import Arcs, BlockSkip, CycleOff, CycleOn, Event, Kind, Operation
 from trunnion.planning.holes.cycles import HoleCycleError
 
 #: Tool axes are the same if no component differs by more than this; CL files print seven decimals or more.
@@ -122,10 +122,19 @@ def row_ranges(starts: Ints, count: int) -> list[tuple[int, int]]:
 
 
 def extract_rows(operation: Operation, first: int, end: int) -> Operation:
-    """Rows ``first`` to ``end`` of an operation, with the cycle in force at their start. No arc may cross into them."""
+    """Rows ``first`` to ``end`` of an operation, with the cycle in force at their start. No arc may cross into them.
+
+    An OPSKIP/OFF that is the first event before a row ends what may be skipped right behind the row before.
+    """
     moves, arcs = operation.moves, operation.arcs
     is_last = end == len(moves)
-    inside = [e for e in operation.events if first <= e.row < end or (is_last and e.row == end)]
+    ends = {row: next((e for e in operation.events if e.row == row), None) for row in (first, end)}
+    own, ending = (event if isinstance(event, BlockSkip) and not event.on else None for event in ends.values())
+    inside = [
+        e
+        for e in operation.events
+        if (first <= e.row < end and (first == 0 or e is not own)) or (e.row == end and (is_last or e is ending))
+    ]
     before = [e for e in operation.events if isinstance(e, CycleOn | CycleOff) and e.row < first]
     events = [replace(event, row=event.row - first) for event in inside]
     if before and isinstance(before[-1], CycleOn) and not any(isinstance(e, CycleOff) and e.row == 0 for e in events):

@@ -29,9 +29,6 @@ _DISTINCT: Final = 0.005
 #: what is printed.
 _SAME_RADIUS: Final = 0.003
 
-#: Two tool axes are opposite above this negative cosine: printed decimals would choose the way between them.
-_OPPOSITE: Final = 1.0 - 1e-12
-
 #: Error of an arc's radius if start, end and centre have four decimals, mm.
 _PRINTED_RADIUS_ERROR: Final = 3e-4
 
@@ -172,9 +169,6 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
     kind = moves.kind[source]
     for m in np.flatnonzero(~keep):
         row = arcs.row[m]
-        if float(moves.axis[row - 1] @ moves.axis[row]) < -_OPPOSITE:
-            wording = Wording("PLN130", "axis_turns_over")
-            raise InputError(Problem(operation.file, int(moves.line[row]), wording))
         part = slice(new_row[row] - copies[row] + 1, new_row[row] + 1)
         tip[part], axis[part] = _points_on_arc(operation, int(m), float(sweep[m]), int(copies[row]))
         kind[part] = Kind.LINEAR
@@ -229,7 +223,10 @@ def _points_on_arc(operation: Operation, m: int, sweep: float, pieces: int) -> t
 
 
 def great_circle_points(first: Floats, last: Floats, part: Floats) -> Floats:
-    """(k, 3) float64: unit vectors on the great circle from ``first`` to ``last``, at shares ``part`` (k,) of it."""
+    """(k, 3) float64: unit vectors on the great circle from ``first`` to ``last``, at shares ``part`` (k,) of it.
+
+    The two are not opposite: there is no one circle then.
+    """
     angle = float(np.arctan2(np.linalg.norm(np.cross(first, last)), first @ last))
     if angle < 1e-12:
         return np.repeat(last[None, :], len(part), axis=0)

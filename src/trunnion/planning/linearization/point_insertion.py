@@ -181,7 +181,10 @@ def _bend_problems(file: str, operation: Operation, rows: Ints, options: PlanOpt
 
 
 def _limit_problems(file: str, operation: Operation, machine: Machine, path: DividedPath) -> Iterable[Problem]:
-    """Yield inserted points at which an axis is beyond its limits, if it is not so at the rows around them."""
+    """Yield inserted points at which an axis is beyond its limits, if it is not so at the rows around them.
+
+    Of each row, the point at which the axis is farthest beyond its limit: that is how far it must come back.
+    """
     source = path.source
     added = np.flatnonzero(np.append(source[1:] == source[:-1], False))
     limits = limits_of(machine, machine.workpiece_zero is not None)
@@ -194,9 +197,11 @@ def _limit_problems(file: str, operation: Operation, machine: Machine, path: Div
         at_ends = slide_positions(machine, path.tip[ends], path.rotary[ends])
         found = found[~outside_limits(at_ends, *limits).any(axis=1)]
     for row in np.unique(rows[found])[:_NAMED].tolist():
-        k = int(found[np.argmax(rows[found] == row)])
-        column = int(np.argmax(outside[k]))
-        value = float(joints[k, column])
+        of_row = found[rows[found] == row]
+        column = int(np.argmax(outside[of_row[0]]))
+        values = joints[of_row, column]
+        beyond = np.maximum(values - machine.axes[column].high, machine.axes[column].low - values)
+        value = float(values[np.argmax(beyond)])
         violation, remedy = limit_violation_text(machine, column, value), limit_remedy(machine, column, value)
         wording = Wording("PLN120", "on_the_way", violation=violation, remedy=remedy)
         yield Problem(file, int(operation.moves.line[row]), wording)

@@ -91,12 +91,14 @@ def gap_of_turn(start: Floats, arc: Arc) -> float:
 
     A last digit decides there between a whole turn and nearly none. A short arc that does not rise is one.
     """
-    first, chord = start - arc.centre, arc.end - start
-    rise = float(chord @ arc.normal)
-    gap = math.hypot(*(chord - rise * arc.normal).tolist())
+    chord = arc.end - start
+    a, b, c = chord.tolist()
+    x, y, z = arc.normal.tolist()
+    rise = a * x + b * y + c * z
+    gap = math.hypot(a - rise * x, b - rise * y, c - rise * z)
     if arc.turns or not SAME_POINT < gap < _GAP or arc.radius < _GAPS * gap:
         return 0.0
-    turns_on = float(np.cross(first, chord) @ arc.normal) > 0.0
+    turns_on = float(np.cross(start - arc.centre, chord) @ arc.normal) > 0.0
     return 0.0 if turns_on and abs(rise) < _GAPS * gap else gap
 
 
@@ -111,14 +113,14 @@ def by_centre(start: Floats, end: Floats, centre: Floats, plane: int, clockwise:
     """Return the arc about a centre, whose coordinate along the normal is ignored; a full circle if start is end."""
     middle = centre.copy()
     middle[plane] = start[plane]
-    first, last = start - middle, end - middle
-    first[plane] = last[plane] = 0.0
-    radius = math.hypot(*first.tolist())
-    off = abs(math.hypot(*last.tolist()) - radius)
+    u, v = (plane + 1) % 3, (plane + 2) % 3
+    about, first, last = centre.tolist(), start.tolist(), end.tolist()
+    radius = math.hypot(first[u] - about[u], first[v] - about[v])
+    radius_at_end = math.hypot(last[u] - about[u], last[v] - about[v])
     if radius < SAME_POINT:
         raise ArcError(Wording("NC320", "circle_no_radius"))
-    if off > max(RADIUS_ERROR, RADIUS_RATIO * radius):
-        raise ArcError(Wording("NC320", "radii_differ", start=radius, end=np.linalg.norm(last)))
+    if abs(radius_at_end - radius) > max(RADIUS_ERROR, RADIUS_RATIO * radius):
+        raise ArcError(Wording("NC320", "radii_differ", start=radius, end=radius_at_end))
     return Arc(end, middle, normal_of(plane, clockwise), radius, turns)
 
 

@@ -315,10 +315,10 @@ class ContourControl(SetupControl):
         """Return the map (3, 4) from slide positions to the tip, with the rotary axes where they are."""
         if self._rotary_unresolved:
             self.resolve_rows()
-        first, second = (float(self.current_joints[column]) for column in self.machine.rotary)
+        first, second = (float(self.current_joints[column]) for column in self._rotary_columns)
         if self._slide_map is None or self._slide_map[:2] != (first, second):
             joints = np.zeros((4, 5))
-            joints[:, list(self.machine.rotary)] = first, second
+            joints[:, list(self._rotary_columns)] = first, second
             for axis, column in enumerate(self._slides):
                 joints[axis + 1, column] = 1.0
             tip = forward(self.machine, joints)[0]

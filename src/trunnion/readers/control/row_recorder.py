@@ -106,6 +106,7 @@ class RowRecorder(EventRecorder):
         self._normals: list[tuple[Ints, Floats]] = []
         self._kinematics = kinematic_parameters(machine)
         self._slides = list(slide_columns(machine))
+        self._rotary_columns = machine.rotary
         self.start = machine.home.copy()
         self.current_joints = machine.home.copy()
         self._rotary_unresolved = False
@@ -147,7 +148,8 @@ class RowRecorder(EventRecorder):
         bits     ``ProgrammedWord`` bits of the words besides rotary ones and the vector
         vector   (3,) programmed tool axis, of any length
         """
-        if not within_limits(end) or any(abs(value) > MAX_POSITION for value in rotary.values):
+        is_far = rotary is not NO_ROTARY and any(abs(value) > MAX_POSITION for value in rotary.values)
+        if is_far or not within_limits(end):
             self.note(Wording("NC310", "too_far"), Severity.ERROR)
             return False
         bits |= rotary.bits if vector is None else int(ProgrammedWord.VECTOR)
@@ -372,4 +374,6 @@ class RowRecorder(EventRecorder):
 
 def within_limits(point: Floats) -> bool:
     """Whether some machine could reach a point; NaN is nowhere."""
+    if point.ndim == 1:  # one of many: numpy's way costs more than the three comparisons
+        return all(-MAX_POSITION < value < MAX_POSITION for value in point.tolist())
     return float(np.abs(point).max()) < MAX_POSITION

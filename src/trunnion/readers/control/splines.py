@@ -84,6 +84,28 @@ def nurbs_points(spline: Spline) -> Floats:
     return np.concatenate(found)
 
 
+def at_parameters(spline: Spline, at: Floats) -> tuple[Floats, Floats]:
+    """Return the points (k, 3) of a spline at rising parameters, and its directions there, of length 1.
+
+    A direction leads to the control point beside the point, of the curve from there to the farther end of its span.
+    """
+    points, directions = np.empty((len(at), 3)), np.empty((len(at), 3))
+    first = 0
+    for span in spline.spans.tolist():
+        begin, end = spline.knots[span], spline.knots[span + 1]
+        last = len(at) if span == spline.spans[-1] else int(np.searchsorted(at, end))
+        here = at[first:last]
+        ahead = here < 0.5 * (begin + end)
+        point = _blossom(spline, span, [here] * spline.degree)
+        beside = _blossom(spline, span, [*[here] * (spline.degree - 1), np.where(ahead, end, begin)])
+        points[first:last] = point[:, :3] / point[:, 3:]
+        way = np.where(ahead, 1.0, -1.0)[:, None] * (beside[:, :3] / beside[:, 3:] - points[first:last])
+        length = np.linalg.norm(way, axis=1)[:, None]
+        directions[first:last] = way / np.where(length > 0.0, length, 1.0)
+        first = last
+    return points, directions
+
+
 def _bezier_pieces(spline: Spline, span: int, at: Floats) -> Floats:
     """(d + 1, k, 4): control points times weights, and weights, of the curves between k + 1 parameters of a span."""
     begin, end, degree = at[:-1], at[1:], spline.degree

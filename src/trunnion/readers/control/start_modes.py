@@ -26,6 +26,9 @@ MOTION: Final = "motion"
 #: How centres of arcs count: it counts for an arc alone.
 CENTRES: Final = "centres"
 
+#: A plane that the control takes from the rotary position, where it has words for one.
+PLANE_OF_POSE: Final = "plane of the rotary position"
+
 #: What TCP is to a control whose positions of the machine depend on it too.
 KINEMATICS: Final = "kinematics"
 
@@ -42,7 +45,7 @@ _ANGLES: Final = ProgrammedWord.FIRST | ProgrammedWord.SECOND
 _POSITIONS: Final = _SLIDES | _ANGLES
 
 #: Modes that count for positions of the workpiece, not for those of the machine, and the words that they count for.
-_OF_WORKPIECE: Final = {"length": _SLIDES, "tilted plane": _SLIDES, "TCP": _POSITIONS}
+_OF_WORKPIECE: Final = {"length": _SLIDES, "tilted plane": _SLIDES, PLANE_OF_POSE: _SLIDES, "TCP": _POSITIONS}
 
 #: Modes that count under TCP, likewise.
 _OF_TCP: Final = {

@@ -7,7 +7,7 @@ Out:    nothing, or an ``InputError`` that names the kinds, the most frequent on
 from collections import Counter
 from typing import Final
 
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, mistake_of
 from trunnion.messages import Wording, phrase
 from trunnion.readers.program.limits import MAX_ERRORS
 
@@ -19,13 +19,13 @@ class ErrorTally:
     """Counts errors by their kind."""
 
     def __init__(self) -> None:
-        self._counts = Counter[tuple[str, str]]()
-        self._first: dict[tuple[str, str], tuple[int, Wording]] = {}
+        self._counts = Counter[tuple[str, ...]]()
+        self._first: dict[tuple[str, ...], tuple[int, Wording]] = {}
         self._total = 0
 
     def add(self, file: str, line: int, wording: Wording) -> None:
         """Count an error; raises ``InputError`` if there are too many."""
-        kind = wording.code, wording.variant
+        kind = mistake_of(wording)
         self._counts[kind] += 1
         self._first.setdefault(kind, (line, wording))
         self._total += 1

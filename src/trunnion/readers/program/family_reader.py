@@ -8,10 +8,11 @@ from typing import Any
 
 from trunnion.compensation.styles import UNKNOWN_STYLE
 from trunnion.machines import Machine
+from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.interpreter import Interpreter
 from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
 from trunnion.readers.program.settings import no_reading
-from trunnion.readers.program.subprograms import callable_files
+from trunnion.readers.program.subprograms import Subprograms, callable_files
 from trunnion.readers.program.work_offsets import WorkOffsetWords
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
@@ -37,6 +38,7 @@ class FamilyReader:
     compensation_style   how a control compensates the radius in a plane, a key of ``STYLES``; 0: not known
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     variables            what variables are called of which values can be stated; None: there are none
+    call_words           how programs call others; None: none does
     """
 
     interpreter: type[Interpreter[Any]]
@@ -53,7 +55,19 @@ class FamilyReader:
     compensation_style: Callable[[Machine], int] = lambda _: UNKNOWN_STYLE
     check_reading: Callable[[Machine], object] = no_reading
     variables: re.Pattern[str] | None = None
+    call_words: CallWords | None = None
 
     def callable_files(self, files: Iterable[Path]) -> tuple[Path, ...]:
         """Return the files whose names programs can call, the first of each name."""
         return callable_files(files, self.interpreter.suffixes, self.interpreter.prefix)
+
+    def call_name(self, name: str) -> str:
+        """Return the name of a file, or of a call, as calls are compared: without folder, ending and prefix."""
+        named = Subprograms((), self.interpreter.suffixes, self.interpreter.prefix)
+        key = named.key(name)
+        bare = name if key is None else key[0]
+        return bare if self.call_words is None else self.call_words.name(bare)
+
+    def called(self, text: bytes) -> frozenset[str]:
+        """Return the names of what a text calls, as ``call_name`` gives them."""
+        return frozenset() if self.call_words is None else frozenset(map(self.call_name, self.call_words.called(text)))

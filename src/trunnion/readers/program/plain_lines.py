@@ -31,7 +31,8 @@ class PlainLines:
         self._programs = form.has("program_numbers")
         self._anywhere = form.is_so("numbers_anywhere", "anywhere")
         self._marks = form.is_so("tape_marks", "ignored")
-        self.any = bool(self._comments or self._ends or self._programs or self._anywhere or self._marks)
+        self._nested = form.is_so("nested_comments", "counted")
+        self.any = bool(self._comments or self._ends or self._programs or self._anywhere or self._marks or self._nested)
 
     def plain(self, raw: str) -> str:
         """Return a line in the form of the family."""
@@ -65,13 +66,26 @@ class PlainLines:
                 at += 1
                 continue
             closing = self._own[1] if sign == self._own[0] else _CLOSING.get(sign, "")
-            end = line.find(closing, at) if closing else len(line)
+            end = self._end(line, at, sign, closing)
             if end < 0:  # it does not end, which the reader of the family reports
                 code.append(line[at:])
                 break
             comments.append(line[at + len(sign) : end])
             at = end + len(closing)
         return "".join(code), comments
+
+    def _end(self, line: str, at: int, sign: str, closing: str) -> int:
+        """Return where the comment that begins at a sign ends, -1 if it does not."""
+        if not closing:
+            return len(line)
+        if not (self._nested and sign == self._own[0]):
+            return line.find(closing, at)
+        depth = 0
+        for place in range(at, len(line)):
+            depth += (line[place] == sign) - (line[place] == closing)
+            if not depth:
+                return place
+        return -1
 
     def _without_end(self, code: str) -> str:
         """Return a block without the mark that ends it."""

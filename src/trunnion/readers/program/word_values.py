@@ -1,5 +1,6 @@
 """What the value of a word may be on a control; another one has no meaning, or one that the reader does not know."""
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -8,19 +9,26 @@ from trunnion.messages import Wording
 
 @dataclass(frozen=True, slots=True)
 class Values:
-    """Values that a word may have: those of ``single``, and all from ``least`` to ``greatest``, whole ones only."""
+    """Values that a word may have: those of ``single``, and all from ``least`` to ``greatest``.
+
+    of_whole  only the whole ones of them
+    """
 
     single: tuple[float, ...] = ()
     least: float = 0.0
     greatest: float = -1.0
+    of_whole: bool = True
 
     def __contains__(self, value: float) -> bool:
-        return value in self.single or (self.least <= value <= self.greatest and value == int(value))
+        within = self.least <= value <= self.greatest
+        return value in self.single or (within and (value == int(value) or not self.of_whole))
 
     def __str__(self) -> str:
         parts = [f"{value:g}" for value in self.single]
         if self.least <= self.greatest:
-            parts.append(f"whole numbers from {self.least:g} to {self.greatest:g}")
+            kind = "whole numbers" if self.of_whole else "numbers"
+            bounds = f"from {self.least:g} to {self.greatest:g}" if math.isfinite(self.greatest) else "above 0"
+            parts.append(f"{kind} {bounds}")
         return " or ".join(parts)
 
 
@@ -32,6 +40,15 @@ def one_of(*values: float) -> Values:
 def whole(least: float, greatest: float) -> Values:
     """Return the whole numbers between two, both included."""
     return Values((), least, greatest)
+
+
+def between(least: float, greatest: float) -> Values:
+    """Return all numbers between two, both included."""
+    return Values((), least, greatest, of_whole=False)
+
+
+#: All numbers above 0.
+ABOVE_ZERO: Final = between(math.nextafter(0.0, 1.0), math.inf)
 
 
 def fault_of_value(word: str, letter: str, value: float, known: Values) -> Wording | None:

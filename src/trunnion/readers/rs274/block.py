@@ -6,13 +6,20 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from trunnion.messages import Wording
-from trunnion.readers.rs274.expressions import Arithmetic, BlockError, ExpressionReader, Parameters, Value
+from trunnion.readers.rs274.expressions import MAX_VALUE, Arithmetic, BlockError, ExpressionReader, Parameters, Value
 
 #: Longer lines are no blocks.
 MAX_LENGTH: Final = 8192
 
 #: No control has larger codes.
 _MAX_CODE: Final = 100_000
+
+#: A block of nothing but letters with numbers, and one of these.
+_PLAIN = re.compile(r"(?:[A-Z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))+")
+_PLAIN_WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
+
+#: What divides a line into code and comments.
+_COMMENT = re.compile(r"[(;]")
 
 _NUMBERED = re.compile(r"N([0-9]{1,15})(?:\.[0-9]*)?")
 
@@ -80,7 +87,7 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
     comments: list[str] = []
     at = 0
     while at < len(raw):
-        begin = re.compile(r"[(;]").search(raw, at)
+        begin = _COMMENT.search(raw, at)
         if begin is None:
             parts.append(raw[at:])
             break
@@ -123,6 +130,11 @@ def read_block(
     corners  letters that may stand behind a comma: such a word is another one than that of the letter
     """
     block = Block()
+    if (plain := _PLAIN.fullmatch(reader.text, reader.at)) is not None:
+        for letter, written in _PLAIN_WORD.findall(plain[0]):
+            has_point = "." in written
+            _add_word(block, letter, Number(_checked(float(written)), not has_point, has_point), on_repeated_word)
+        reader.at = plain.end()
     while not reader.ended:
         letter = reader.letter()
         if letter == "#":
@@ -138,16 +150,21 @@ def read_block(
         if value is None:
             # A word whose value is an unset parameter counts as not written.
             continue
-        if letter == "G":
-            block.g.append(_code(value, letter, 10))
-        elif letter == "M":
-            block.m.append(_code(value, letter, 1))
-        else:
-            if letter in block.words:
-                on_repeated_word(letter)
-            written = reader.text[begin : reader.at]
-            block.words[letter] = Number(value, whole, "." in written and not {"#", "["} & set(written))
+        written = reader.text[begin : reader.at]
+        number = Number(value, whole, "." in written and not {"#", "["} & set(written))
+        _add_word(block, letter, number, on_repeated_word)
     return block
+
+
+def _add_word(block: Block, letter: str, number: Number, on_repeated_word: Callable[[str], None]) -> None:
+    if letter == "G":
+        block.g.append(_code(number.value, letter, 10))
+    elif letter == "M":
+        block.m.append(_code(number.value, letter, 1))
+    else:
+        if letter in block.words:
+            on_repeated_word(letter)
+        block.words[letter] = number
 
 
 def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> ExpressionReader:
@@ -160,6 +177,13 @@ def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> E
     if ")" in text:
         raise BlockError(Wording("NC210", "closes_no_comment"))
     return ExpressionReader(text, arithmetic, parameters)
+
+
+def _checked(value: float) -> float:
+    """Return a number that is not too large; BlockError if it is."""
+    if abs(value) > MAX_VALUE:
+        raise BlockError(Wording("NC215", "number_too_large"))
+    return value
 
 
 def _code(value: float, letter: str, parts: int) -> int:

@@ -13,6 +13,7 @@ from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.start_modes import CENTRES
 from trunnion.readers.control.virtual_control import LINEAR, RAPID, Circle, VirtualControl
+from trunnion.readers.rs274 import arc_vectors
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings
 
 #: Motions in force besides rapid and lines: G2 and G3.
@@ -31,6 +32,9 @@ class Rs274Control(VirtualControl):
 
     #: Whether I J K count from the start of the circle; else they are absolute.
     relative_centres = True
+
+    #: What these are then: from the start to the centre, or what the definition states instead.
+    arc_vectors = ""
 
     #: Whether the tool length counts along Z.
     length_active = False
@@ -105,9 +109,12 @@ class Rs274Control(VirtualControl):
             raise arcs.ArcError(Wording("NC320", "circle_no_centre"))
         if not self.relative_centres and len(given) < 2:
             raise arcs.ArcError(Wording("NC320", "circle_needs_both_words_centre"))
-        centre = start.copy()
-        for axis, value in given.items():
-            centre[axis] = start[axis] + value if self.relative_centres else value
+        if self.relative_centres:
+            normal = arcs.normal_of(self.plane_axis, clockwise)
+            centre = arc_vectors.centre_of(start, end, normal, given, self.arc_vectors)
+        else:
+            centre = start.copy()
+            centre[list(given)] = list(given.values())
         self.check_radii(start, end, centre)
         return arcs.by_centre(start, end, centre, self.plane_axis, clockwise, turns)
 

@@ -48,7 +48,7 @@ class Parameters(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arithmetic:
-    """The operations of a language.
+    """The operations of a language; one without any takes nothing but numbers.
 
     levels                    binary operators by precedence, lowest first
     operators                 what each operator does with two numbers
@@ -56,6 +56,7 @@ class Arithmetic:
     pairs                     functions of two numbers, ``NAME[a]/[b]`` or ``NAME[a,b]``
     assigns_without_brackets  the right side of an assignment may be an expression without brackets
     compare_unset             evaluates a comparison with an unset value, None for other operators
+    asks_for_parameters       ``EXISTS[#<name>]`` asks whether a parameter is there
     """
 
     levels: tuple[tuple[str, ...], ...]
@@ -64,6 +65,11 @@ class Arithmetic:
     pairs: Mapping[str, Callable[[float, float], float]]
     assigns_without_brackets: bool = False
     compare_unset: Callable[[str, Value, Value], float | None] | None = None
+    asks_for_parameters: bool = False
+
+
+#: What a language has that knows no expressions.
+NO_ARITHMETIC: Final = Arithmetic(levels=(), operators={}, functions={}, pairs={})
 
 
 class ExpressionReader:
@@ -126,6 +132,8 @@ class ExpressionReader:
         """Read the value of a word; returns it, and whether it is a number without a point."""
         if self.text[self.at : self.at + 1] in _FIGURES:
             return self.number()
+        if self._arithmetic is NO_ARITHMETIC:
+            return self._plain_number()
         self._deeper()
         try:
             if self.accept("-"):
@@ -143,6 +151,16 @@ class ExpressionReader:
             return self.number()
         finally:
             self._depth -= 1
+
+    def _plain_number(self) -> tuple[Value, bool]:
+        """Read a number with its sign, in a language that has no other values."""
+        sign = -1.0 if self.accept("-") else 1.0
+        if sign > 0.0:
+            self.accept("+")
+        if self.rest[:1] in ("[", "#"):
+            raise BlockError(Wording("NC220", "parameters_not_simulated"))
+        value, whole = self.number()
+        return sign * value, whole
 
     def parameter_key(self) -> int | str:
         """Read the number or name of a parameter, after its ``#``."""
@@ -237,7 +255,8 @@ def _operators(arithmetic: Arithmetic) -> tuple[re.Pattern[str], dict[str, int]]
 @cache
 def _functions(arithmetic: Arithmetic) -> re.Pattern[str]:
     """Return what finds the name of a function."""
-    return _any_of((*arithmetic.functions, *arithmetic.pairs, "EXISTS"))
+    asking = ("EXISTS",) if arithmetic.asks_for_parameters else ()
+    return _any_of((*arithmetic.functions, *arithmetic.pairs, *asking))
 
 
 def _any_of(names: Collection[str]) -> re.Pattern[str]:

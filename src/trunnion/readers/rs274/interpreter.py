@@ -4,12 +4,14 @@ import math
 import re
 from abc import abstractmethod
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final, TypeVar
 
 import numpy as np
 
 from trunnion.arrays import Codes
 from trunnion.errors import Severity
+from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control import iso_m_codes
@@ -19,7 +21,9 @@ from trunnion.readers.control.start_modes import CENTRES, MOTION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
+from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.rs274 import arc_vectors
 from trunnion.readers.rs274.block import Block, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER_CLOCKWISE, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
@@ -69,6 +73,10 @@ class Rs274Interpreter(Interpreter[A]):
     motion_code = 0
 
     control: Rs274Control
+
+    def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        super().__init__(path, machine, options)
+        self.control.arc_vectors = self._form.one.get(arc_vectors.KEY, "")
 
     @abstractmethod
     def _execute_block(self, active: A, line: int, text: str) -> None:
@@ -172,9 +180,10 @@ class Rs274Interpreter(Interpreter[A]):
         """Return the words of the machine's axes; report those of other axes."""
         axes: dict[str, AxisWord] = {}
         for letter in AXES:
-            value = block.take(letter)
-            if value is None:
+            if letter not in block.words:
                 continue
+            value = block.words[letter].value
+            block.used.add(letter)
             if letter in "XYZ" or letter in self.control.rotary_names:
                 axes[letter] = value, PositionMode.MODAL
             else:

@@ -128,7 +128,9 @@ class WordInterpreter(Rs274Interpreter[A]):
     def _call_tool(self, block: Block) -> None:
         tool = block.take("T")
         if tool is not None:
-            self.control.select_tool(f"{tool:g}")
+            if tool < 0.0 or tool != int(tool):
+                raise BlockError(Wording("NC215", "no_number_of_tool", tool=tool))
+            self.control.select_tool(f"{tool:.15g}")
 
     def _late_words(self, codes: Sequence[Word]) -> Sequence[Word]:
         """Return the M codes that act after the motion of their block."""
@@ -175,15 +177,14 @@ class WordInterpreter(Rs274Interpreter[A]):
     def _execute_word(self, word: Word, block: Block) -> None:
         for letter in word.letters:
             block.take(letter)
+        text = word.text if word.code >= 0 else self.control.own_words.own_text(word.code)
         if word.effect in _NOT_SIMULATED:
             severity, code = _NOT_SIMULATED[word.effect]
-            text = word.text if word.code >= 0 else self.control.own_words.own_text(word.code)
             self._note(Wording(word.problem or code, "not_simulated", word=text, does=word.does), severity)
         elif word.effect is Effect.UNKNOWN:
             self._execute_unknown(word)
         if word.mode:
-            letters = [letter for letter in word.letters if letter in block.words and not word.group]
-            said = " ".join((word.text, *(f"{letter}{block.words[letter].value:g}" for letter in letters)))
+            said = text if word.group else " ".join((text, *_letters(word, block)))
             self.control.say_mode(word.mode, "" if word.shows else said)
         if word.is_motion or word.act == "cancel":
             self.control.said_from.setdefault(MOTION, self.control.row)
@@ -292,7 +293,13 @@ class WordInterpreter(Rs274Interpreter[A]):
             self.control.relied_from.setdefault(END_OF_CYCLES, self.control.row)
 
     def _iso(self, word: Word, block: Block) -> None:
+        self._say_letters(word, block)
         self._common_m_code(word.code)
+
+    def _say_letters(self, word: Word, block: Block) -> None:
+        """Record the letters of a word whose event does not show them."""
+        if word.letters:
+            self.control.say_mode(word.text, " ".join(_letters(word, block)))
 
     # Cycles
 
@@ -321,3 +328,8 @@ class WordInterpreter(Rs274Interpreter[A]):
             return motions()
         except CycleExecutionError as error:
             raise BlockError(error.wording.within("of_cycle")) from None
+
+
+def _letters(word: Word, block: Block) -> list[str]:
+    """Return the letters of a word in a block, with their values."""
+    return [f"{letter}{block.words[letter].value:g}" for letter in word.letters if letter in block.words]

@@ -98,7 +98,7 @@ class Word:
     @property
     def mode(self) -> str:
         """The mode that it says, beside those that its method does; empty: none."""
-        if self.text[0] != "G" or self.group in _NO_MODES or self.sets == "block":
+        if (self.row or self.text)[0] != "G" or self.group in _NO_MODES or self.sets == "block":
             return ""
         return _SHOWN.get(self.group, (self.group or self.text) if self.effect is Effect.NONE else "")
 

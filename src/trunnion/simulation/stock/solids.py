@@ -7,6 +7,7 @@ Units:  mm, workpiece frame. A box is given by its sizes and its lowest corner, 
 """
 
 import math
+import os
 import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, box_mesh, cylinder_mesh, load_mesh
 from trunnion.simulation.stock.lattice import Lattice
 from trunnion.simulation.stock.material import Stock, rays_of_tiles
@@ -101,6 +102,11 @@ def stock_shape(
     if isinstance(text, TriangleMesh):
         low, high = text.bounds
         return StockShape(low, high, mesh=text)
+    if not isinstance(text, str | os.PathLike):
+        remedy = phrase("give_bodies", type=TriangleMesh.__name__)
+        raise InputError(
+            argument_problem("stock", Wording("ARG140", "unusable_type", type=type(text).__name__, remedy=remedy))
+        )
     kind, colon, sizes = str(text).partition(":")
     if _SIZES.fullmatch(str(text)) and not Path(str(text)).exists():
         found = tuple(_SIZE.findall(str(text)))

@@ -35,6 +35,7 @@ class _CoolantWords:
     rows     (k,) int64, the rows before which ``changes`` stand
     changes  row, state and event of each
     builder  (m,) int64
+    stops    rows before which the program stops for the operator
     stays_off  (m,) int64, the rows before which a word switches off, and no word of the builder stands behind it there
     """
 
@@ -43,6 +44,7 @@ class _CoolantWords:
     changes: list[tuple[int, str, RunEvent]]
     builder: Ints
     stays_off: Ints
+    stops: frozenset[int]
 
     @staticmethod
     def of(run: Run, defined: Mapping[str, int]) -> "_CoolantWords":
@@ -61,7 +63,8 @@ class _CoolantWords:
                 builder.append(event.before_row)
         stays_off = np.array([row for row, name in last.items() if name == "off"], np.int64)
         rows = np.array([row for row, _, _ in changes], np.int64)
-        return _CoolantWords(names, rows, changes, np.array(builder, np.int64), stays_off)
+        stops = frozenset(event.before_row for event in run.events if event.kind in ("stop", "optional_stop"))
+        return _CoolantWords(names, rows, changes, np.array(builder, np.int64), stays_off, stops)
 
     def has_builder_word(self, after: int, row: int) -> bool:
         """Whether the machine builder has a word between the row ``after`` and another."""
@@ -77,9 +80,12 @@ class _CoolantWords:
         return self.changes[k - 1][1] if k else "off"
 
     def between(self, row: int, last: int) -> Iterator[tuple[int, str]]:
-        """Rows and states of the changes after a row, up to the row ``last``."""
+        """Rows and states of the changes after a row, up to the row ``last``; at a stop the one that it ends with."""
         first, end = np.searchsorted(self.rows, [row, last], "right").tolist()
-        return ((at, state) for at, state, _ in self.changes[first:end])
+        for k in range(first, end):
+            at, state, _ = self.changes[k]
+            if at not in self.stops or k + 1 == len(self.changes) or self.changes[k + 1][0] != at:
+                yield at, state
 
     def is_off_before(self, row: int) -> bool:
         """Whether coolant is off right before a row, or was at any time between the row before it and it."""

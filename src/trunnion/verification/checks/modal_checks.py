@@ -14,6 +14,7 @@ from trunnion.verification.basis import TOOL_LENGTH, ZERO, missing_of
 from trunnion.verification.checks.approach_faults import approaches_through_part
 from trunnion.verification.checks.approach_order import not_in_turn
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
+from trunnion.verification.checks.lengths_at_part import lengths_lost_at_part
 from trunnion.verification.checks.low_rapids import low_rapids, rapids_at_unknown_heights, skipped_retracts
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
@@ -45,6 +46,7 @@ def check_modal_state(context: Context) -> Check:
     places += wide_tolerances(context)
     places += _without_units(context)
     places += _cuts_from_unknown_places(context)
+    places += lengths_lost_at_part(context)
     places += compensated_askew(context)
     places += compensated_blind(context)
     if not any(event.kind == "end" for event in run.events):

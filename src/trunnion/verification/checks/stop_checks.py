@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.arrays import Flags
 from trunnion.messages import Wording
 from trunnion.model.run import Run, RunEvent
-from trunnion.model.toolpath import Coolant, Dwell, Stop
+from trunnion.model.toolpath import Coolant, Dwell, Kind, Stop
 from trunnion.verification.checks.restated_modes import RestatedModes
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.checks.skip_faults import skip_faults
@@ -77,6 +77,7 @@ def check_stops(context: ComparedContext) -> Check:
     count["opskip"] = sum(len(list(skipped_stretches(each.operation))) for each in context.expected.sections)
     asked = tuple(Wording("stops", kind, count=number) for kind, number in count.items() if number)
     good = Wording("stops", "stops", stops=asked) if asked else Wording("stops", "none_asked")
+    places += _nothing_said_again(context, restarts, own)
     if parts := tuple(_own_stops(context.run, own)):
         good = Wording("stops", "with_own", asked=good, own=parts)
     places += _missing_between(context, found)
@@ -93,6 +94,16 @@ def _missing_between(context: ComparedContext, found: Mapping[int, list[_FoundSt
         wanted[pair] += 1
         if sum(stop.event.kind != "dwell" for stop in found.get(pair, ())) < wanted[pair]:
             yield context.place_of_missing(section.first, Wording("stops", "stop_between"))
+
+
+def _nothing_said_again(context: ComparedContext, restarts: RestatedModes, stops: list[_FoundStop]) -> Iterator[Place]:
+    """Yield stops of the program's own behind which spindle or coolant, on before, is not switched on again to cut."""
+    for stop in stops:
+        if stop.event.kind == "dwell":
+            continue
+        fault = restarts.unsaid(stop.place, stop.event.before_row, "ON")
+        if fault is not None:
+            yield context.place_of_event(stop.event, 0.0, fault)
 
 
 def _own_stops(run: Run, stops: list[_FoundStop]) -> Iterator[Wording]:
@@ -179,14 +190,18 @@ def _compare(
 
 
 def _at_the_part(context: ComparedContext, stops: list[_FoundStop]) -> Iterator[Place]:
-    """Yield stops of the program's own while the tool is at the part, where nobody expects it to wait."""
-    away = None
+    """Yield stops of the program's own while the tool is at the part, where nobody expects it to wait.
+
+    A dwell lets the tool rub where the motion before it is a cut.
+    """
+    run, away = context.run, None
     for stop in stops:
-        if stop.event.kind == "dwell":
+        row = stop.event.before_row - 1
+        if stop.event.kind == "dwell" and (row < 0 or run.kind[row] == Kind.RAPID or not run.spindle[row]):
             continue
         away = away or stands_away(context)
         if not away(stop.place):
-            said = Wording("stops", "at_part", stop=_words(stop.event.kind, 0.0))
+            said = Wording("stops", "at_part", stop=_words(stop.event.kind, _amount(stop.event)))
             yield context.place_of_event(stop.event, 0.0, said)
 
 

@@ -1,6 +1,7 @@
 """The tools of a program against LOAD/TOOL in the CL files: which one, which cutting edge, which length."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -8,12 +9,14 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.compensation.stretches import ADDED_RADII, RegisterValue
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.tool_additions import LENGTHS, REPLACED
 from trunnion.verification.checks.driven_path import cl_radius
+from trunnion.verification.checks.lengths_at_part import numbers_changed_at_part
 from trunnion.verification.checks.matched_rows import first_wrong_pair
+from trunnion.verification.checks.unnumbered_tools import is_described, wrong_unnumbered_tools
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.expected.spindle_and_tool import names_tool
 from trunnion.verification.expected.states import tool_states
@@ -44,13 +47,24 @@ def check_tool(context: ComparedContext) -> Check:
     places += _wrong_edges(context)
     if run.uses_length_numbers:
         places += _wrong_lengths(context)
-    unnumbered = next((state.first for state in states if state.value.is_known), 0)
+    places += numbers_changed_at_part(context)
+    known = [(hole.row, hole.tool_names) for hole in context.expected.holes if hole.tool_names]
+    asked += dict.fromkeys(names for _, names in known)
+    starts = (state.first for state in states if state.value.is_known)
+    unnumbered = min((*starts, *(row for row, _ in known)), default=0)
     named = [state.value.names for state in states if not state.value.is_known]
     places += _foreign_changes(context, [*asked, *named], unnumbered) if asked else ()
     places += _foreign_deltas(context)
+    places += wrong_unnumbered_tools(context, states)
     tools = tuple(Wording("tool", "named", tool=name) for name in dict.fromkeys(names[0] for names in asked))
-    good = Wording("tool", "good", tools=tools) if tools else Wording("tool", "none_asked")
-    return check_from_places("tool", sorted(places, key=lambda p: p.nc_line), good)
+    good = Wording("tool", "good", tools=tools)
+    missing: tuple[Wording, ...] = ()
+    if not tools:
+        described = {each.operation.tool for each in context.expected.sections if is_described(each.operation.tool)}
+        good = Wording("tool", "told_apart", count=len(described)) if described else Wording("tool", "none_asked")
+        missing = (phrase("no_tool_called"),) if described and not any(run.tools) else ()
+    found = check_from_places("tool", sorted(places, key=lambda p: p.nc_line), None if missing else good)
+    return replace(found, missing=missing)
 
 
 def _holds_other_tool(run: Run, names: tuple[str, ...], nc: Ints) -> Flags:

@@ -7,10 +7,12 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.errors import Problem, first_of_kinds
+from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.basis import stated_texts
+from trunnion.verification.comparison.control_rules import ControlRules
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
 from trunnion.verification.comparison.path_events import PathEvents
@@ -42,7 +44,7 @@ _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
 class Comparer:
     """Follows both programs together; ``i`` and ``j`` count their motions.
 
-    blocks    across how many blocks without motion either control finds the next corner within radius compensation
+    rules     of either control
     left_out  rows of both that go to points that nobody knows; from there both may come in one leg or in several
     """
 
@@ -53,19 +55,21 @@ class Comparer:
         tolerances: PointTolerances,
         *,
         path: bool = False,
-        blocks: tuple[int, int],
+        rules: tuple[ControlRules, ControlRules],
         left_out: tuple[Flags | None, Flags | None] = (None, None),
     ) -> None:
         coolants: dict[str, int] = {}
         tools: dict[str, int] = {}
         same_machine = one.machine is two.machine or one.machine.key == two.machine.key
-        self._one = MovingRows(one, same_machine, coolants, tools, left_out=left_out[0])
-        self._two = MovingRows(two, same_machine, coolants, tools, left_out=left_out[1])
-        self._states = StateComparison(compared_states(self._one, self._two, path=path))
+        same_frame = same_machine and _are_set_up_alike(one.machine, two.machine)
+        self._one = MovingRows(one, same_frame, coolants, tools, left_out=left_out[0])
+        self._two = MovingRows(two, same_frame, coolants, tools, left_out=left_out[1])
+        most = rules[0].most_feed, rules[1].most_feed
+        self._states = StateComparison(compared_states(self._one, self._two, path=path, most_feeds=most))
         programs = () if path else (self._one, self._two)
         self._events = [
-            PathEvents(each.run, each.rows, most, same_machine=same_machine)
-            for each, most in zip(programs, blocks, strict=False)
+            PathEvents(each.run, each.rows, of_control.blocks, same_machine=same_machine)
+            for each, of_control in zip(programs, rules, strict=False)
         ]
         self._ways = RotaryWays(one, two) if same_machine and not path else None
         self._tolerances = tolerances
@@ -294,6 +298,11 @@ class _PathDifference:
     j: int
     value: float
     wording: Wording
+
+
+def _are_set_up_alike(one: Machine, two: Machine) -> bool:
+    """Whether positions of both in the machine's frame are positions in one frame of the workpiece."""
+    return one.workpiece_zero == two.workpiece_zero and one.tool_length == two.tool_length and one.zeros == two.zeros
 
 
 def _alone(one: dict[str, list[Wording]], two: dict[str, list[Wording]]) -> tuple[Wording, ...]:

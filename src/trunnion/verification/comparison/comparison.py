@@ -8,19 +8,16 @@ Only what the words do matters: block numbers, modal habits and number formats m
 additional points on the path of the other. Motions in the machine frame count if both run on the same machine.
 """
 
-import sys
 from collections.abc import Callable
 from typing import Final
 
 from trunnion.model.run import Run
 from trunnion.verification.comparison.comparer import Comparer
+from trunnion.verification.comparison.control_rules import ANY_RULES, ControlRules
 from trunnion.verification.comparison.moving_rows import unknown_points
 from trunnion.verification.comparison.nominal_runs import missing_values, with_nominal_values
 from trunnion.verification.comparison.on_path import PointTolerances
 from trunnion.verification.comparison.result import Alignment, Comparison
-
-#: Controls that find the next corner across any number of blocks.
-ANY_BLOCKS: Final = (sys.maxsize, sys.maxsize)
 
 #: How far tips, mm, and tool axes, degrees, may be apart where two programs are shown side by side.
 _TOLERANCE: Final = 0.001
@@ -33,7 +30,7 @@ def compare(
     *,
     axis_tolerance: float | None = None,
     path: bool = False,
-    blocks: tuple[int, int] = ANY_BLOCKS,
+    rules: tuple[ControlRules, ControlRules] = (ANY_RULES, ANY_RULES),
 ) -> Comparison:
     """Compare two runs.
 
@@ -41,14 +38,13 @@ def compare(
     axis_tolerance  another tolerance for tool axes, degrees
     path            compare only where the tool goes, and whether at rapid; not feed, spindle, tool, coolant, stops and
                     dwells
-    blocks          across how many blocks without motion either control finds the next corner within radius
-                    compensation
+    rules           of either control
     """
     tolerances = PointTolerances.of(tolerance, tolerance if axis_tolerance is None else axis_tolerance)
     left_out = (unknown_points(one), unknown_points(two)) if path else (None, None)
 
     def compared(first: Run, second: Run) -> Comparison:
-        return Comparer(first, second, tolerances, path=path, blocks=blocks, left_out=left_out).compare()
+        return Comparer(first, second, tolerances, path=path, rules=rules, left_out=left_out).compare()
 
     found = compared(one, two)
     return _elsewhere(one, two, compared) or found if found.same else found
@@ -68,4 +64,4 @@ def _elsewhere(one: Run, two: Run, compared: Callable[[Run, Run], Comparison]) -
 
 def align(one: Run, two: Run) -> Alignment:
     """Follow two runs together, and return which of their rows go to the same points, and where they differ."""
-    return Comparer(one, two, PointTolerances.of(_TOLERANCE, _TOLERANCE), blocks=ANY_BLOCKS).follow()
+    return Comparer(one, two, PointTolerances.of(_TOLERANCE, _TOLERANCE), rules=(ANY_RULES, ANY_RULES)).follow()

@@ -110,11 +110,20 @@ class MovingRows:
         inverse_time, counted = run.feed_mode[rows] == 93, row_feed_path_lengths(run, rows)
         free = ~np.isnan(counted)
         if inverse_time.any() or free.any():
-            before = np.maximum(rows - 1, 0)
-            length = np.sqrt(((run.tip[rows] - run.tip[before]) ** 2).sum(axis=1))
+            length = self._lengths(rows)
             feed = np.where(inverse_time, feed * length, feed)
             feed[free] *= length[free] / counted[free]
         return np.asarray(np.where(run.kind[rows] == Kind.RAPID, 0.0, np.nan_to_num(feed)))
+
+    def counted_lengths(self, rows: Ints) -> Floats:
+        """Return the paths of the tip in rows whose F does not count them, (k,) mm; NaN in the others."""
+        run = self.run
+        counted = row_feed_path_lengths(run, rows)
+        return np.where(np.isnan(counted) & (run.feed_mode[rows] != 93), np.nan, self._lengths(rows))
+
+    def programmed(self, rows: Ints) -> Floats:
+        """Return the number after F in rows, (k,), whatever it counts; 0 where none is in force."""
+        return np.asarray(np.nan_to_num(self.run.feed[rows]))
 
     def programmed_feeds(self, rows: Ints) -> Floats:
         """Return the number after F in rows, (k,); 0 where it is a time or counts axes, and another one for each
@@ -122,7 +131,12 @@ class MovingRows:
         """
         run = self.run
         of_path = (run.feed_mode[rows] != 93) & np.isnan(row_feed_path_lengths(run, rows))
-        return np.asarray(np.where(of_path, np.nan_to_num(run.feed[rows]), 0.0))
+        return np.asarray(np.where(of_path, self.programmed(rows), 0.0))
+
+    def _lengths(self, rows: Ints) -> Floats:
+        """Return how far the tip goes in rows, (k,) mm."""
+        away = self.run.tip[rows] - self.run.tip[np.maximum(rows - 1, 0)]
+        return np.asarray(np.sqrt((away**2).sum(axis=1)))
 
     def circle(self, k: int) -> tuple[Floats, Floats] | None:
         """Centre and normal of the circle that motion ``k`` is, if it is one."""

@@ -20,6 +20,7 @@ from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Run
 from trunnion.model.run_columns import BY_PARAMETER
+from trunnion.model.toolpath import Kind
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 
 #: What stands for values that nobody has stated, mm: in no direction in the middle of anything.
@@ -32,21 +33,32 @@ _STILL: Final = 1e-6
 
 def missing_values(machine: Machine) -> list[Wording]:
     """Return the nominal values of what nobody has stated."""
+    no_zero, no_length = _missing(machine)
     zero = Wording("comparison", "zero", values=tuple(f"{value:g}" for value in ZERO))
     length = Wording("comparison", "length", length=LENGTH)
-    return [*([zero] if machine.workpiece_zero is None else []), *([length] if machine.tool_length is None else [])]
+    return [*([zero] if no_zero else []), *([length] if no_length else [])]
+
+
+def cuts_by_place(run: Run) -> bool:
+    """Whether the tip of a cut depends on where the workpiece stands and how long the tool is, which nobody stated."""
+    other = with_nominal_values(run)
+    if other is run:
+        return False
+    rows = np.flatnonzero((run.kind != Kind.RAPID) & ~run.state.machine_frame.column())
+    return bool((np.abs(other.tip[rows] - run.tip[rows]) > _STILL).any())
 
 
 def with_nominal_values(run: Run) -> Run:
     """Return a run with nominal values in place of those not stated; itself if no tip depends on them."""
     machine = run.machine
+    no_zero, no_length = _missing(machine)
     rows = np.flatnonzero(~run.state.xyz_is_tip.column() & ~run.state.machine_frame.column())
-    if not missing_values(machine) or not len(rows):
+    if not (no_zero or no_length) or not len(rows):
         return run
     nominal = replace(
         machine,
-        workpiece_zero=ZERO if machine.workpiece_zero is None else machine.workpiece_zero,
-        tool_length=LENGTH if machine.tool_length is None else machine.tool_length,
+        workpiece_zero=ZERO if no_zero else machine.workpiece_zero,
+        tool_length=LENGTH if no_length else machine.tool_length,
     )
     xyz = run.xyz.copy()
     xyz[rows] += _moved_axes(run, nominal, rows)
@@ -70,6 +82,14 @@ def _moved_axes(run: Run, nominal: Machine, rows: Ints) -> Floats:
     columns = [run.machine.column(name) for name in "XYZ"]
     moved[MachinePositions.of(run).at(rows)[:, columns]] = 0.0
     return moved
+
+
+def _missing(machine: Machine) -> tuple[bool, bool]:
+    """Whether nobody has stated a workpiece zero, and a tool length."""
+    return (
+        machine.workpiece_zero is None and not machine.zeros,
+        machine.tool_length is None and not machine.tool_lengths,
+    )
 
 
 def _zero_of(machine: Machine) -> Floats:

@@ -1,11 +1,21 @@
 """Whether a motion of one program ends on the path of a motion of the other."""
 
+import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.model.run import Orientation, Run
 from trunnion.verification.comparison.moving_rows import MovingRows
+
+#: At how many fractions of a turn the nearest is searched, and how often around it: to a millionth of the turn.
+_SAMPLES: Final = 65
+_REFINEMENTS: Final = 4
+
+#: The share of a turn that it may go back: as exactly as the nearest is found.
+_TURN_SLACK: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,20 +44,60 @@ def ends_on_path(more: MovingRows, i: int, less: MovingRows, j: int, tolerances:
         return on_arc and bool((np.abs(axis - start_axis) <= tolerances.axis).all())
     line = end - start
     length = float(line @ line)
+    turn = _Turn.of(less, j, start_axis, end_axis)
     if length < tolerances.tip**2:  # only the tool axis moves: it must be on its way
-        turn = end_axis - start_axis
-        total = float(turn @ turn)
-        part = float((axis - start_axis) @ turn) / total if total > 0.0 else 0.0
-        before = float((begin_axis - start_axis) @ turn) / total if total > 0.0 else 0.0
+        part, before, slack = turn.nearest(axis), turn.nearest(begin_axis), _TURN_SLACK
     else:
         part, before = float((tip - start) @ line) / length, float((begin - start) @ line) / length
-    if not (before - 1e-9 <= part <= 1.0 + 1e-9):
+        slack = tolerances.tip / math.sqrt(length)
+    if not (before - slack <= part <= 1.0 + 1e-9):
         return False
     if (np.abs(tip - (start + part * line)) > tolerances.tip).any():
         return False
-    axis_there = start_axis + part * (end_axis - start_axis)
-    axis_there = axis_there / np.linalg.norm(axis_there)
-    return bool(np.linalg.norm(axis - axis_there) <= tolerances.axis)
+    return bool(np.linalg.norm(axis - turn.at(np.array([part]))[0]) <= tolerances.axis)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Turn:
+    """How the tool axis goes from one vector to another within a motion.
+
+    joints  (2, 5) axis values at both ends, which move in proportion; None: the vector goes on a great circle
+    """
+
+    program: Run
+    row: int
+    ends: Floats
+    joints: Floats | None
+
+    @staticmethod
+    def of(program: MovingRows, motion: int, start: Floats, end: Floats) -> "_Turn":
+        """Return how the tool axis goes within a motion."""
+        row, run = int(program.rows[motion]), program.run
+        ends = np.stack([start, end])
+        if run.orientation_between(row, row + 1)[0] == Orientation.GREAT_CIRCLE:
+            return _Turn(run, row, ends, None)
+        return _Turn(run, row, ends, run.positions(np.array([row - 1, row])).joints)
+
+    def at(self, parts: Floats) -> Floats:
+        """Return the tool axis (k, 3) at fractions (k,) of the motion."""
+        weights = np.stack([1.0 - parts, parts], axis=1)
+        if self.joints is not None:
+            return self.program.forward_at(np.full(len(parts), self.row), weights @ self.joints)[1]
+        angle = math.acos(max(-1.0, min(1.0, float(self.ends[0] @ self.ends[1]))))
+        if math.sin(angle) > 1e-9:
+            weights = np.sin(weights * angle)
+        vectors = weights @ self.ends
+        return np.asarray(vectors / np.linalg.norm(vectors, axis=1)[:, None])
+
+    def nearest(self, axis: Floats) -> float:
+        """Return the fraction at which the tool axis is nearest to a vector."""
+        low, high = 0.0, 1.0
+        for _ in range(_REFINEMENTS):
+            parts = np.linspace(low, high, _SAMPLES)
+            near = float(parts[np.argmin(np.linalg.norm(self.at(parts) - axis, axis=1))])
+            step = (high - low) / (_SAMPLES - 1)
+            low, high = max(near - step, 0.0), min(near + step, 1.0)
+        return near
 
 
 def _ends_on_circle(

@@ -20,6 +20,9 @@ from trunnion.verification.comparison.states import ComparedState
 _FEED: Final = 0.005
 _RPM: Final = 0.5
 
+#: The last digit of most positions, mm.
+_DIGIT: Final = 1e-4
+
 #: Tool axes that are no farther apart, as the length of a vector, are the same: 0.001 degrees.
 _BENT: Final = 1.75e-5
 
@@ -29,8 +32,14 @@ _WAYS: Final = {
 }
 
 
-def compared_states(one: MovingRows, two: MovingRows, *, path: bool) -> list[ComparedState]:
-    """Return what is compared in the rows of two programs; ``path``: only what says where the tool is."""
+def compared_states(
+    one: MovingRows, two: MovingRows, *, path: bool, most_feeds: tuple[float, float]
+) -> list[ComparedState]:
+    """Return what is compared in the rows of two programs.
+
+    path        only what says where the tool is
+    most_feeds  the largest F of either control, mm/min
+    """
     states = [_frames(one, two), *_orientations(one.run, two.run), *compared_registers(one.run, two.run, path=path)]
     if path:
         return states
@@ -47,7 +56,7 @@ def compared_states(one: MovingRows, two: MovingRows, *, path: bool) -> list[Com
         lambda _a, _b: Wording("comparison", "coolants"),
     )
     states += [*said_modes(one.run, two.run), *stated_axes(one.run, two.run)]
-    return [*states, _feeds(one, two), _spindles(one, two), tools, coolants]
+    return [*states, _feeds(one, two, most_feeds), _spindles(one, two), tools, coolants]
 
 
 def _everywhere(a: Ints, _b: Ints) -> Flags:
@@ -97,10 +106,20 @@ def _bends(run: Run, rows: Ints) -> Flags:
     return np.asarray((apart > _BENT) & run.state.tcp.at(rows))
 
 
-def _feeds(one: MovingRows, two: MovingRows) -> ComparedState:
+def _feeds(one: MovingRows, two: MovingRows, most: tuple[float, float]) -> ComparedState:
     def same(a: Ints, b: Ints) -> Flags:
-        feeds = one.feeds(a)
-        return np.asarray(np.abs(feeds - two.feeds(b)) <= np.maximum(_FEED, 1e-4 * feeds))
+        feeds, others = one.feeds(a), two.feeds(b)
+        limits = np.maximum(_FEED, 1e-4 * feeds)
+        # Only one of them is printed as it is meant: the other stands on a length that has been rounded too.
+        lengths = one.counted_lengths(a), two.counted_lengths(b)
+        mixed = np.isnan(lengths[0]) != np.isnan(lengths[1])
+        length = np.fmax(np.fmax(*lengths)[mixed], _DIGIT)
+        limits[mixed] = np.maximum(limits[mixed], feeds[mixed] * _DIGIT / length)
+        near = np.abs(feeds - others) <= limits
+        # As fast as the control allows, and slower than the other: rotary axes turn far while the tip hardly moves.
+        near |= mixed & (one.programmed(a) >= most[0] - _FEED) & (feeds < others)
+        near |= mixed & (two.programmed(b) >= most[1] - _FEED) & (others < feeds)
+        return np.asarray(near)
 
     def said(a: int, b: int) -> Wording:
         return Wording("comparison", "feeds", one=one.feeds(np.array([a]))[0], two=two.feeds(np.array([b]))[0])

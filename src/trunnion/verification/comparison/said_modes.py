@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
-from trunnion.model.mode_words import END_OF_CYCLES, OF_COMPENSATION
+from trunnion.model.mode_words import END_OF_CYCLES, OF_COMPENSATION, UNDER_TCP
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.states import ComparedState
@@ -63,6 +63,8 @@ def _state(
         if mode in OF_COMPENSATION:
             sides = [run.state.compensation for run in runs]
             return np.asarray(cuts & (sides[0].at(a) != 0) & (sides[1].at(b) != 0))
+        if mode in UNDER_TCP:
+            return np.asarray(cuts & runs[0].state.tcp.at(a) & runs[1].state.tcp.at(b))
         return cuts & (columns[0].at(a) >= 0) & (columns[1].at(b) >= 0) if mode in _OF_BOTH else cuts
 
     def name(number: int) -> Wording | str:

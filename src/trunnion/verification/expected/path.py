@@ -152,7 +152,7 @@ class ExpectedPath:
             loads = [(event.number, event.adjust) for event in placed.events if isinstance(event, LoadTool)]
             settings = settings_of(placed.name)
             tool = ExpectedTool(*loads[-1]) if loads else tool
-            tool = replace(tool, name=placed.tool.name, called=settings.tool)
+            tool = tool.of_operation(placed.tool.name, settings.tool)
             source = HoleSource(path.file, first, limit, tool, spindle)
             found += holes_of_operation(placed, hole_rows, source)
             spindle = ExpectedSpindles(placed, spindle).at(len(placed.moves))

@@ -1,7 +1,7 @@
 """Spindle and tool as a CL file asks for them."""
 
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trunnion.model.toolpath import Operation, Sense, SpindleOff, SpindleOn
 
@@ -39,6 +39,15 @@ class ExpectedTool:
         if self.called:
             return (self.called,)
         return tuple(str(text) for text in (self.number, self.name) if text not in (None, ""))
+
+    def of_operation(self, name: str, called: str) -> "ExpectedTool":
+        """Return the tool of an operation that begins with this one, under the name that it has for it itself.
+
+        Under another name it is another tool, of which no number is known before the operation loads one.
+        """
+        if self.name and name and name != self.name:
+            return ExpectedTool(None, 0, name, called)
+        return replace(self, name=name, called=called)
 
     @property
     def lengths(self) -> tuple[int, ...]:

@@ -1,7 +1,7 @@
 """Modal state that the CL files ask for, as ranges of CL rows: spindle, coolant, radius compensation, tool."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from trunnion.model.toolpath import Coolant, CutterComp, LoadTool, SpindleOff, SpindleOn
@@ -94,11 +94,11 @@ def compensation_states(expected: ExpectedPath) -> list[StateRange[ExpectedCompe
 
 
 def tool_states(expected: ExpectedPath) -> list[StateRange[ExpectedTool]]:
-    """Tools. An operation starts with the tool of the one before, under the name that it has for it itself."""
+    """Tools. An operation starts with the tool of the one before, unless it has another name for its own."""
     tool = ExpectedTool(None)
     states: list[StateRange[ExpectedTool]] = []
     for section in expected.sections:
-        tool = replace(tool, name=section.operation.tool.name, called=section.settings.tool)
+        tool = tool.of_operation(section.operation.tool.name, section.settings.tool)
         changes = [(0, tool)]
         for event in section.operation.events:
             if isinstance(event, LoadTool):

@@ -21,6 +21,9 @@ from trunnion.model.unknown_setups import rows_without_values
 #: Rows that are searched at first for the next motion in workpiece coordinates; later ever more.
 _FEW = 64
 
+#: All coordinates of the tip.
+_TIP_WORDS = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
+
 _SLIDES = (ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z)
 
 
@@ -39,8 +42,9 @@ class MachinePositions:
         if self.known:
             return
         frame = run.state.machine_frame.rows_with(True)
+        retracts = _retracts_by_word(run, frame)
         for word in _SLIDES:
-            named = frame[(run.programmed[frame] & int(word)) != 0]
+            named = frame[((run.programmed[frame] & int(word)) != 0) | np.isin(frame, retracts)]
             begins = np.concatenate(([-1], named))  # the machine stands at home when the program begins
             ends = [_next_in_workpiece(run, word, row + 1) for row in begins.tolist()]
             self._spans[machine.column(str(word.name))] = begins, np.array(ends, np.int64)
@@ -80,6 +84,14 @@ class MachinePositions:
             before_next = np.minimum(ends[1:], [*begins[2:], ends[-1]])  # spans do not overlap: there may be many
             yield from zip(begins[1:].tolist(), before_next.tolist(), strict=True)
 
+    def half_stated(self, run: Run) -> Ints:
+        """Rows that move the tip while a coordinate of it is still that of a machine position: (k,), increasing.
+
+        In a tilted plane or under TCP all slides may follow from it, so that nobody knows where any of them is.
+        """
+        found = [_tip_rows(run, first + 1, end) for first, end in self.left_at_machine()]
+        return np.unique(np.concatenate([np.zeros(0, np.int64), *found]))
+
     def crossed(self, rows: Ints) -> Flags:
         """Which rows move a slide between the two kinds of coordinates: nobody knows how far, (k,) bool."""
         return np.asarray((self.at(rows) != self.at(rows - 1)).any(axis=1))
@@ -93,18 +105,38 @@ def _next_in_workpiece(run: Run, word: ProgrammedWord, first: int) -> int:
     """Return the first row from ``first`` on that puts a slide where workpiece coordinates want it; n if there
     is none.
     """
-    size = _FEW
+    size, stated = _FEW, 0
     while first < len(run):
         end = min(first + size, len(run))
-        moves = _slide_moves(run.programmed[first:end], word)
-        tip = run.state.xyz_is_tip.part(first, end)
-        moves |= tip & ((run.programmed[first:end] & int(POSITION_WORDS)) != 0)
-        moves |= run.state.tcp.part(first, end) & ((run.programmed[first:end] & int(ROTARY_WORDS)) != 0)
-        moves &= ~run.state.machine_frame.part(first, end)
+        programmed = run.programmed[first:end]
+        in_workpiece = ~run.state.machine_frame.part(first, end)
+        moves = _slide_moves(programmed, word)
+        # In a plane and under TCP slides follow from all three coordinates of the tip.
+        named = np.bitwise_or.accumulate(np.append(stated, np.where(in_workpiece, programmed & _TIP_WORDS, 0)))[1:]
+        stated = int(named[-1])
+        tip = run.state.xyz_is_tip.part(first, end) & ((programmed & _TIP_WORDS) != 0)
+        tip |= run.state.tcp.part(first, end) & ((programmed & int(ROTARY_WORDS)) != 0)
+        moves |= tip & (named == _TIP_WORDS)
+        moves &= in_workpiece
         if moves.any():
             return first + int(np.argmax(moves))
         first, size = end, 4 * size
     return len(run)
+
+
+def _tip_rows(run: Run, first: int, end: int) -> Ints:
+    """Rows from ``first`` to the one before ``end`` that move the tip in coordinates of the workpiece."""
+    programmed = run.programmed[first:end]
+    moves = run.state.xyz_is_tip.part(first, end) & ((programmed & int(POSITION_WORDS)) != 0)
+    moves |= run.state.tcp.part(first, end) & ((programmed & int(ROTARY_WORDS)) != 0)
+    moves &= ~run.state.machine_frame.part(first, end)
+    return np.asarray(first + np.flatnonzero(moves))
+
+
+def _retracts_by_word(run: Run, frame: Ints) -> Ints:
+    """Rows of the machine frame to which a word such as M140 retracts along the tool, and names no axis."""
+    retracts = np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64)
+    return np.asarray(frame[np.isin(frame, retracts) & ((run.programmed[frame] & _TIP_WORDS) == 0)])
 
 
 def _slide_moves(programmed: Codes, word: ProgrammedWord) -> Flags:

@@ -35,11 +35,13 @@ def unknown_approaches(run: Run) -> UnknownApproaches:
 
 
 def _unknown(run: Run) -> Iterator[tuple[int, Wording]]:
-    is_placed, machine = MachinePositions.of(run).known, run.machine
+    positions, machine = MachinePositions.of(run), run.machine
+    is_placed = positions.known
     missing = phrase("left_height_unknown")
     if machine.workpiece_zero is not None and machine.tool_length is not None:
         # Only another work offset or tool is without its value, and that makes machine positions unknown.
         missing = next((why for _, why in rows_without_values(run)), missing)
+    yield from ((row, missing) for row in positions.half_stated(run).tolist())
     frame = run.state.machine_frame.rows_with(True)
     # A retract whose way is known is a motion in machine coordinates.
     retracts = [event.before_row for event in run.events if event.kind == "retract"]

@@ -58,3 +58,19 @@ def test_a_side_that_would_wait_for_a_motion_which_is_not_skipped_is_refused(mac
         return
     with pytest.raises(trunnion.InputError, match="acts in the motion behind OPSKIP/OFF in line 15"):
         trunnion.post(cl, machine=machine, output=nc)
+
+
+@pytest.mark.parametrize(
+    "between", ["", "CUTCOM/OFF\n", "CUTCOM/OFF\nGOTO/0,0,30\n", "CUTCOM/OFF\nOPSKIP/ON\nGOTO/9,9,20\nOPSKIP/OFF\n"]
+)
+def test_the_other_side_without_a_motion_in_the_plane_between_is_refused_with_its_line(
+    between: str, tmp_path: Path
+) -> None:
+    cl, nc = tmp_path / "contour.cls", tmp_path / "contour.h"
+    text = JOB.format(left="CUTCOM/LEFT\n", skip="", off=between + "CUTCOM/RIGHT\nGOTO/40,0,20\nCUTCOM/OFF\n")
+    cl.write_text(text)
+    with pytest.raises(trunnion.InputError, match="CUTCOM/RIGHT behind CUTCOM/LEFT, with no motion") as refused:
+        trunnion.post(cl, machine="dmu65", output=nc)
+    assert [problem.line for problem in refused.value.problems] == [text.splitlines().index("CUTCOM/RIGHT") + 1]
+    cl.write_text(text.replace("CUTCOM/RIGHT", "CUTCOM/OFF\nGOTO/20,20,20\nCUTCOM/RIGHT"))
+    assert trunnion.post(cl, machine="dmu65", output=nc).passed

@@ -25,11 +25,27 @@ def test_a_circle_and_an_arc_of_holes_about_the_tool(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    "lines",
+    [
+        "G0 X10. Y20.\nG98 G81 Z-5. R2. F100. G71 I5. J15. K-30. L3\nG80\nX1.",
+        f"G0 X1. Y20.\n{CYCLE}G71 X10. I5. J15. K-30. L3\nG80\nX1.",
+        "G0 X1. Y2.\nG98 G81 X10. Y20. Z-5. R2. F100. G71 I5. J15. K-30. L3\nG80\nX1.",
+    ],
+)
+def test_holes_with_their_cycle_or_their_centre_in_one_block(lines: str, tmp_path: Path) -> None:
+    run = read(tmp_path, lines)
+    assert run.errors == ()
+    at = np.radians(np.array([15.0, -15.0, -45.0]))
+    holes = run.tip[np.isclose(run.tip[:, 2], -5.0)][:, :2]
+    close(holes, np.column_stack((10 + 5 * np.cos(at), 20 + 5 * np.sin(at))), atol=1e-9)
+    assert sum(event.kind == "hole" for event in run.events) == len(at)
+
+
+@pytest.mark.parametrize(
     ("lines", "what"),
     [
-        ("G70 I5. J15. L12", "G70 drills with the cycle that a block before has selected"),
+        ("G70 I5. J15. L12", "G70 drills with the cycle that it or a block before has selected"),
         (f"{CYCLE}G80\nG70 I5. J15. L12", "none is in force"),
-        ("G98 G81 Z-5. R2. F100. G70 I5. J15. L12", "G70 drills with the cycle that a block before"),
         (f"{CYCLE}G70 I5. J15.", "G70 has no L"),
         (f"{CYCLE}G71 I5. L3", "G71 has no J and K"),
         (f"{CYCLE}G70 I5. J15. L0", "L of a cycle is how often it drills"),
@@ -37,7 +53,6 @@ def test_a_circle_and_an_arc_of_holes_about_the_tool(tmp_path: Path) -> None:
         (f"{CYCLE}G70 I0. J15. L4", "G70 has I0: pages of the manual differ"),
         (f"{CYCLE}G71 I-5. J15. K30. L3", "G71 has I-5: pages of the manual differ"),
         (f"{CYCLE}G71 I5. J15. K0. L3", "G71 has K0: all holes would lie in one place"),
-        (f"{CYCLE}G70 X5. I5. J15. L2", "X has no use in this block"),
         (f"{CYCLE}G72 I5. J15. L3", "G72: holes on a line are not simulated"),
         ("G12 I5. D1 F100. Z-1.", "G12: a circular pocket is not simulated"),
         ("G13 I5. K9. Q2. D1 F100. Z-1.", "G13: a circular pocket is not simulated"),

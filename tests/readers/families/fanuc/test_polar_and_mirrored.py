@@ -19,7 +19,7 @@ def _run(folder: Path, blocks: str) -> Run:
 
 
 def test_positions_by_radius_and_angle(tmp_path: Path) -> None:
-    found = _run(tmp_path, "G16\nX50. Y30000\nY90.\nG91 Y30.\nG90 G2 Y0. R50.\nG15\nG1 X1. Y2.\n")
+    found = _run(tmp_path, "G16\nX50. Y30.\nY90.\nG91 Y30.\nG90 G2 Y0. R50.\nG15\nG1 X1. Y2.\n")
     assert not found.diagnostics
     half, root = 25.0, 25.0 * math.sqrt(3.0)
     close(found.tip[1:, :2], [[root, half], [0, 50], [-half, root], [50, 0], [1, 2]], atol=1e-9)

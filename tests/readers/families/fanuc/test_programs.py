@@ -69,7 +69,7 @@ def test_feeds_dwells_and_speeds_without_a_point(run: Runner) -> None:
     )
     close(got.feed, [1200.0, 0.2, 254.0, 12.0])
     assert [event.value for event in got.events if event.kind == "dwell"] == [2.5, 1.5, 0.7]
-    assert got.diagnostics == ()
+    assert [each.code for each in got.diagnostics] == ["NC224"]
 
 
 # Motion
@@ -503,3 +503,18 @@ def test_radius_compensation_begins_and_ends_on_lines(run: Runner, text: str, li
 def test_back_boring_without_a_shift_does_not_go_into_the_hole(run: Runner) -> None:
     found = fanuc(run, "G90 G0 X0. Y0. Z30.\nG98 G87 X1. Z-5. R-20. F100.\nG80\n")
     assert any("without a shift" in fault.text for fault in found.errors)
+
+
+def test_numbers_without_a_point_are_told_once_unless_it_is_stated_how_they_count(run: Runner, tmp_path: Path) -> None:
+    text = "G90 G1 X0 Y0. F100.\nX10\nX20.\nX3000 Y5.\nM98 P2\nM30\nO2\nX7\nM99\n"
+    found = fanuc(run, text)
+    told = [(each.line, each.text) for each in found.diagnostics if each.code == "NC224"]
+    said = "X10 has no decimal point and is taken for 0.01, as nothing states how such numbers count"
+    assert told == [
+        (2, f"{said} (the first of 3 of this kind); write the point, or state whole_numbers under [control.reading]")
+    ]
+    assert [each.text.count("the first of") for each in fanuc(run, "G1 X10 F100.\nM30\n").diagnostics] == [0]
+    for word in ("increments", "calculator"):
+        toml = tmp_path / f"{word}.toml"
+        toml.write_text(f'extends = "matsuura_mx330"\n[control.reading]\nwhole_numbers = "{word}"\n', encoding="utf-8")
+        assert not [each for each in run(text, load_machine(toml)).diagnostics if each.code == "NC224"]

@@ -200,3 +200,8 @@ def test_a_cut_that_passes_the_end_of_a_turn_is_noted(run: Runner, text: str, li
 def test_a_control_without_arithmetic_takes_no_operators(run: Runner) -> None:
     for block in ("X[1+2]", "X[SIN[3]]", "X[1*2]", "X[[1]"):
         assert fidia(run, f"G0 {block}\nM30").errors
+
+
+@pytest.mark.parametrize("block", ["X[1]", "X[-1]", "X-[1]", "X#1", "X--1", "X+-1"])
+def test_a_control_without_expressions_takes_numbers_alone(run: Runner, block: str) -> None:
+    assert fidia(run, f"G0 {block}\nM30").errors

@@ -293,6 +293,11 @@ def test_what_is_not_understood_is_named_and_the_next_block_runs(block: str, run
     assert found.tip[-1, 2] == 7.0
 
 
+def test_string_parameters_are_named(run: Runner) -> None:
+    found = run('QS10 = "A" || QS11\nL Z+7')
+    assert [(f.line, f.code, "QS string parameters" in f.text) for f in found.diagnostics] == [(1, "NC220", True)]
+
+
 def test_radius_compensation_is_a_warning(run: Runner) -> None:
     found = run("L X+1 RL F100\nL X+2\nL X+3 R0")
     assert [(f.line, f.severity) for f in found.diagnostics] == [(1, Severity.WARNING)]

@@ -324,6 +324,13 @@ REFUSED = {
     "a wait without a time": "M66 P0 L4",
     "an output without its number": "M62",
     "an analog output without its number": "M67 Q1",
+    "a dwell below zero in a cycle": "F100\nG0 Z9\nG82 X1 Z-5 R1 P-1",
+    "a cycle one and a half times": "F100\nG0 Z9\nG81 X1 Z-5 R1 L1.5",
+    "a spindle beyond a turn": "M19 R400",
+    "a spindle before its turn": "M19 R-10",
+    "a spindle that is waited for no time": "M19 R10 Q0",
+    "a tool below zero": "T-1",
+    "half a tool": "T1.5",
 }
 
 TAKEN = (

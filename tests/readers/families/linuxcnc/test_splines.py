@@ -18,6 +18,7 @@ from trunnion.model.run import Run
 from trunnion.model.splines import Spline, SplineRows
 from trunnion.readers import run_program
 from trunnion.readers.control.splines import CHORD
+from trunnion.readers.families.linuxcnc.arcs_of_splines import arcs_beside
 
 HEAD = "G21 G17 G90 G94\nG54\nG0 X0 Y0 Z1\nF100\n"
 
@@ -140,3 +141,62 @@ def test_m52_is_a_warning(run: Runner) -> None:
     found = run(f"{HEAD}M52 P1\nG1 X1\nM52 P0\nM2\n")
     assert not found.errors
     assert [fault.code for fault in found.diagnostics] == ["NC221"]
+
+
+def arcs_of(poles: Floats) -> list[tuple[Floats, ...]]:
+    """Begin, joint, end and both directions of the pairs of arcs in place of a quadratic curve."""
+    found = list[tuple[Floats, ...]]()
+    at = np.linspace(0.0, 1.0, 13)
+    points = bezier(poles, at)[:, :2]
+    ways = np.array([(1 - t) * (poles[1] - poles[0]) + t * (poles[2] - poles[1]) for t in at])[:, :2]
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    for begin, end, leaves, arrives in zip(points, points[1:], ways, ways[1:], strict=False):
+        low, high = 0.0, float(np.linalg.norm(end - begin))
+        for _ in range(60):
+            length = 0.5 * (low + high)
+            apart = np.linalg.norm((end - length * arrives) - (begin + length * leaves))
+            low, high = (length, high) if apart > 2.0 * length else (low, length)
+        found.append((begin, 0.5 * (begin + low * leaves + end - low * arrives), end, leaves, arrives))
+    return found
+
+
+@pytest.mark.parametrize("size", [1.0, 10.0])
+def test_how_far_the_arcs_are_from_a_curve_is_what_they_are_one_by_one(size: float) -> None:
+    poles = size * np.array([[-2.0, 4, 0], [0, -4, 0], [3, 4, 0]])
+    farthest = 0.0
+    for k, (begin, joint, end, leaves, arrives) in enumerate(arcs_of(poles)):
+        piece = bezier(poles, np.linspace(k / 12, (k + 1) / 12, 500))[:, :2]
+        for corner, way, to in ((begin, leaves, joint), (end, arrives, joint)):
+            normal = np.array([-way[1], way[0]])
+            radius = float((to - corner) @ (to - corner) / (2.0 * normal @ (to - corner)))
+            centre = corner + radius * normal
+            begin_angle, end_angle = (np.arctan2(*(each - centre)[::-1]) for each in (corner, to))
+            turn = (end_angle - begin_angle + np.pi) % (2.0 * np.pi) - np.pi
+            here = (np.arctan2(*(piece - centre).T[::-1]) - begin_angle + np.pi) % (2.0 * np.pi) - np.pi
+            on = (here * turn >= 0.0) & (np.abs(here) <= abs(turn))
+            farthest = max(farthest, float(np.abs(np.linalg.norm(piece[on] - centre, axis=1) - abs(radius)).max()))
+    spline = Spline(2, np.array([0.0, 0, 0, 1, 1, 1]), poles, np.ones(3))
+    assert arcs_beside(spline) == pytest.approx(farthest, rel=0.01)
+
+
+def test_arcs_are_on_a_circle_and_a_line() -> None:
+    knots = np.array([0.0, 0, 0, 1, 1, 1])
+    quarter = Spline(2, knots, np.array([[9.0, 0, 0], [9, 9, 0], [0, 9, 0]]), np.array([1.0, np.sqrt(0.5), 1.0]))
+    line = Spline(2, knots, np.array([[0.0, 0, 0], [3, 0, 0], [9, 0, 0]]), np.ones(3))
+    assert arcs_beside(quarter) < 1e-12
+    assert arcs_beside(line) < 1e-12
+
+
+def test_a_curve_that_the_machine_leaves_is_warned_of_by_how_far(run: Runner) -> None:
+    small, large = (run(f"{HEAD}G5.1 X{4 * k} Y0 I{2 * k} J{-8 * k}\nG0 Z9\nM2\n") for k in (1, 20))
+    assert not small.diagnostics
+    told = [each for each in large.diagnostics if each.code == "NC322"]
+    assert [each.line for each in told] == [5]
+    assert "LinuxCNC runs this curve as 24 arcs, up to 0.019 mm beside it" in told[0].text
+
+
+def test_an_order_below_three_is_three_and_said(run: Runner) -> None:
+    curve = "\nX2 Y2 P1\nX3 Y1 P1\nX4 Y0 P1\nG5.3\nG0 Z9\nM2\n"
+    two, three = (run(f"{HEAD}G5.2 P1 L{order}{curve}") for order in (2, 3))
+    close(two.tip, three.tip)
+    assert ["an order L2" in each.text for each in two.diagnostics if each.code == "NC322"] == [True]

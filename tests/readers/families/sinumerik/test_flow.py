@@ -342,3 +342,39 @@ def test_a_def_that_a_jump_leads_to_again_and_smoothing_that_is_off_are_no_mista
     text = "R1=0\nBACK: DEF INT _N\n_N=_N+1 R1=R1+1\nX=_N\nIF R1<3 GOTOB BACK\n"
     found = run(text + "CYCLE832()\nCYCLE832(0,_OFF,1)\nCYCLE832(0,0,1)\nCYCLE832(0)\nX5")
     assert found.errors == ()
+
+
+FIELD = "DEF REAL LIST[3]=SET(1,2,3)\n"
+SQUARE = "DEF REAL LIST[2,2]=SET(1,2,3,4)\n"
+
+#: A program, its subprogram, and the values of X.
+PARAMETERS = [
+    (f"{FIELD}TAKE(LIST)\nX=LIST[1]", "PROC TAKE(VAR REAL _A[3])\nX=_A[2]\n_A[1]=9", [3, 9]),
+    (f"{FIELD}TAKE(LIST)\nX=LIST[1]", "PROC TAKE(VAR REAL _A[])\nX=_A[2]\n_A[1]=9", [3, 9]),
+    (f"{FIELD}TAKE(LIST)\nX=LIST[1]", "PROC TAKE(REAL _A[3])\nX=_A[2]\n_A[1]=9", [3, 2]),
+    (f"{SQUARE}TAKE(LIST,7)\nX=LIST[1,1]", "PROC TAKE(VAR REAL _A[,],REAL _B)\nX=_A[1,0]+_B\n_A[1,1]=9", [10, 9]),
+    ("DEF REAL _V=3\nTAKE(_V)\nX=_V", "PROC TAKE(VAR REAL _A)\nX=_A\n_A=_A+5", [3, 8]),
+    ("DEF REAL _V=3\nTAKE(_V)\nX=_V", "PROC TAKE(REAL _A)\nX=_A\n_A=_A+5", [3, 3]),
+    ("TAKE()", "PROC TAKE(VAR REAL _A,REAL _B=4)\nX=_A+_B", [4]),
+]
+
+
+def test_fields_and_variables_are_parameters_by_their_names(run: Runner) -> None:
+    for text, subprogram, expected in PARAMETERS:
+        found = run(text, files={"TAKE.SPF": f"{subprogram}\nM17"})
+        assert (found.diagnostics, xs(found)) == ((), expected), subprogram
+
+
+def test_arguments_that_a_subprogram_does_not_take_are_errors(run: Runner) -> None:
+    cases = [
+        (f"{FIELD}TAKE(LIST)", "VAR REAL _A[4]", "_A is a field of another size than LIST"),
+        (f"{FIELD}TAKE(LIST)", "REAL _A[,]", "_A is a field of another size than LIST"),
+        ("TAKE(5)", "REAL _A[3]", "_A is a field of another size than 5"),
+        (f"{FIELD}TAKE(LIST)", "REAL _A", "_A takes a value, and not the field LIST"),
+        (f"{FIELD}TAKE(LIST[1])", "VAR REAL _A", "VAR _A gives its value back to LIST [ 1 ]"),
+        ("R5=3\nTAKE(R5)", "VAR REAL _A", "VAR _A gives its value back to R 5"),
+        ("TAKE(1,2)", "REAL _A", "a call with 2 values of a subprogram that takes 1"),
+    ]
+    for text, parameters, told in cases:
+        found = run(text, files={"TAKE.SPF": f"PROC TAKE({parameters})\nM17"})
+        assert [told in error.text for error in found.errors] == [True], (parameters, found.errors)

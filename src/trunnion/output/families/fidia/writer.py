@@ -103,7 +103,7 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
     return {
         "cancel_tcp": tcp_off,
         "cancel_plane": "G69" if everything else None,
-        OFFSET_BEFORE_TURN: settings["work_offset"] if everything else None,
+        OFFSET_BEFORE_TURN: settings.get("work_offset") if everything else None,
     }
 
 

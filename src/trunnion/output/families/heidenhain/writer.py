@@ -20,6 +20,7 @@ from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, O
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
 from trunnion.output.families.heidenhain.cycles import cycle_definition
+from trunnion.output.families.heidenhain.sides import sides_at_once
 from trunnion.output.shared.lines import program_stop, split_text
 from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.output.shared.splines import spline_lines as spline_lines
@@ -159,12 +160,13 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
-    """Return radius compensation in another plane than XY."""
-    return [
+    """Return radius compensation in another plane than XY, and on the other side without a motion with R0 between."""
+    planes = [
         (event.line, UnsupportedFeatureError(Wording("CTL220", "radius_compensation_plane", plane=event.plane)))
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane not in ("", "XYPLAN")
     ]
+    return [*planes, *sides_at_once(operation)]
 
 
 #: The most characters of a program's name.

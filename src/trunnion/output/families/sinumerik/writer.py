@@ -152,10 +152,11 @@ def _offset_before_turn(settings: Mapping[str, Value]) -> Value:
     """Return the work offset in which the rotary axes turn before TRAORI; None: the one that is in force.
 
     The rotary axes of a work offset count too. The published programs turn before they select their only offset, G54.
+    A control without the setting leaves all that to its templates.
     """
+    offset = settings.get("work_offset")
     left_on = settings[SAFE_START_SETTING] == ALL_LEFT_ON or settings.get("restart") == "on"
-    chosen = settings.get(OFFSETS_DIFFER) or settings["work_offset"] != "G54"
-    return settings["work_offset"] if left_on or chosen else None
+    return offset if left_on or settings.get(OFFSETS_DIFFER) or offset != "G54" else None
 
 
 def tool_preselection(call: str) -> list[str]:

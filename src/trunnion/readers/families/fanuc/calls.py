@@ -163,18 +163,27 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         self._stack.append(entered)
 
     def _find_program(self, number: int, repeats: int) -> tuple[ActiveProgram, int]:
-        """Return a program and its first line."""
+        """Return a program and its first line; the control has one of a number."""
         here = self._stack[-1]
         begin = here.source.program(number)
+        names = (f"O{number:04d}", f"O{number:05d}", f"O{number}", f"{number:04d}", f"{number}")
+        paths = list(dict.fromkeys(path for name in names if (path := self._subprograms.find(name))))
+        files = tuple(path.name for path in paths)
+        own = self._stack[0].source
+        if len(files) > 1:
+            raise BlockError(Wording("NC132", "files_of_one_number", number=number, files=files))
+        if files and isinstance(own, FanucText) and own.program(number) is not None:
+            raise BlockError(Wording("NC132", "number_in_both", number=number, file=files[0]))
         if begin is not None:
             return ActiveProgram(here.source.restarted(), here.file, repeats), begin
-        names = (f"O{number:04d}", f"O{number:05d}", f"O{number}", f"{number:04d}", f"{number}")
-        path = next((path for name in names if (path := self._subprograms.find(name))), None)
-        if path is None:
+        if not paths:
             raise BlockError(Wording("NC132", "missing_subprogram_number", number=number))
-        source, file = self._open_subprogram(path)
+        source, file = self._open_subprogram(paths[0])
         assert isinstance(source, FanucText)
-        return ActiveProgram(source, file, repeats), source.program(number) or 1
+        begin = source.program(number)
+        if begin is None and (others := source.numbers()):
+            raise BlockError(Wording("NC132", "other_number_in_file", file=files[0], number=number, others=others))
+        return ActiveProgram(source, file, repeats), begin or 1
 
     def _return(self, word: Word, block: Block) -> None:
         """M99: return, to block P of the caller; the main program would start again without end."""

@@ -1,6 +1,7 @@
 """The virtual control of a Fanuc: its frames, its tilted planes, and the rotary positioning by G53.1."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,13 +10,15 @@ from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, Mount
 from trunnion.messages import Wording, phrase
 from trunnion.model.axis_positions import PLAIN
-from trunnion.model.run import ProgrammedWord
+from trunnion.model.diagnostics import Diagnostic
+from trunnion.model.run import Comment, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap, rotation_about, rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode, RotaryTarget
 from trunnion.readers.control.event_recorder import Note
-from trunnion.readers.families.fanuc.settings import START_MODES, Settings
+from trunnion.readers.families.fanuc.settings import Settings, start_modes_of
+from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.scan.letter_blocks import letter_table
 
@@ -35,7 +38,6 @@ class FanucControl(Rs274Control):
 
     # A reset, and with it the end of a program, keeps units and stroke limits in any case (docs/reader-fanuc.md).
     kept_modes = frozenset({"units", "limits"})
-    start_modes = START_MODES
     doubtful_modes = frozenset({"distances", "plane", "feed", "compensation", "offset", "length"})
 
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
@@ -43,6 +45,7 @@ class FanucControl(Rs274Control):
         super().__init__(machine, note, shortest=shortest)
         self.settings = settings
         self.own_words = settings.words
+        self.start_modes = start_modes_of(settings.words)
         self.reset_by = f"whether a reset ends it depends on {settings.kept_by}"
         self._letter_tables = {
             (whole_feeds, vectors, turning): self._make_table(whole_feeds, vectors, turning)
@@ -62,6 +65,9 @@ class FanucControl(Rs274Control):
         self.plane_of_pose = False
         self.length_ended_at = 0
         self.count_in(settings.unit)
+        # The first block with a number without a point of which nobody says how it counts, and how many there are.
+        self._first_whole: Diagnostic | None = None
+        self._whole_blocks = 0
         # Of two axes in one table or one head the one that carries the other decides, on mixed machines the table.
         self.deciding_axis = 1 if all(machine.axes[k].mount is Mount.PART for k in machine.rotary) else 0
 
@@ -83,6 +89,25 @@ class FanucControl(Rs274Control):
         whole_feeds = self.modal.feed_mode.current in (93, 94) and self.length_unit == 1.0
         whole_feeds = whole_feeds and not self.settings.whole_feeds_count
         return self._letter_tables[whole_feeds, self.vectors, not self.plane_of_pose]
+
+    def scale(self, block: Block, *, angles: str, plain: Collection[str]) -> None:
+        """Scale the numbers of a block without a point, and count it if no definition says how these count."""
+        mode, inches = self.modal.feed_mode.current, self.length_unit != 1.0
+        changed = self.settings.scale(block, mode, inches, angles=angles, plain=plain)
+        if changed is None or self.settings.states_numbers:
+            return
+        self._whole_blocks += 1
+        if self._first_whole is None:
+            taken = Wording("NC224", "number_without_point", word=changed[0], value=changed[1])
+            self._first_whole = Diagnostic(self.line, taken, Severity.WARNING, str(self.modal.file.current))
+
+    def finish(self, files: Sequence[str], comments: list[Comment], diagnostics: Sequence[Diagnostic]) -> Run:
+        """Return the run, with a warning if numbers without a point count in increments that nobody has stated."""
+        if (first := self._first_whole) is not None:
+            said, count = first.wording, self._whole_blocks
+            said = said if count == 1 else said.within("first_of_kind", count=count)
+            diagnostics = [*diagnostics, replace(first, wording=said, file=files[int(first.file)])]
+        return super().finish(files, comments, diagnostics)
 
     # Frames
 

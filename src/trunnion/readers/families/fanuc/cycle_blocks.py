@@ -68,28 +68,32 @@ class CycleInterpreter(OffsetInterpreter):
             if self.motion_code in block.g:
                 self._select_without_words(block.take(letter))
             return
-        without = "ZP" if words.takes_number(block) else "Z"
-        given = {
-            letter: value
-            for letter in cycles.MODAL_WORDS
-            if letter not in without and (value := block.take(letter)) is not None
-        }
-        if along in axes:
-            given["Z"] = axes[along][0]
-        self._modal_words |= given
-        self._warn_of_shift(given)
+        self._take_cycle_words(block, axes)
         repeats = block.take(letter)
         block.take("L")
         self._report_rotary_words(axes)
         self._require_words(self._modal_words)
         holes = 1 if repeats is None else int(repeats)
-        if not 0 <= holes <= _MAX_HOLES:
+        if not 0 <= holes <= _MAX_HOLES or repeats not in (None, holes):
             raise BlockError(Wording("NC210", "repeats_of_cycle", letter=letter))
         if letter == "L" and holes > 1 and control.absolute:
             raise BlockError(Wording("NC210", "l_repeats_cycle_g91_only"))
         self._withdraw_waiting()
         in_plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
         self._drill_at([in_plane] * holes)
+
+    def _take_cycle_words(self, block: Block, axes: dict[str, AxisWord]) -> None:
+        """Take the words of a cycle, which hold until it ends."""
+        without = "ZP" if words.takes_number(block) else "Z"
+        given = {
+            letter: value
+            for letter in cycles.MODAL_WORDS
+            if letter not in without and (value := block.take(letter)) is not None
+        }
+        if (along := "XYZ"[self.control.plane_axis]) in axes:
+            given["Z"] = axes[along][0]
+        self._modal_words |= given
+        self._warn_of_shift(given)
 
     def _drill_at(self, places: Sequence[dict[str, AxisWord]]) -> None:
         """Execute the cycle in force at places, by the words that lead there."""
@@ -112,15 +116,21 @@ class CycleInterpreter(OffsetInterpreter):
         control.motion = motion
 
     def _bolt_holes(self, word: Word, block: Block) -> None:
-        """Execute the cycle in force at holes of a circle or an arc about where the tool is.
+        """Execute the cycle in force, or that of the block, at holes of a circle or an arc.
+
+        Their centre is where the block positions the tool, or where the tool is.
 
         Facts: G71 of a Haas at helmancnc.com/g71-bolt-hole-arc-cnc-mill-programming, which describes G70 with it.
         """
         name = self.control.settings.words.own_text(word.code)
-        if self.motion_code not in self.table.cycles or any(code in self.table.cycles for code in block.g):
+        if self.motion_code not in self.table.cycles:
             raise BlockError(Wording("NC210", "holes_without_cycle", word=name))
-        self._require_words(self._modal_words)
         values = {letter: block.take(letter) for letter in word.letters}
+        axes = self._axis_words(block)
+        self._check_dwell(block)
+        self._take_cycle_words(block, axes)
+        self._report_rotary_words(axes)
+        self._require_words(self._modal_words)
         if missing := tuple(letter for letter, value in values.items() if value is None):
             raise BlockError(Wording("NC210", "holes_without_words", word=name, missing=missing))
         radius, begin, count = (values[letter] or 0.0 for letter in "IJL")
@@ -132,6 +142,11 @@ class CycleInterpreter(OffsetInterpreter):
         if not step:
             raise BlockError(Wording("NC210", "holes_in_one_place", word=name))
         control = self.control
+        along = "XYZ"[control.plane_axis]
+        if in_plane := {name: word for name, word in axes.items() if name in "XYZ" and name != along}:
+            motion, control.motion = control.motion, RAPID
+            control.move(in_plane, None)
+            control.motion = motion
         u, v = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
         centre = control.programmed_position / control.length_unit
         places: list[dict[str, AxisWord]] = []
@@ -178,12 +193,19 @@ class CycleInterpreter(OffsetInterpreter):
 
     def _check_words(self, block: Block) -> None:
         """Refuse words that describe pecks and retracts on some controls, and dwells whose unit is in doubt."""
+        self._check_pecks(block)
+        self._check_dwell(block)
+
+    def _check_pecks(self, block: Block) -> None:
         settings = self.control.settings
         others = "" if self.motion_code in cycles.SHIFTED else "IJ"
         if settings.repeat_letter == "L":
             others = "K" if self.motion_code == cycles.FINE_BORE else "IJK"
         if found := [letter for letter in others if letter in block.words]:
             raise BlockError(Wording("NC220", "peck_word_not_simulated", word=found[0]))
+
+    def _check_dwell(self, block: Block) -> None:
+        settings = self.control.settings
         dwell = block.words.get("P")
         if dwell is not None and dwell.value < 0.0 and not words.takes_number(block):
             raise BlockError(Wording("NC215", "negative_dwell"))

@@ -11,6 +11,7 @@ from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, Mount
 from trunnion.messages import Wording
+from trunnion.model.mode_words import TOOL_AXIS
 from trunnion.model.run import Orientation
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
@@ -180,13 +181,12 @@ class FanucInterpreter(CycleInterpreter):
         if words.DWELL not in block.g:
             angles = "IJKR" if words.TILT in block.g else ""
             angles += self._polar.letters[1] if self._is_polar(block) else ""
-            mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
             plain = {letter for word in self.table.words("G", block.g) for letter in word.values}
             if in_cycle:
                 plain.add(control.settings.repeat_letter)
             if words.JUMP_ON_INPUT in block.m:
                 plain.add("Q")
-            control.settings.scale(block, mode, inches, angles=angles, plain=plain)
+            control.scale(block, angles=angles, plain=plain)
 
     def _late_words(self, codes: Sequence[Word]) -> Sequence[Word]:
         if not self.control.settings.m_codes_last:
@@ -313,6 +313,7 @@ class FanucInterpreter(CycleInterpreter):
         control.set_tcp(True)
         control.set_length(True)
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
+        control.say_mode(TOOL_AXIS, self._length_word)
         control.vectors = vectors
         control.judge_mirror()
 

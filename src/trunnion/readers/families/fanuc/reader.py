@@ -6,6 +6,7 @@ from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
 from trunnion.readers.families.fanuc.settings import VARIABLE, settings_of
 from trunnion.readers.families.fanuc.words import TABLE, is_own_word
 from trunnion.readers.families.fanuc.work_offsets import WORK_OFFSETS, offsets_of
+from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, RS274_VALUE, raw_words
 
@@ -38,4 +39,10 @@ READER: Final = FamilyReader(
     compensation_style=lambda machine: settings_of(machine).compensation_style,
     check_reading=settings_of,
     variables=VARIABLE,
+    call_words=CallWords(
+        rb"(?<![A-Z])(?:M[ \t]*0*98|G[ \t]*0*6[56])(?![0-9.])[^\n]{0,200}?P[ \t]*([0-9]{1,12})(?![.0-9])",
+        rb"(?<![A-Z])M[ \t]*0*99(?![0-9])",
+        remarks=rb"\([^()\n]*\)",
+        numbered=True,
+    ),
 )

@@ -9,8 +9,8 @@ from trunnion.compensation.styles import TYPE_A, UNKNOWN_STYLE
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.mode_words import END_OF_CYCLES
-from trunnion.readers.control.start_modes import MOTION, check_start_modes
-from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
+from trunnion.readers.control.start_modes import MOTION, PLANE_OF_POSE, check_start_modes
+from trunnion.readers.families.fanuc.words import MORE_OFFSETS, NO_PLANE_OF_POSE, TABLE, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.forms import read_form
 from trunnion.readers.program.settings import family_of, reading_of, unit_of
@@ -52,6 +52,7 @@ class Settings:
     """The settings of a control.
 
     calculator   numbers without a point are millimetres, inches and degrees, not least increments
+    states_numbers   the definition says how they count
     unit         mm or inch, as long as a program states none; empty: not known
     increment    the least increment, mm and degrees; a tenth of it for inches
     words        words that the control has in place of the family's
@@ -89,6 +90,7 @@ class Settings:
     kept_by: str = KEPT_BY
     extended_offsets: int = HIGHEST_EXTENDED
     variables: Mapping[str, float] = field(default_factory=dict)
+    states_numbers: bool = True
 
     def length(self, inches: bool) -> float:
         """Return the unit of whole numbers that are lengths, in mm or inches."""
@@ -119,13 +121,14 @@ class Settings:
 
     def scale(
         self, block: Block, mode: int, inches: bool, *, angles: str = "", plain: Collection[str] = frozenset()
-    ) -> None:
-        """Scale the whole numbers of a block by their units.
+    ) -> tuple[str, float] | None:
+        """Scale the whole numbers of a block by their units; return the first word that this changes, and its value.
 
         The letters ``angles`` are angles besides A, B and C; those in ``plain`` count as they are written.
         """
+        changed: tuple[str, float] | None = None
         if self.calculator:
-            return
+            return changed
         for letter, number in block.words.items():
             if not number.whole or letter in plain:
                 continue
@@ -138,6 +141,9 @@ class Settings:
             else:
                 continue
             block.words[letter] = Number(number.value * factor)
+            if changed is None and number.value and factor != 1.0:
+                changed = f"{letter}{number.value:g}", number.value * factor
+        return changed
 
     def check_dwell(self, block: Block) -> None:
         """Refuse P of a dwell with a point, where P counts milliseconds and takes none: the control stops there."""
@@ -152,6 +158,13 @@ class Settings:
             block.words["P"] = Number(dwell.value / _SECONDS)
 
 
+def start_modes_of(words: WordMeanings) -> Mapping[str, str]:
+    """Return the modes with which a control starts, by the words that it has for them."""
+    if NO_PLANE_OF_POSE not in words.g.values():
+        return START_MODES
+    return {**START_MODES, PLANE_OF_POSE: words.own_text(NO_PLANE_OF_POSE)}
+
+
 def settings_of(machine: Machine) -> Settings:
     """Read the settings of a machine's control; InputError if they are wrong."""
     table = reading_of(machine)
@@ -159,12 +172,13 @@ def settings_of(machine: Machine) -> Settings:
     increment = table.number("least_increment_mm", 0.001, above=0.0)
     unit = unit_of(table)
     read_form(table, family_of(machine))
-    check_start_modes(table, START_MODES)
+    words = read_word_meanings(table, is_own_word, TABLE.meanings)
+    check_start_modes(table, start_modes_of(words))
     settings = Settings(
         numbers == "calculator",
         increment,
         unit,
-        read_word_meanings(table, is_own_word, TABLE.meanings),
+        words,
         point_is_seconds=table.text("dwells", "milliseconds", one_of=("milliseconds", "point")) == "point",
         m_codes_last=table.text("m_codes", "each", one_of=("each", "last")) == "last",
         repeat_letter=table.text("cycles_repeat_with", "K", one_of=("K", "L")),
@@ -179,6 +193,7 @@ def settings_of(machine: Machine) -> Settings:
         kept_by=table.text("kept_by", KEPT_BY),
         variables=read_variables(table, VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
+        states_numbers="whole_numbers" in table,
     )
     table.report_unread_keys()
     table.raise_problems()

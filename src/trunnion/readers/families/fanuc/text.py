@@ -56,6 +56,10 @@ class FanucText(SourceText):
         """Return the line of an O number, None if the file does not have it."""
         return self._programs().get(number)
 
+    def numbers(self) -> tuple[str, ...]:
+        """Return the O numbers of the file, as they are called."""
+        return tuple(f"O{number:04d}" for number in sorted(self._programs()))
+
     def _programs(self) -> dict[int, int]:
         if self._jump_targets.programs is None:
             found: dict[int, int] = {}

@@ -154,8 +154,8 @@ TABLE: Final = WordTable(
         act="look_ahead", letters="P", values={"P": whole(0, 15)}, numbered=True,
     ),
     Word(
-        "G: bolt hole circle", "the cycle in force at `L` places of a circle of radius `I` about the tool, from the "
-        "angle `J` on", act="bolt_holes", letters="IJL", when=_BEHIND, moves=False,
+        "G: bolt hole circle", "the cycle in force or of the block at `L` places of a circle of radius `I` about the "
+        "tool, from the angle `J` on", act="bolt_holes", letters="IJL", when=_BEHIND, moves=False,
     ),
     Word(
         "G: bolt hole arc", "the same, with the angle `K` from one to the next", act="bolt_holes", letters="IJKL",
@@ -215,6 +215,7 @@ MORE_OFFSETS: Final = TABLE.code("G54.1")
 MACROS: Final = frozenset({TABLE.code("G65"), TABLE.code("G66")})
 MODAL_MACRO: Final = TABLE.code("G66")
 TILT: Final = TABLE.code("G68.2")
+NO_PLANE_OF_POSE: Final = TABLE.code("G: no plane of the rotary position")
 
 #: Smooth interpolation and nano smoothing, which round the path within a tolerance of the control.
 SMOOTHING: Final = ("G5.1 Q2", "G5.1 Q3")

@@ -17,7 +17,7 @@ from trunnion.readers.families.fidia.control import FidiaControl
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, block_reader
-from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
+from trunnion.readers.rs274.expressions import NO_ARITHMETIC, BlockError, Value
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram
 from trunnion.readers.rs274.word_interpreter import WordInterpreter
 from trunnion.readers.rs274.word_table import Word
@@ -38,7 +38,6 @@ class _NoParameters:
 
 
 _NO_PARAMETERS: Final = _NoParameters()
-_NO_ARITHMETIC: Final = Arithmetic(levels=(), operators={}, functions={}, pairs={})
 
 
 class FidiaInterpreter(WordInterpreter[ActiveProgram]):
@@ -73,7 +72,7 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
         if tool is not None:
             text = text[: tool.start()] + text[tool.end() :]
         # The time of a dwell has two letters.
-        reader = block_reader(text.replace("HD", "H"), _NO_ARITHMETIC, _NO_PARAMETERS)
+        reader = block_reader(text.replace("HD", "H"), NO_ARITHMETIC, _NO_PARAMETERS)
         block = self._read_block(reader)
         if block.assignments:
             raise BlockError(Wording("NC220", "parameters_not_simulated"))

@@ -10,6 +10,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, Mount
 from trunnion.messages import Wording
 from trunnion.model.feed_path import FeedPath
+from trunnion.model.mode_words import FOLLOWING, TOOL_AXIS
 from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.event_recorder import Note
@@ -67,6 +68,14 @@ class HeidenhainControl(LeadControl):
         super().set_tcp(on)
         self.judge_compensation()
         self._judge_feed_path()
+
+    def limit_compensating_feed(self, feed: float | None) -> None:
+        """M128 F: how fast the linear axes may follow the rotary ones, as written; None: as the machine sets it."""
+        self.say_mode(FOLLOWING, "" if feed is None else f"F{feed * self.feed_unit:.6g}")
+
+    def say_tool_axis(self) -> None:
+        """Record whether rotary words under TCP are positions of axes or angles in space."""
+        self.say_mode(TOOL_AXIS, "AXIS SPAT" if self.spatial_angles_active else "AXIS POS")
 
     def _judge_feed_path(self) -> None:
         """Note M116 with TCP: the manuals say that they exclude each other."""

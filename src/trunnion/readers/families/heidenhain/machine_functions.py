@@ -104,6 +104,9 @@ class MFunctions:
                 control.judge_within_compensation(f"M{code}")
             control.spatial_angles_active = False
             control.set_tcp(code == M_TCP)
+            if code == M_TCP:
+                control.limit_compensating_feed(arguments.get("F"))
+                control.say_tool_axis()
         elif code in (M_PER_TURN, M_PER_MINUTE):
             control.modal.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
             if code == M_PER_TURN and control.length_unit != 1.0:

@@ -125,8 +125,10 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
         note(Wording("NC215", "tcpm_unexpected", found=names[-1]), Severity.ERROR)
     control.judge_within_compensation("FUNCTION TCPM")
     control.set_tcp(True)
+    control.limit_compensating_feed(None)
     control.spatial_angles_active = spatial_angles
     control.angles = [0.0, 0.0, 0.0]
+    control.say_tool_axis()
     control.set_orientation(orientation)
 
 

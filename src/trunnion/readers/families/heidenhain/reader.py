@@ -17,6 +17,7 @@ from trunnion.readers.families.heidenhain.words import (
     M_SHORTEST,
     M_WITHOUT_PATH_EFFECT,
 )
+from trunnion.readers.program.call_words import ENDS, CallWords
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.raw_text import NUMBER, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords, first_number
@@ -59,4 +60,9 @@ READER: Final = FamilyReader(
     compensation_style=lambda _: HeidenhainControl.compensation_style,
     check_reading=variables_of,
     variables=VARIABLE,
+    call_words=CallWords(
+        rb"(?:(?:CALL|SEL)[ \t]+PGM|PGM[ \t]+CALL|12\.1[ \t]+PGM)[ \t]+\"?([^\"\s]+)",
+        rb"END[ \t]+PGM(?![A-Z])",
+        programs=ENDS + rb"|TOOL[ \t]+CALL|BLK[ \t]+FORM",
+    ),
 )

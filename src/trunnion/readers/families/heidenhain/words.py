@@ -24,6 +24,7 @@ BLOCKS_NOT_SIMULATED: Final = {
     "PATTERN": "point patterns are not simulated",
     "SEL": "tables, contours and programs are not selected here",
     "DECLARE": "strings are not simulated",
+    "QS": "string parameters are not simulated",
     "TRANS": "is not simulated: cycles 7, 8, 10 and 11 are",
     "TCH": "touch probes measure what only the machine knows",
     "CONTOUR": "contour cycles are not simulated",

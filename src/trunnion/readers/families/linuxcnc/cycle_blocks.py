@@ -80,6 +80,8 @@ class CycleInterpreter(OffsetInterpreter):
         given |= {"Z": axes[along][0]} if along in axes else {}
         begins = code != self.motion_code
         self.motion_code = code
+        if given.get("P", 0.0) < 0.0:
+            raise BlockError(Wording("NC215", "negative_dwell"))
         self._last_dwell = given.get("P", self._last_dwell)
         kept = ({"P": self._last_dwell} if code in words.TAPS else {}) if begins else self._modal_words
         self._require_words(kept | given)
@@ -87,7 +89,7 @@ class CycleInterpreter(OffsetInterpreter):
         repeats = block.take("L")
         clearance = block.take("D")
         holes = 1 if repeats is None else int(repeats)
-        if not 1 <= holes <= _MAX_HOLES:
+        if not 1 <= holes <= _MAX_HOLES or repeats not in (None, holes):
             raise BlockError(Wording("NC210", "repeats_l"))
         if self._inverse_time:
             raise BlockError(Wording("NC210", "cycle_cannot_inverse_time"))

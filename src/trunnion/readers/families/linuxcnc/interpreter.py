@@ -34,6 +34,9 @@ _MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),[ \t]*(.*)", re.IGNOREC
 #: Comments that run Python, or end the program.
 _PROGRAM: Final = re.compile(r"\s*(PY|PYRUN|ABORT)\s*,", re.IGNORECASE)
 
+#: The mode that says within what the path is rounded (P), and lines are joined (Q).
+_WITHIN: Final = "tolerances of G64"
+
 
 class LinuxcncInterpreter(CycleInterpreter):
     """Runs one LinuxCNC program on one machine."""
@@ -188,10 +191,15 @@ class LinuxcncInterpreter(CycleInterpreter):
             self._note(Wording("NC215", "g64_tolerance_below_zero"), Severity.ERROR)
         # P0 is no tolerance: the control keeps its speed, as without P.
         control.add_tolerance(max(tolerance, naive or 0.0) * control.length_unit if tolerance else np.inf)
+        within = (tolerance or 0.0, (tolerance or 0.0) if naive is None else naive)
+        # In two digits: 0.0004 inch stands for 0.01 mm. The wider one is compared by its value besides.
+        rounding, joining = (f"{each * control.length_unit:.2g}" for each in within)
+        control.say_mode(_WITHIN, f"P{rounding} Q{joining}")
         control.add_exact_stop("off")
 
     def _exact_path(self, word: Word, block: Block) -> None:
         self.control.add_tolerance(0.0)
+        self.control.say_mode(_WITHIN, "none")
         self.control.add_exact_stop(word.sets)
 
     def _length(self, word: Word, block: Block) -> None:
@@ -286,6 +294,7 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     def _builders_program(self, word: Word, block: Block) -> None:
         self.control.add_builders_word("M", float(word.code))
+        self._say_letters(word, block)
         if word.text in words.USERS_TCP:
             self._note(Wording("NC224", "switches_tcp_some_configurations_m428", word=word.text), Severity.ERROR)
 

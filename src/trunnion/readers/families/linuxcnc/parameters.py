@@ -47,6 +47,7 @@ ARITHMETIC: Final = Arithmetic(
     },
     functions={**COMMON_FUNCTIONS, "FIX": math.floor, "FUP": math.ceil},
     pairs={"ATAN": lambda y, x: math.degrees(math.atan2(y, x))},
+    asks_for_parameters=True,
 )
 
 

@@ -6,6 +6,7 @@ from typing import Final
 from trunnion.readers.families.linuxcnc.control import PARAMETER, LinuxcncControl, settings_of
 from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
 from trunnion.readers.families.linuxcnc.words import TABLE, is_own_word
+from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, RS274_VALUE, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords, g_word
@@ -45,4 +46,11 @@ READER: Final = FamilyReader(
     compensation_style=lambda _: LinuxcncControl.compensation_style,
     check_reading=settings_of,
     variables=PARAMETER,
+    call_words=CallWords(
+        rb"^[ \t]*O[ \t]*<?[ \t]*([^>\n\t ]+?)[ \t]*>?[ \t]*call(?![a-z])",
+        rb"^[ \t]*O[ \t]*(?:<[^>\n]*>|[0-9]+)[ \t]*endsub(?![a-z])",
+        programs=rb"(?<![A-Z])[GXYZABCTSF][ \t]*[-+.#\[0-9]|^[ \t]*O[^\n]*call",
+        remarks=rb"\([^()\n]*\)|;[^\n]*",
+        bodies=rb"^[ \t]*O[ \t]*(?:<[^>\n]*>|[0-9]+)[ \t]*(?:sub|(endsub))(?![a-z])[^\n]*",
+    ),
 )

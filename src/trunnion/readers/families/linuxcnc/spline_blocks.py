@@ -16,7 +16,8 @@ from trunnion.model.run import ProgrammedWord
 from trunnion.model.splines import Spline
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.row_recorder import MAX_POSITION
-from trunnion.readers.control.splines import SplineError, nurbs_points
+from trunnion.readers.control.splines import CHORD, SplineError, nurbs_points
+from trunnion.readers.families.linuxcnc.arcs_of_splines import PIECES, arcs_beside
 from trunnion.readers.families.linuxcnc.control import LinuxcncControl
 from trunnion.readers.families.linuxcnc.words import CUBIC, END_NURBS, NURBS
 from trunnion.readers.rs274.block import Block, g_code_text
@@ -107,6 +108,8 @@ class SplineBlocks:
             if order != int(order):
                 raise BlockError(Wording("NC322", "order_not_whole", order=order))
             self._order = max(int(order), _QUADRATIC) if abs(order) < MAX_POSITION else _MOST_POLES
+            if order < _QUADRATIC:
+                control.note(Wording("NC322", "order_below_three", order=order), Severity.WARNING)
         self._bits |= _bits(block, axes)
         if not axes:
             return
@@ -177,6 +180,9 @@ class SplineBlocks:
         spline = Spline(order - 1, knots, poles, weights)
         points = nurbs_points(spline)
         self._count(len(points))
+        if (apart := arcs_beside(spline)) > CHORD:
+            arcs = Wording("NC322", "runs_as_arcs", count=2 * PIECES * len(poles), apart=apart)
+            self._control.note(arcs, Severity.WARNING)
         self._control.move_along_spline(spline, points, bits)
 
 

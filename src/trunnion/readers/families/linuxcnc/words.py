@@ -4,7 +4,7 @@ import re
 from typing import Final
 
 from trunnion.messages import Wording
-from trunnion.readers.program.word_values import one_of, whole
+from trunnion.readers.program.word_values import ABOVE_ZERO, between, one_of, whole
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.iso_words import COMMON_WORDS, COMPENSATION
 from trunnion.readers.rs274.word_table import Effect, When, Word, WordTable
@@ -112,7 +112,8 @@ TABLE: Final = WordTable(
     ),
     Word("M5", "event `spindle`: off", act="iso", group="spindle"),
     Word("M9", "event `coolant`: off", act="iso", group="coolant"),
-    Word("M19", "event `spindle`: oriented", act="iso", group="spindle", letters="RQP", values={"P": whole(0, 2)}),
+    Word("M19", "event `spindle`: oriented", act="iso", group="spindle", letters="RQP",
+         values={"P": whole(0, 2), "R": between(0.0, 360.0), "Q": ABOVE_ZERO}),
     Word("M48 M49", effect=_NONE, act="overrides", sets=(1.0, 0.0), group="overrides"),
     Word("M50 M51 M53", effect=_NONE, act="override", group="overrides", letters="P", values={"P": _SWITCH}),
     Word("M52", "off with `P0`; else a signal of the machine scales the feed: a warning", effect=_NONE,

@@ -1,12 +1,24 @@
 """The words of a block of a Sinumerik program."""
 
+from collections.abc import Set
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.families.sinumerik.expressions import Value
+
+#: Fields of a block that hold one value, by their words.
+_HELD: Final = {
+    "F": "feed",
+    "S": "speed",
+    "T": "tool",
+    "D": "edge",
+    "OTOL": "orientation_tolerance",
+    "FGREF": "feed_radius",
+}
 
 
 @dataclass(slots=True, eq=False)
@@ -61,6 +73,16 @@ class Block:
     feed_radius: float | None = None
     orientation_tolerance: float | None = None
     corner: dict[str, float] = field(default_factory=dict)
+
+    def beside(self, these: Set[str]) -> list[str]:
+        """Return what a block holds besides ``these`` fields, as a reader may look for it there."""
+        found: list[str] = [*self.axes, *(f"{letter}3" for letter in self.vector), *self.params, *self.words]
+        found += [f"M{code}" for code in self.m] + [f"H{value:g}" for value in self.h]
+        found += [call.name for call in self.calls] + [name for name, _ in self.said] + [*self.deltas, *self.corner]
+        found += [f"PO[{axis}]" for axis in self.polynomials]
+        found += [word for word, name in _HELD.items() if name not in these and getattr(self, name) is not None]
+        found += ["CTOL"] * len(self.tolerances)
+        return found if "g" in these else [*(f"G{code}" for code in self.g), *found]
 
     @property
     def tool_axis(self) -> Floats | None:

@@ -85,13 +85,18 @@ class BlockReader:
         letter = reader.peek()
         start = reader.at
         reader.at += 1
-        extension = self._extension(reader)
-        if letter == "R" and (extension or reader.peek() == "["):
-            reader.at = start + 1
-            self._parameter(reader, variables)
-            return
-        name = letter + extension
-        value, mode = self._value(reader)
+        plain = reader.plain_number()
+        value: Value
+        if plain is not None:
+            name, extension, value, mode = letter, "", plain, PositionMode.MODAL
+        else:
+            extension = self._extension(reader)
+            if letter == "R" and (extension or reader.peek() == "["):
+                reader.at = start + 1
+                self._parameter(reader, variables)
+                return
+            name = letter + extension
+            value, mode = self._value(reader)
         if name in self._axes:
             self._axis(block, name, as_number(value), mode)
         elif isinstance(value, str) and name != "T":
@@ -137,15 +142,10 @@ class BlockReader:
                 reader.expect(")")
                 return value, PositionMode(mode)
             return reader.value(), PositionMode.MODAL
-        sign = 1.0
-        if reader.peek() in ("+", "-"):
-            sign = -1.0 if reader.peek() == "-" else 1.0
-            reader.at += 1
-        token = reader.token
-        if token is None or token.kind is not TokenKind.NUMBER:
+        number = reader.plain_number()
+        if number is None:
             raise ExpressionError(Wording("NC210", "number_missing"))
-        reader.at += 1
-        return sign * token.value, PositionMode.MODAL
+        return number, PositionMode.MODAL
 
     def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
         self._once(name, name in block.axes)
@@ -164,7 +164,7 @@ class BlockReader:
         if (extension == "" or (master_spindle and letter in "TS")) and (held := _HELD.get(letter)):
             self._once(letter, getattr(block, held) is not None)
         if letter == "T" and master_spindle:
-            block.tool = value if isinstance(value, str) else f"{value:.10g}"
+            block.tool = value if isinstance(value, str) else f"{_code(as_number(value), 'T')}"
             return
         number = as_number(value)
         match address:
@@ -172,6 +172,7 @@ class BlockReader:
                 # M2=3 and S2=100 address spindle 2; only the master spindle is simulated.
                 text = f"M{extension}={_code(number, 'M')}" if letter == "M" else f"S{extension}="
                 self._note(Wording("NC221", "speaks_another_spindle_not_followed", text=text), Severity.WARNING)
+                block.said.append((letter, f"{extension}={number:g}"))
             case "G", "":
                 block.g.append(_code(number, "G"))
             case "M", _:
@@ -247,11 +248,7 @@ class BlockReader:
                 keep_value(block, name, value)
                 block.said.append((name, f"{axis}={value}"))
         elif name == "SPOS" and follows in ("=", "["):
-            if follows == "[":
-                _skip(reader, "[", "]")
-            reader.expect("=")
-            value, _ = self._value(reader)
-            block.words.append("SPOS")
+            self._spindle_position(reader, block)
         elif name in NOT_SIMULATED:
             self._subprograms(reader, name)
         elif follows in ("=", "["):
@@ -273,7 +270,19 @@ class BlockReader:
         elif name in ACTIVE and name not in ("MSG", "SETAL"):
             raise ExpressionError(Wording("NC210", "word_needs_value", word=name))
         else:
-            block.calls.append(read_call(reader, name))
+            block.calls.append(read_call(reader, name, variables))
+
+    def _spindle_position(self, reader: ExpressionReader, block: Block) -> None:
+        """Read where SPOS turns the spindle; another one is not followed."""
+        spindle = _skip(reader, "[", "]") if reader.peek() == "[" else ""
+        reader.expect("=")
+        value = as_number(self._value(reader)[0])
+        block.said.append(("SPOS", f"{spindle}={value:g}"))
+        if spindle in ("", "[0]", "[1]"):
+            block.words.append("SPOS")
+        else:
+            text = f"SPOS{spindle}="
+            self._note(Wording("NC221", "speaks_another_spindle_not_followed", text=text), Severity.WARNING)
 
     @staticmethod
     def _feed_group(reader: ExpressionReader) -> None:
@@ -328,8 +337,8 @@ class BlockReader:
             self._note(Wording("NC223", "no_definition", name=name), Severity.ERROR)
 
 
-def read_call(reader: ExpressionReader, name: str) -> Call:
-    """Read the arguments of a call, after its name."""
+def read_call(reader: ExpressionReader, name: str, variables: Variables) -> Call:
+    """Read the arguments of a call, after its name; a whole field has no value."""
     if reader.peek() != "(":
         return Call(name)
     active = Call(name)
@@ -340,6 +349,9 @@ def read_call(reader: ExpressionReader, name: str) -> Call:
         start = reader.at
         if reader.peek() in (",", ")"):
             active.arguments.append(None)
+        elif reader.peek(1) in (",", ")") and variables.size(reader.peek()):
+            active.arguments.append(None)
+            reader.at += 1
         else:
             active.arguments.append(reader.value())
         active.argument_texts.append(_text(reader.tokens, start, reader.at))

@@ -60,6 +60,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
             self._note(Wording("NC160", "proc_not_first", word="PROC"), Severity.ERROR)
 
     def _end_procedure(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        reader.expect_end()
         if not active.procedure:
             self._note(Wording("NC160", "endproc_without_proc"), Severity.ERROR)
 
@@ -86,12 +87,13 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         outer = self._stack[-1].variables
         variables = Variables(outer.declared, outer)
         # The PROC line reads the arguments when it is executed.
-        variables.pass_arguments(call.arguments)
+        variables.pass_arguments(call.arguments, call.argument_texts)
         source, file = self._open_subprogram(path)
         assert isinstance(source, SinumerikText)
         self._stack.append(ActiveProgram(source, file, call.repeats, variables=variables))
 
     def _return(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        reader.expect_end()  # RET("LABEL") goes on elsewhere than behind the call
         self._check_behind_return(active)
         self._leave_program()
 
@@ -105,12 +107,16 @@ class CallInterpreter(Interpreter[ActiveProgram]):
             number = reader.token
             if number is None or not number.text.isdigit():
                 raise ExpressionError(Wording("NC210", "subprogram_number"))
+            reader.at += 1
+            reader.expect_end()
             active.modal = Call(f"L{number.text}")
             return
         if token.kind is not TokenKind.NAME:
             raise ExpressionError(Wording("NC210", "name_must_follow"))
         reader.at += 1
-        active.modal = read_call(reader, token.text)
+        call = read_call(reader, token.text, active.variables)
+        reader.expect_end()
+        active.modal = call
 
     def _external_call(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         in_parentheses = reader.accept("(")
@@ -119,4 +125,5 @@ class CallInterpreter(Interpreter[ActiveProgram]):
             reader.expect(")")
         if not isinstance(value, str):
             raise ExpressionError(Wording("NC210", "takes_program_name"))
+        reader.expect_end()
         self._enter_subprogram(Call(value))

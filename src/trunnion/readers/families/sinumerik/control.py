@@ -16,6 +16,7 @@ from trunnion.compensation.styles import CIRCLES, MEETINGS, UNKNOWN_STYLE
 from trunnion.errors import Severity
 from trunnion.machines import AngleOutput, Axis, Machine, forward
 from trunnion.messages import Wording
+from trunnion.model.mode_words import TOOL_AXIS
 from trunnion.model.run import NO_OFFSET, Orientation
 from trunnion.model.spindle_work import SpindleWork
 from trunnion.model.toolpath import Kind
@@ -160,6 +161,7 @@ class SinumerikControl(VirtualControl):
         """Select whether vectors are in the machine frame (ORIMKS) or the workpiece frame (ORIWKS)."""
         self.resolve_rows()
         self.said_from.setdefault(VECTOR_FRAME, self.row)
+        self.say_mode(TOOL_AXIS, "ORIMKS" if on else "ORIWKS")
         self._machine_vectors = on
         self._update_maps()
 

@@ -124,6 +124,22 @@ class ExpressionReader:
             return True
         return False
 
+    def plain_number(self) -> float | None:
+        """Read a number, or one with a sign, that is the value of the letter before it.
+
+        None if something else follows, which is not read: digits before an equals sign belong to the name of a word.
+        """
+        tokens, at, sign = self.tokens, self.at, 1.0
+        if at < len(tokens) and tokens[at].kind is TokenKind.SIGN and tokens[at].text in ("-", "+"):
+            sign = -1.0 if tokens[at].text == "-" else 1.0
+            at += 1
+        if at >= len(tokens) or tokens[at].kind is not TokenKind.NUMBER:
+            return None
+        if at + 1 < len(tokens) and tokens[at + 1].text == "=":
+            return None
+        self.at = at + 1
+        return sign * tokens[at].value
+
     def expect(self, text: str) -> None:
         """Read a sign that must come next."""
         if not self.accept(text):
@@ -131,6 +147,12 @@ class ExpressionReader:
             raise ExpressionError(
                 Wording("NC210", "expected_found", expected=text, found=found.text if found else "the end of the block")
             )
+
+    def expect_end(self) -> None:
+        """Refuse further words: none of them would be executed."""
+        if self.token is not None:
+            words = " ".join(token.text for token in self.tokens[self.at : self.at + 20])[:200]
+            raise ExpressionError(Wording("NC212", "behind_statement", words=words))
 
     def number(self) -> float:
         """Read an expression whose value must be a number."""

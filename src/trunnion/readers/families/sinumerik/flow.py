@@ -72,16 +72,22 @@ class Flow:
             "UNTIL": self._until,
             "CASE": self._case,
             "DEF": self._def,
-            "EXTERN": self._ignore,
+            "EXTERN": self._declare,
             **dict.fromkeys(("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS"), self._goto),
         }
 
     def _paired(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         """Check that the keyword has its counterpart, and continue."""
+        reader.expect_end()
         active.source.partner(line)
 
-    def _ignore(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        pass
+    def _declare(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        """Read the declaration of a subprogram in a file of its own: ``EXTERN CONT1(REAL, INT)``."""
+        reader.at += 1
+        if reader.accept("("):
+            while reader.token is not None and not reader.accept(")"):
+                reader.at += 1
+        reader.expect_end()
 
     def _if(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         active.source.jumps_back = 0
@@ -96,14 +102,14 @@ class Flow:
             word = reader.peek()
             if not word.startswith("GOTO"):
                 raise ExpressionError(Wording("NC210", "jump_must_follow_condition"))
-            if holds:
-                self._goto_from(reader, active, line)
+            self._goto_from(reader, active, line, taken=holds)
             return
         middle, end = active.source.partner(line)
         if not holds:
             active.source.jump((middle or end) + 1)
 
     def _else(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        reader.expect_end()
         active.source.jump(active.source.partner(line)[1] + 1)
 
     def _while(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
@@ -114,6 +120,7 @@ class Flow:
             active.source.jumps_back = 0
         try:
             holds = bool(reader.number())
+            reader.expect_end()
         except ExpressionError:
             active.source.jump(end + 1)
             raise
@@ -121,9 +128,11 @@ class Flow:
             active.source.jump(end + 1)
 
     def _end_while(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        reader.expect_end()
         active.source.jump_without_choice(active.source.partner(line)[1])
 
     def _end_loop(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        reader.expect_end()
         active.source.jump_without_choice(active.source.partner(line)[1] + 1)
 
     def _repeat(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
@@ -162,7 +171,9 @@ class Flow:
     def _until(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         begin = active.source.partner(line)[1]
         active.source.jumps_back = 0
-        if not reader.number():
+        holds = reader.number()
+        reader.expect_end()
+        if not holds:
             active.source.jump(begin + 1)
 
     def _for(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
@@ -173,6 +184,7 @@ class Flow:
             value = reader.number()
             reader.expect("TO")
             last = reader.number()
+            reader.expect_end()
         except ExpressionError:
             active.source.jump(end + 1)
             raise
@@ -181,6 +193,7 @@ class Flow:
             active.source.jump(end + 1)
 
     def _end_for(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        reader.expect_end()
         begin = active.source.partner(line)[1]
         active.source.jumps_back = 0
         head = self._loop_head(active, begin)
@@ -235,16 +248,25 @@ class Flow:
         reader.at -= 1
         self._goto_from(reader, active, line)
 
-    def _goto_from(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        """Execute the jump that comes next."""
+    def _goto_from(
+        self, reader: ExpressionReader, active: ActiveProgram, line: int, *, taken: bool = True, is_last: bool = True
+    ) -> None:
+        """Execute the jump that comes next, unless it is not ``taken``; it is the last of its block, or may be."""
         word = reader.peek()
         reader.at += 1
         active.source.load()
         if word == "GOTOS":
-            active.source.jump_without_choice(1)
+            if is_last:
+                reader.expect_end()
+            if taken:
+                active.source.jump_without_choice(1)
             return
         forward, backward = word in ("GOTO", "GOTOF", "GOTOC"), word in ("GOTO", "GOTOB", "GOTOC")
         target, found = self._target(reader, active, line, forward=forward, backward=backward)
+        if is_last:
+            reader.expect_end()
+        if not taken:
+            return
         if found is not None:
             active.source.jump_without_choice(found)
         elif word != "GOTOC":
@@ -278,16 +300,17 @@ class Flow:
         active.source.jumps_back = 0
         value = reader.number()
         reader.expect("OF")
+        taken_at = -1
         while reader.token is not None:
             taken = reader.accept("DEFAULT") or reader.number() == value
             if not reader.peek().startswith("GOTO"):
                 raise ExpressionError(Wording("NC210", "jump_must_follow_value"))
-            if taken:
-                self._goto_from(reader, active, line)
-                return
-            reader.at += 1
-            numbered = reader.peek() == "N"
-            reader.at += 2 if numbered else 1
+            if taken and taken_at < 0:
+                taken_at = reader.at
+            self._goto_from(reader, active, line, taken=False, is_last=False)
+        if taken_at >= 0:
+            reader.at = taken_at
+            self._goto_from(reader, active, line, is_last=False)
 
     def _def(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         kind = reader.peek()
@@ -327,7 +350,8 @@ class Flow:
 
     def define_parameters(self, reader: ExpressionReader, active: ActiveProgram) -> None:
         """Define the parameters of the PROC line with the arguments of the call."""
-        handed = active.variables.arguments
+        variables = active.variables
+        handed = variables.arguments
         if any(token.text == "SAVE" for token in reader.tokens[reader.at :]):
             self._note(Wording("NC220", "save_g_words_come_back"), Severity.ERROR)
         reader.at += 1
@@ -335,7 +359,7 @@ class Flow:
             return
         place = 0
         while not reader.accept(")"):
-            reader.accept("VAR")
+            by_name = reader.accept("VAR")
             kind = reader.peek()
             reader.at += 1
             if kind == "STRING":
@@ -344,9 +368,32 @@ class Flow:
             if kind not in TYPES or not name:
                 raise ExpressionError(Wording("NC210", "parameter_type_name"))
             reader.at += 1
-            reader.index()
-            default = reader.value() if reader.accept("=") else None
-            given = handed[place] if place < len(handed) else None
-            active.variables.define(kind, name, default if given is None else given)
+            if reader.peek() == "[":
+                variables.take_field(kind, name, place, _bounds(reader), copies=not by_name)
+            elif field := variables.named_field(place):
+                raise ExpressionError(Wording("NC210", "parameter_is_value", name=name, given=field))
+            else:
+                default = reader.value() if reader.accept("=") else None
+                given = handed[place] if place < len(handed) else None
+                if given is None or not by_name or not variables.take_variable(kind, name, place):
+                    variables.define(kind, name, default if given is None else given)
+                    if by_name and given is not None:
+                        fault = Wording(
+                            "NC220", "variable_comes_back", name=name, given=variables.argument_texts[place]
+                        )
+                        self._note(fault, Severity.ERROR)
             place += 1
             reader.accept(",")
+        if len(handed) > place:
+            self._note(Wording("NC215", "too_many_arguments", given=len(handed), takes=place), Severity.ERROR)
+
+
+def _bounds(reader: ExpressionReader) -> tuple[int | None, ...]:
+    """Read the size of a field that is a parameter, as in ``[3]``, ``[]`` or ``[,]``; None where it is open."""
+    reader.expect("[")
+    found = list[int | None]()
+    while True:
+        found.append(None if reader.peek() in (",", "]") else reader.integer())
+        if reader.accept("]"):
+            return tuple(found)
+        reader.expect(",")

@@ -16,6 +16,7 @@ from trunnion.readers.families.sinumerik.block import Block, Call
 from trunnion.readers.families.sinumerik.block_reader import BlockReader
 from trunnion.readers.families.sinumerik.control import (
     POLYNOMIAL,
+    THROUGH,
     SinumerikControl,
 )
 from trunnion.readers.families.sinumerik.corner_words import CornerWords
@@ -52,6 +53,14 @@ _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SE
 
 #: Radii that differ by less are the same, mm.
 _SAME_RADIUS: Final = 0.001
+
+#: What stands before the number of a block, and of a main block.
+_BLOCK_NUMBERS: Final = frozenset({"N", ":"})
+
+#: Words that lines take, circles through a point, and other circles.
+_OF_LINES: Final = frozenset({"I", "J", "K", "ANG"})
+_OF_THROUGH: Final = frozenset({"I1", "J1", "K1", "TURN"})
+_OF_CIRCLES: Final = frozenset({"I", "J", "K", "CR", "AR", "TURN", "ANG"})
 
 #: Beginnings of lines that may be plain blocks, so that a scan is worth starting.
 _PLAIN_START = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
@@ -123,8 +132,10 @@ class SinumerikInterpreter(WordInterpreter):
     def _read_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         words, comment = split_comment(raw.rstrip("\r"))
         stripped = words.strip()
-        level = int(stripped[1]) if re.match(r"/\d(?!\d)", stripped) else 0
-        skipped = stripped.startswith("/") and self._options.skips(level)
+        level, skipped = 0, stripped.startswith("/")
+        if skipped:
+            level = int(stripped[1]) if re.match(r"/\d(?!\d)", stripped) else 0
+            skipped = self._options.skips(level)
         if not stripped or stripped.startswith("%") or (skipped and len(words) <= MAX_LENGTH):
             self._read_header(active, line, stripped)
             self._record_comment(line, comment)
@@ -169,7 +180,7 @@ class SinumerikInterpreter(WordInterpreter):
                 and level.start == tokens[0].end
             )
             at = 2 if has_level else 1
-        if len(tokens) > at + 1 and tokens[at].text == "N" and tokens[at + 1].text.isdigit():
+        if len(tokens) > at + 1 and tokens[at].text in _BLOCK_NUMBERS and tokens[at + 1].text.isdigit():
             number = tokens[at + 1].value
             self.control.block_number = int(number) if number < 1e15 else -1
             at += 2
@@ -255,6 +266,9 @@ class SinumerikInterpreter(WordInterpreter):
         """Execute the frame statement or the motion of a block; returns whether it was a motion."""
         control = self.control
         frame_words = [word for word in block.words if word in FRAMES]
+        if frame_words and block.calls:
+            names = [call.name for call in block.calls]
+            self._note(Wording("NC212", "alone_in_block", word=frame_words[0], words=tuple(names)), Severity.ERROR)
         if frame_words:
             self._frame(frame_words, block)
             return False
@@ -264,8 +278,7 @@ class SinumerikInterpreter(WordInterpreter):
         has_motion = block.axes or block.vector or (block.params and control.motion > LINEAR) or "ANG" in block.params
         if not has_motion or G_NO_MOTION.intersection(block.g):
             return False
-        if {"I", "J", "K"} & block.params.keys() and control.motion <= LINEAR:
-            self._note(Wording("NC213", "centre_of_line"), Severity.WARNING)
+        self._refuse_unused(block)
         if block.vector and not control.tip_programmed:
             self._note(Wording("NC340", "a3_b3_c3_need_traori"), Severity.ERROR)
         if control.tool_frame and {"X", "Y"} & block.axes.keys():
@@ -287,6 +300,15 @@ class SinumerikInterpreter(WordInterpreter):
             feed_written=block.feed is not None,
         )
         return True
+
+    def _refuse_unused(self, block: Block) -> None:
+        """Report words of circles that the motion in force does not take."""
+        motion, given = self.control.motion, block.params.keys()
+        if {"I", "J", "K"} & given and motion <= LINEAR:
+            self._note(Wording("NC213", "centre_of_line"), Severity.WARNING)
+        takes = _OF_LINES if motion <= LINEAR else _OF_THROUGH if motion == THROUGH else _OF_CIRCLES
+        for word in sorted(given - takes):
+            self._note(Wording("NC213", "unused_word", word=word), Severity.ERROR)
 
     def _only_turns(self, block: Block) -> bool:
         """Whether rotary axes alone move in a block, without TCP and at a feed that counts for them."""

@@ -14,6 +14,7 @@ from trunnion.readers.families.sinumerik.words import (
     WITHOUT_PATH_EFFECT_CALLS,
     WITHOUT_PATH_EFFECT_VALUES,
 )
+from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.raw_text import NUMBER, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords, first_number, g_word
@@ -58,4 +59,8 @@ READER: Final = FamilyReader(
     compensation_style=lambda _: SinumerikControl.compensation_style,
     check_reading=settings_of,
     variables=VARIABLE,
+    call_words=CallWords(
+        rb"(?<![A-Z0-9_$])(L[0-9]{1,9}|[A-Z_]{2}[A-Z0-9_]*)(?![A-Z0-9_])",
+        rb"(?<![A-Z0-9_])(?:M[ \t]*0*17(?![0-9.=])|RET(?![A-Z0-9_])|PROC(?![A-Z0-9_]))",
+    ),
 )

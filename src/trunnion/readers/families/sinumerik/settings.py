@@ -19,7 +19,7 @@ WITHOUT_LENGTH: Final = "without_length"
 #: How the reader takes the control to start.
 START_MODES: Final = {
     "distances": "G90", "plane": "G17", "compensation": "G40", "feed": "G94", "units": "G71", "TCP": "TRAFOOF",
-    ANGLES: "ORIAXES", VECTORS: "ORIVECT", VECTOR_FRAME: "ORIWKS",
+    "tilted plane": "CYCLE800()", ANGLES: "ORIAXES", VECTORS: "ORIVECT", VECTOR_FRAME: "ORIWKS",
 }  # fmt: skip
 
 #: R parameters, variables of the control (GUD) and system variables, in capitals, with their index.

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Mapping
 from enum import IntEnum
 from functools import lru_cache
 from typing import Final, NamedTuple
@@ -36,6 +37,11 @@ class Token(NamedTuple):
     start: int
     end: int
 
+
+#: Tokens whose text says all.
+_SORTS: Final[Mapping[str | None, TokenKind]] = {
+    "name": TokenKind.NAME, "letter": TokenKind.LETTER, "sign": TokenKind.SIGN,
+}  # fmt: skip
 
 _TOKEN = re.compile(
     r"""
@@ -75,15 +81,18 @@ def tokenize(statement: str) -> tuple[Token, ...]:
 def _tokens(statement: str) -> tuple[Token, ...]:
     tokens: list[Token] = []
     at = 0
-    while at < len(statement):
-        match = _TOKEN.match(statement, at)
-        if match is None:
-            tokens.append(Token(TokenKind.BAD, statement[at : at + 20], 0.0, at, len(statement)))
+    for match in _TOKEN.finditer(statement):
+        start, end = match.span()
+        if start > at:  # what lies between is no token
             break
+        at = end
         kind = match.lastgroup
-        if kind != "blank":
-            tokens.append(_token(str(kind), match.group(), at, match.end()))
-        at = match.end()
+        if kind in _SORTS:
+            tokens.append(Token(_SORTS[kind], match[0].upper(), 0.0, start, end))
+        elif kind != "blank":
+            tokens.append(_token(str(kind), match[0], start, end))
+    if at < len(statement):
+        tokens.append(Token(TokenKind.BAD, statement[at : at + 20], 0.0, at, len(statement)))
     return tuple(tokens)
 
 
@@ -100,10 +109,7 @@ def _token(kind: str, text: str, start: int, end: int) -> Token:
             return Token(TokenKind.NUMBER, text, float(int(text[2:-1], base)), start, end)
         except ValueError:
             return Token(TokenKind.BAD, text, 0.0, start, end)
-    if kind == "text":
-        return Token(TokenKind.TEXT, text[1:-1], 0.0, start, end)
-    sort = {"name": TokenKind.NAME, "letter": TokenKind.LETTER, "sign": TokenKind.SIGN}[kind]
-    return Token(sort, text.upper(), 0.0, start, end)
+    return Token(TokenKind.TEXT, text[1:-1], 0.0, start, end)
 
 
 def _number(text: str) -> float:

@@ -63,6 +63,9 @@ VALUES: Final = _words("""
     ADISPOS STOL OTOLG CTOLG FGREF OVR VELOLIM OVRA OVRRAP ACC JERKLIM ACCLIM SCC DISCL DISR DISRP FA DITS DITE
     """)
 
+#: Where the spindle stands, and what others do: each a mode of its own.
+OF_SPINDLES: Final = _words("SPOS M S")
+
 #: Words that act where they stand: the control reads no further ahead, or waits for another channel.
 ONCE: Final = _words("""
     STOPRE STARTFIFO STOPFIFO FIFOCTRL GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
@@ -80,7 +83,7 @@ def say(control: EventRecorder, word: str, value: str = "") -> None:
 
     value  what is written behind it: the axis, arguments, or a value
     """
-    if word in VALUES:
+    if word in VALUES or word in OF_SPINDLES:
         axis, _, number = value.partition("=")
         control.say_mode(word + axis, number)
     elif word in ONCE:

@@ -21,7 +21,7 @@ MAX_VARIABLES: Final = 100_000
 class Variables:
     """The variables of a running program or subprogram; R parameters and global variables are shared.
 
-    arguments   of the call, for the PROC line
+    arguments   of the call, for the PROC line, and their texts
     declared    the values that the definition declares
     """
 
@@ -35,10 +35,41 @@ class Variables:
         self._global: dict[str, Elements] = {} if shared is None else shared._global
         self._assignment_count: list[int] = [0] if shared is None else shared._assignment_count
         self.arguments: list[Value | None] = []
+        self.argument_texts: list[str] = []
+        self._caller = shared
 
-    def pass_arguments(self, arguments: list[Value | None]) -> None:
-        """Store the arguments of a call."""
-        self.arguments = arguments
+    def pass_arguments(self, arguments: list[Value | None], texts: list[str]) -> None:
+        """Store the arguments of a call, and how they are written."""
+        self.arguments, self.argument_texts = arguments, texts
+
+    def named_field(self, place: int) -> str:
+        """Return the name of the caller's field that is an argument; empty: the argument is a value, or missing."""
+        text = self.argument_texts[place] if place < len(self.argument_texts) else ""
+        return text if self._caller is not None and self._caller.size(text) else ""
+
+    def take_variable(self, kind: str, name: str, place: int) -> bool:
+        """Define a parameter as the caller's variable (VAR); False if the argument is none of which the name tells."""
+        caller, text = self._caller, self.argument_texts[place]
+        elements = None if caller is None else caller._local.get(text, caller._global.get(text))
+        if caller is None or elements is None:
+            return False
+        self.define(kind, name)
+        self._local[name] = elements
+        return True
+
+    def take_field(self, kind: str, name: str, place: int, bounds: tuple[int | None, ...], *, copies: bool) -> None:
+        """Define a parameter as the caller's field, or as a copy of it; ``bounds``: its size, None where it is open."""
+        caller = self._caller
+        text = self.argument_texts[place] if place < len(self.argument_texts) else ""
+        size = tuple(MAX_NUMBER + 1 if bound is None else bound for bound in bounds)
+        if caller is None or not text:
+            self.define(kind, name, size=size)
+            return
+        given = caller.size(text)
+        if len(given) != len(bounds) or any(b not in (None, g) for b, g in zip(bounds, given, strict=True)):
+            raise ExpressionError(Wording("NC210", "parameter_is_field", name=name, given=text))
+        self.define(kind, name, size=given)
+        self._local[name] = dict(caller._local[text]) if copies else caller._local[text]
 
     def parameter(self, number: int) -> float:
         """Return an R parameter; it keeps what earlier programs have written until this one sets it."""

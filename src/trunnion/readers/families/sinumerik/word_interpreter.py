@@ -141,8 +141,9 @@ class WordInterpreter(CallInterpreter):
             self.control.add_event("dwell", -block.speed)
         else:
             self._note(Wording("NC218", "g4_without_time"), Severity.ERROR)
-        if block.axes:
-            self._note(Wording("NC213", "axis_words_beside_g4_not"), Severity.ERROR)
+        others = block.beside({"g", "feed", "speed"}) + [f"G{code}" for code in block.g if code != DWELL]
+        if others:
+            self._note(Wording("NC212", "alone_in_block", word="G4", words=tuple(others)), Severity.ERROR)
 
     def _m_code(self, code: int) -> None:
         control = self.control

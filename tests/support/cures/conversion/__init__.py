@@ -1,0 +1,1 @@
+"""Cures of messages about programs that are converted for another machine."""

@@ -1,0 +1,1 @@
+"""Cures of messages about definitions of machines and controls."""

@@ -1,0 +1,1 @@
+"""Cures of messages about files that are read and written."""

@@ -1,0 +1,1 @@
+"""Cures of messages about NC programs that are read and proven."""

@@ -1,0 +1,67 @@
+"""Cures of messages about the bodies of machines, and about collisions with them."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from tests.support.cures.cure import Cure, Outcome, Trial
+from tests.support.cures.reading import ended
+from tests.support.cures.simulation.simulations import HEAD_OF_OURS, on
+from tests.support.simulating import SLOT, TOOL, cuboid
+from trunnion.errors import Problem
+from trunnion.machines import load_machine
+from trunnion.readers import run_program
+from trunnion.simulation.collisions import Body, BodyKind, check_collisions, machine_bodies
+from trunnion.simulation.meshes import box_mesh, save_mesh
+from trunnion.simulation.tools.text import parse_tool
+
+_BODY: Final = '[[body]]\nname = "cover"\nlink = "spindle"\nshape = "file"\nfile = "cover.stl"\n'
+_GAUGE: Final = "[spindle]\ngauge_point_mm = [0, 0, 0]\n"
+_TABLE: Final = Body("table", "bed", box_mesh(np.array([500.0, 0, 0]), np.array([510.0, 9, 9])), BodyKind.MACHINE)
+
+
+def _read(*, keeps: bool = True, linked: bool = False) -> Trial:
+    """Return what reads the bodies of a definition, whose file may be gone since, and whose mesh a link elsewhere."""
+
+    def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+        own, heard = folder / "own", list[Problem]()
+        own.mkdir(exist_ok=True)
+        cover = own / "cover.stl"
+        cover.unlink(missing_ok=True)
+        save_mesh(cuboid((0, 0, 0), (9, 9, 9)), folder / "cover.stl" if linked else cover)
+        if linked:
+            cover.symlink_to(folder / "cover.stl")
+        (own / "ours.toml").write_text(text, encoding="utf-8")
+        machine = load_machine(own / "ours.toml")
+        if not keeps:
+            (own / "ours.toml").unlink()
+        return ended(lambda: machine_bodies(machine, heard.append), heard)
+
+    return tried
+
+
+def _checked(tools: str = TOOL, *, placed: bool = True) -> Trial:
+    """Return what looks for collisions of a program, on a machine with a zero or without."""
+
+    def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+        (folder / "part.ngc").write_text(text, encoding="utf-8")
+        machine = replace(load_machine("xyzac_trt"), workpiece_zero=(0.0, 0.0, 0.0) if placed else None)
+        run = run_program(folder / "part.ngc", machine)
+        shapes = {"1": parse_tool(tools)} if tools else {}
+        return ended(lambda: check_collisions(run, [_TABLE], shapes))
+
+    return tried
+
+
+CURES: Final = (
+    Cure("SIM310", "no_spindle_gauge", _read(), HEAD_OF_OURS, ((HEAD_OF_OURS, HEAD_OF_OURS + _GAUGE),)),
+    Cure("SIM312", "leads_out_folder", _read(linked=True), HEAD_OF_OURS + _BODY, (), cured_by=_read()),
+    Cure("SIM312", "belongs_no_definition", _read(keeps=False), HEAD_OF_OURS + _BODY, (), cured_by=_read()),
+    Cure("SIM150", "tool_not_known", _checked(""), SLOT, (), cured_by=_checked()),
+    Cure("SIM310", "collision_check_machine", _checked(placed=False), SLOT, (), cured_by=_checked()),
+    Cure("SIM310", "length_tool_not", _checked("1=flat:10,flutes=20"), SLOT, (), cured_by=_checked()),
+    Cure("SIM313", "sunk_in", on(), SLOT, ({"zero": "0,0,-60"},), {"zero": "0,0,-75"}),
+)
