@@ -25,6 +25,7 @@ STEPS = {
     FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS, Step.VERIFY, Step.CONVERT),
     FileKind.PROGRAM: (Step.VERIFY, Step.KEYS, Step.CONVERT),
 }
+READ = (Became.READ, Became.READ_WARNED, Became.READ_KEYED, Became.BEYOND, Became.CHECK_FAILED)
 ONLY = {"cl": FileKind.CL, "nc": FileKind.PROGRAM}
 
 
@@ -44,14 +45,16 @@ def shares(found: Survey) -> str:
 
 
 def read_shares(programs: Sequence[SurveyedFile]) -> str:
-    """Return the shares of programs that are read as they are, and with one round of keys."""
-    became = Counter(each.became for each in programs if each.became is not Became.CALLED)
-    count = max(became.total(), 1)
-    read = sum(n for each, n in became.items() if each.passed) + became[Became.BEYOND]
-    keyed = read + became[Became.READ_KEYED]
+    """Return the shares of programs that are read without an error as they are, and with one round of keys.
+
+    That a check fails is another matter: many programs do not say their unit, which only their control knows.
+    """
+    tried = [each for each in programs if each.tries]
+    read = [each for each in tried if each.became in READ]
+    plain, count = sum(not each.tries[0].keys for each in read), max(len(tried), 1)
     return (
-        f"{became.total()} programs besides subprograms of others: {read} read as they are ({read / count:.1%}), "
-        f"{keyed} after one round of keys ({keyed / count:.1%})"
+        f"{len(tried)} programs: {plain} read without an error as they are ({plain / count:.1%}), "
+        f"{len(read)} after one round of keys ({len(read) / count:.1%})"
     )
 
 

@@ -226,8 +226,11 @@ def test_a_refused_program_is_read_once_more_with_keys(tmp_path: Path, monkeypat
     start = "O1\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X0 Y0\nG43 H1 Z50\n"
     (tmp_path / "nested.nc").write_text(f"{start}G1 Z1 F100 (A (B))\nM30\n")
     (tmp_path / "worse.nc").write_text(f"{start}G1 Z1 F100 (A (B))\nG1 UNHEARD\nM30\n")
-    nested, worse = take_survey(tmp_path, machine=["matsuura_mx330"]).files
+    (tmp_path / "unit.nc").write_text("%\nG90 G17 G40 G94\nG1 X5 F9 ; A\n%\n")
+    nested, unit, worse = take_survey(tmp_path, machine=["matsuura_mx330", "xyzac_trt"]).files
+    assert (unit.became, unit.tries[0].codes, unit.tries[0].keys) == (Became.CHECK_FAILED, ("modal",), ())
     assert (nested.became, nested.tries[0].codes) == (Became.READ_KEYED, ("NC210",))
+    assert nested.tries[0].keys == worse.tries[0].keys == ("nested_comments",)
     assert (worse.became, worse.tries[0].count) == (Became.REFUSED, 1)
 
 

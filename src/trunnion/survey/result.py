@@ -112,6 +112,7 @@ class Trying:
     errors    the first one of each code
     warnings  how many there are
     count     how many errors there are
+    keys      keys of ``[control.reading]`` with which a program was read
     """
 
     machine: str
@@ -122,6 +123,7 @@ class Trying:
     errors: tuple[Problem, ...]
     warnings: int
     count: Annotated[int, Figure("error_count")]
+    keys: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,7 +269,10 @@ def trying(machine: SurveyedMachine, kind: FileKind, outcome: Outcome) -> Trying
     firsts = {each.code: each for each in reversed(errors)}
     told = tuple(firsts[code] for code in codes if code in firsts)
     step = str(outcome.figures.get(STEP, ""))
-    return Trying(machine.machine, machine.control, became, step, codes, told, outcome.warnings, count_errors(outcome))
+    keys = tuple(outcome.figures.get(KEYS, ()))
+    return Trying(
+        machine.machine, machine.control, became, step, codes, told, outcome.warnings, count_errors(outcome), keys
+    )
 
 
 def _codes(outcome: Outcome, errors: Sequence[Problem]) -> tuple[str, ...]:

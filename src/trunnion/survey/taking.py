@@ -168,13 +168,14 @@ class _Team:
                         yield (number, on), self._trial(file, on)
 
     def keyed(self) -> Iterator[tuple[tuple[int, int], Trial]]:
-        """Yield programs that are still refused, on the machine of each language that reads them best."""
+        """Yield programs that are refused everywhere, on the machine of each language that reads them best."""
         for number, file in enumerate(self.files):
             steps = self._steps[file.kind] if file.kind is FileKind.PROGRAM else ()
-            if Step.KEYS not in steps or self._went_through(number):
+            tries = sorted(self.tries[number].items(), key=lambda each: worth(each[1]))
+            if Step.KEYS not in steps or not tries or tries[0][1].became is not Became.REFUSED:
                 continue
             best: dict[str, int] = {}
-            for on, found in sorted(self.tries[number].items(), key=lambda each: worth(each[1])):
+            for on, found in tries:
                 if found.became is Became.REFUSED:
                     best.setdefault(self._languages[on], on)
             for on in best.values():

@@ -126,8 +126,10 @@ def try_steps(trial: Trial) -> Outcome:
         outcome = replace(outcome, figures={**outcome.figures, STEP: str(step)})
         if outcome.status is not Status.PASSED and not _is_asked_for_settings(step, trial, outcome):
             break
+    if subject.keys:
+        outcome = replace(outcome, figures={**outcome.figures, KEYS: dict(subject.keys)})
     if subject.asked is not None and outcome.status is Status.PASSED:
-        filled = {SETTINGS: dict(subject.settings)} if subject.settings else {KEYS: dict(subject.keys)}
+        filled = {SETTINGS: dict(subject.settings)} if subject.settings else {}
         figures = {**subject.asked.figures, **outcome.figures, **filled}
         outcome = replace(outcome, problems=subject.asked.problems, figures=figures)
     told = tuple(replace(each, file=_shown(each.file, trial)) for each in outcome.problems)

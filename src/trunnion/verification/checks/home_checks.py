@@ -1,7 +1,7 @@
 """Motions to the machine's home positions."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -151,7 +151,8 @@ def _check_other_positions(context: Context) -> Check:
     lost = [event for place, event in changes if not away(place)]
     if len(lost) == len(changes):
         return Check("home", True, Wording("home", "other_positions"), missing=(phrase("no_home"),))
-    return check_from_places("home", _unretracted(context, lost), Wording("home", "retracts_elsewhere"))
+    check = check_from_places("home", _unretracted(context, lost), Wording("home", "retracts_elsewhere"))
+    return replace(check, missing=() if check.places else (phrase("height_of_positions"),))
 
 
 def _unretracted(context: Context, events: Iterable[RunEvent]) -> list[Place]:

@@ -106,7 +106,7 @@ CURES: Final = (
         "CTL115",
         "line_brings_block_number",
         on_machine('extends = "matsuura_mx330"\n[control.block_numbers]\nstart = 1\nstep = 1\n'),
-        HEAD + "INSERT/N3 G4 P500\n" + FOOT,
+        HEAD + "INSERT/N3 (A)\n" + FOOT,
         ({"numbers": "off"},),
     ),
     by_lines(

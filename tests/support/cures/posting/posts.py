@@ -78,7 +78,7 @@ CURES: Final = (
     _within("CTL430", "tool_change_within", "LOAD/TOOL,2", f"{FOOT}{_SECOND}".strip()),
     _said("CTL820", "insert_goes_into", HEAD + "INSERT/; Ж\n" + FOOT, ("Ж", "Z"), encoding="ascii"),
     _said("CTL810", "only_encoding_lacks_letter", HEAD.replace("OP1", "凸") + FOOT, ("凸", "A"), on="matsuura_mx330"),
-    _said("CTL115", "line_brings_block", HEAD + "INSERT/N10 G4 F1\n" + FOOT, {"numbers": "off"}),
+    _said("CTL115", "line_brings_block", HEAD + "INSERT/N10 MSG()\n" + FOOT, {"numbers": "off"}),
     _said("PLN510", "without_tcp_program", LEANING + FOOT, {"zero": "0,0,100"}, tcp="off", on="dmu65"),
     _said("ARG210", "unknown_but_near", _CUT, {"mdoe": None, "mode": "tcp"}, mdoe="tcp"),
     _said("ARG220", "no_choice", _CUT, {"programs": "one"}, programs="several"),

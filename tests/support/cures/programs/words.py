@@ -28,6 +28,24 @@ _PECKING: Final = (
 _LINUXCNC: Final = HEADS["xyzac_trt"].format(lines="G1 X10 F100")
 
 CURES: Final = (
+    _line("NC210", "word_in_title", _DRILLING.replace("DRILLING", "DRILLING M8"), f"M8\n{_DRILLING}", on="mikron_600u"),
+    _line(
+        "NC220", "arc_at_rapid", "CC X+5 Y+0\nC X+10 Y+0 DR+ FMAX", "CC X+5 Y+0\nC X+10 Y+0 DR+ F100", on="mikron_600u"
+    ),
+    _line(
+        "NC221",
+        "cycle_19_turns",
+        "CYCL DEF 19.0 TILT\nCYCL DEF 19.1 A+0 B+0 C+0 F900",
+        "L C+0 F900\nCYCL DEF 19.0 TILT\nCYCL DEF 19.1 A+0 B+0 C+0",
+        on="mikron_600u",
+    ),
+    _said(
+        "NC160",
+        "end_pgm_in_other_unit",
+        _KLARTEXT.replace("END PGM A MM", "END PGM A INCH"),
+        ("END PGM A INCH", "END PGM A MM"),
+        on="mikron_600u",
+    ),
     _line("NC222", "", "IF $A_IN[1]==1 GOTOF ON\nG1 X10 F100\nON:", "G1 X10 F100"),
     _line("NC143", "", "IF R9==1\nENDIF", "R9=2\nIF R9==1\nENDIF"),
     _line("NC215", "speed_below_zero", "S-500", "S500"),

@@ -2,7 +2,7 @@
 
 import math
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Final
 
 from trunnion.errors import Severity
@@ -13,7 +13,7 @@ from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.heidenhain import plane_datums
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
-from trunnion.readers.families.heidenhain.cycle_values import check_given
+from trunnion.readers.families.heidenhain.cycle_values import Cycle, check_given, check_title, last_value
 from trunnion.readers.families.heidenhain.cycles import (
     CYCLES,
     LEGACY_CYCLES,
@@ -56,7 +56,9 @@ _NUMBER = re.compile(r"[ \t]*([0-9]{1,4})(?:\.([0-9]{1,2}))?(?![0-9.])")
 _ASSIGNED = re.compile(
     r"[ \t]*(Q[0-9]{1,4})[ \t]*=[ \t]*(?:([+-]?)[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+))|([A-Z]+))"
 )
-_LAST = re.compile(r"([+-]?)[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+))[ \t]*$")
+
+#: Words of cycle 19 by which some machines turn the axes.
+_TURNS: Final = ("F", "ABST", "DIST")
 
 #: Rapid as a feed of a cycle.
 _RAPID: Final = ("MAX", "FMAX")
@@ -64,15 +66,6 @@ _RAPID: Final = ("MAX", "FMAX")
 #: Other scales are mistakes of the program.
 _MIN_SCALE: Final = 1e-6
 _MAX_SCALE: Final = 1e6
-
-
-@dataclass(slots=True)
-class Cycle:
-    """A cycle that blocks can call: its number, and its values by name, or by Q number in the 200 series."""
-
-    number: int
-    values: dict[str, float] = field(default_factory=dict)
-    q_values: dict[int, float] = field(default_factory=dict)
 
 
 class Definitions:
@@ -126,6 +119,7 @@ class Definitions:
 
     def _begin_definition(self, number: int, title: str) -> None:
         """Execute the first line of an older cycle: its title."""
+        check_title(number, title)
         if number in LEGACY_CYCLES or number in CYCLES_NOT_SIMULATED:
             self.defined_cycle = Cycle(number)
         elif number not in _IMMEDIATE:
@@ -138,7 +132,7 @@ class Definitions:
             name = CYCLE_LINES[number].get(line)
             if self.defined_cycle is None or self.defined_cycle.number != number or name is None:
                 raise KlartextError(Wording("NC210", "stray_line", number=number))
-            self.defined_cycle.values[name] = _last(rest, parameters)
+            self.defined_cycle.values[name] = last_value(rest, parameters)
             return
         control = self._control
         match number:
@@ -147,12 +141,13 @@ class Definitions:
             case 8:
                 self._mirror(words(rest))
             case 9:
-                control.add_event("dwell", _last(rest, parameters))
+                control.add_event("dwell", last_value(rest, parameters))
             case 10:
                 self._rotate(words(rest), parameters)
             case 11 | 26:
                 self._scale(words(rest), parameters)
             case 13:
+                last_value(rest, parameters)
                 control.add_event("spindle", "oriented")
             case 19:
                 control.judge_within_compensation("cycle 19")
@@ -185,7 +180,7 @@ class Definitions:
 
     def _mirror(self, block_words: list[Word]) -> None:
         names = [word.name for word in block_words]
-        if any(name not in ("X", "Y", "Z") for name in names):
+        if any(word.name not in ("X", "Y", "Z") or word.operand is not None for word in block_words):
             raise KlartextError(Wording("NC210", "only_x_y_z_mirrored"))
         mirrored = ("X" in names, "Y" in names, "Z" in names)
         self._control.set_datum(replace(self._control.datum, mirrored=mirrored), {plane_datums.MIRROR})
@@ -247,7 +242,9 @@ class Definitions:
 
     def _tilt(self, block_words: list[Word], parameters: Parameters) -> None:
         """Cycle 19: tilt by spatial angles, without a motion; that the angles are spatial ones is unconfirmed."""
-        block_words = [word for word in block_words if word.name not in ("F", "ABST", "DIST")]
+        if turns := tuple(word.name for word in block_words if word.name in _TURNS):
+            self._note(Wording("NC221", "cycle_19_turns", words=turns), Severity.WARNING)
+        block_words = [word for word in block_words if word.name not in _TURNS]
         if not block_words:
             self._control.untilt(Positioning())
             return
@@ -261,6 +258,7 @@ class Definitions:
         """Define a cycle of the 200 series; its values become those of the Q parameters."""
         begin = re.search(r"(?:^|[ \t])Q[0-9]{1,4}[ \t]*=", rest)
         title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
+        check_title(number, title)
         q_values = self._read_parameters(number, rest, parameters)
         own = (*CYCLE_PARAMETERS.get(number, q_values), *CYCLE_OPTIONS.get(number, ()))
         if foreign := tuple(f"Q{each}" for each in q_values if each not in own):
@@ -362,6 +360,7 @@ class Definitions:
             )
         # A pitch counts in the unit of lengths, a feed in that of feeds.
         rpm = float(control.modal.rpm.current) * control.length_unit / control.feed_unit
+        cycle.take_values(parameters)
         if cycle.number in LEGACY_CYCLES:
             here = float(control.programmed_position[control.plane_axis]) / control.length_unit
             motions = legacy_cycle_motions(cycle.number, cycle.values, rpm, here)
@@ -387,12 +386,3 @@ def _axis_values(block_words: list[Word], parameters: Parameters, names: str) ->
         if word.operand is None or word.name not in names:
             raise KlartextError(Wording("NC211", "unknown_word", word=word.name or word.text))
     return [(word, value_of(word.operand, parameters)) for word in block_words if word.operand is not None]
-
-
-def _last(text: str, parameters: Parameters) -> float:
-    """Return the number at the end of a line."""
-    match = _LAST.search(text)
-    if match is None:
-        raise KlartextError(Wording("NC210", "number_missing"))
-    value = parameters[canonical(match[2])] if match[2] else float(match[3].replace(",", "."))
-    return -value if match[1] == "-" else value

@@ -28,6 +28,7 @@ class ActiveProgram(interpreter.ActiveProgram):
     returns       lines after the calls of its labels
     repeats_left  repeats that are left, by the line of the call
     name          of BEGIN PGM, None before it
+    unit          of BEGIN PGM, MM or INCH; empty: not said
     has_blocks    whether a block came before it
     ended         whether END PGM has come
     """
@@ -37,6 +38,7 @@ class ActiveProgram(interpreter.ActiveProgram):
     returns: list[int] = field(default_factory=list)
     repeats_left: dict[int, int] = field(default_factory=dict)
     name: str | None = None
+    unit: str = ""
     has_blocks: bool = False
     ended: bool = False
 
@@ -63,12 +65,13 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         if match[1] == "PGM":
             self._enter_program(rest.strip('"'))
             return
-        label, _, repeats = rest.partition("REP")
+        label, repeated, repeats = rest.partition("REP")
         active.source.load()
         here = active.source.line
         target = self._line_of(active, label)
-        if repeats:
-            self._repeat(active, here, target, int(_label_name(repeats.split("/")[0], active.parameters)))
+        if repeated:
+            counts = [int(_label_name(count, active.parameters)) for count in repeats.split("/")]
+            self._repeat(active, here, target, counts[0])
             return
         if len(active.returns) >= MAX_LABEL_DEPTH:
             too_deep = Wording("NC141", "labels_too_deep", most=MAX_LABEL_DEPTH)

@@ -25,6 +25,9 @@ ASSIGNED: Final = re.compile(r"(Q[LR]?[0-9]{1,4})[ \t]*=[ \t]*")
 _OPERAND: Final = r"([+-]?[ \t]*(?:Q[LR]?[0-9]{1,4}|[0-9]+[.,]?[0-9]*|[.,][0-9]+))"
 _NUMBER = re.compile(r"[ \t]*([0-9]{1,2})[ \t]*:?[ \t]*")
 
+#: The label of a jump, which may be that of a text parameter.
+_TARGET: Final = re.compile(r'[ \t]*(?:"[^"]*"|Q[LRS]?[0-9]{1,4}|[0-9]{1,5})[ \t]*')
+
 #: Functions of two operands: the operator, and what it does.
 _ARITHMETIC: Final[dict[int, tuple[str, Callable[[float, float], float]]]] = {
     1: (r"\+", lambda a, b: a + b),
@@ -121,5 +124,7 @@ def _jump(number: int, rest: str, parameters: Parameters) -> str | None:
     match = re.fullmatch(rf"IF[ \t]*{_OPERAND}[ \t]*{word}[ \t]*{_OPERAND}[ \t]*GOTO[ \t]*LBL(.*)", rest.rstrip())
     if match is None:
         raise KlartextError(Wording("NC210", "fn_takes_if_two_values", number=number, word=word))
+    if not _TARGET.fullmatch(match[3]):
+        raise KlartextError(Wording("NC210", "label_number_name_quotes"))
     first, second = formula(match[1], parameters), formula(match[2], parameters)
     return match[3] if holds(first, second) else None

@@ -18,13 +18,19 @@ from trunnion.readers.families.heidenhain.fn_functions import ASSIGNED, assign
 from trunnion.readers.families.heidenhain.lexer import MAX_LENGTH, split_line, words
 from trunnion.readers.families.heidenhain.machine_functions import tool_block
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
-from trunnion.readers.families.heidenhain.path_blocks import read_block
+from trunnion.readers.families.heidenhain.path_blocks import Block, only, read_block
 from trunnion.readers.families.heidenhain.path_interpreter import PathInterpreter
 from trunnion.readers.families.heidenhain.plane_blocks import plane_block, tcpm_block
 from trunnion.readers.families.heidenhain.scan_kernel import read_blocks
 from trunnion.readers.families.heidenhain.settings import variables_of
 from trunnion.readers.families.heidenhain.text import KlartextText
-from trunnion.readers.families.heidenhain.words import BLOCKS_NOT_SIMULATED, PATHS
+from trunnion.readers.families.heidenhain.words import (
+    BLOCKS_NOT_SIMULATED,
+    M_CALL,
+    M_MACHINE,
+    M_SECOND_MACHINE,
+    PATHS,
+)
 from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
@@ -209,9 +215,14 @@ class HeidenhainInterpreter(PathInterpreter):
     def _block_form(self, active: ActiveProgram, rest: str) -> None:
         """BLK FORM 0.1 and 0.2: opposite corners of the stock. Other forms of stock are not read."""
         which = _CORNER.match(rest)
+        for word in words(rest, 0 if which is None else which.end()):
+            if word.name == "M" if which is None else word.name not in ("X", "Y", "Z") or word.operand is None:
+                raise KlartextError(Wording("NC210", "block_takes_no", block="BLK FORM", word=word.name or word.text))
         if which is None:
             return
         found = _COORDINATE.findall(rest[which.end() :])
+        if len({name for _, name, _ in found}) < len(found):
+            raise KlartextError(Wording("NC212", "written_twice", word="BLK FORM"))
         low = self._stock_corner if which[1] == "2" else {}
         corner = {
             name: float(re.sub(r"[ \t]", "", number).replace(",", ".")) * self.control.length_unit
@@ -243,11 +254,16 @@ class HeidenhainInterpreter(PathInterpreter):
 
     def _stop(self, active: ActiveProgram, rest: str) -> None:
         block = read_block(words(rest), active.parameters)
-        if block.axes:
-            raise KlartextError(Wording("NC210", "stop_takes_no_axes", name=next(iter(block.axes))))
+        only(block.written, "M", "STOP")
+        self._refuse_m_of_positions(block, "STOP")
         self._m_functions.execute_before_motion(block)
         self.control.add_event("stop")
         self._m_functions.execute_after_motion(block)
+
+    @staticmethod
+    def _refuse_m_of_positions(block: Block, word: str) -> None:
+        """Refuse M91, M92 and M99 in a block without a position of its own."""
+        only((f"M{code}" for code, _ in block.m if code in (M_MACHINE, M_SECOND_MACHINE, M_CALL)), (), word)
 
     # Tools and cycles
 
@@ -277,8 +293,9 @@ class HeidenhainInterpreter(PathInterpreter):
             return
         with_position = first == "POS"
         block = read_block(call_words[1:] if with_position else call_words, active.parameters)
-        if block.axes and not with_position:
-            raise KlartextError(Wording("NC210", "cycl_call_takes_no_positions"))
+        name = "CYCL CALL POS" if with_position else "CYCL CALL"
+        only(block.written, {"F", "M", *(("X", "Y", "Z", "FMAX", "MAX") if with_position else ())}, name)
+        self._refuse_m_of_positions(block, name)
         self._m_functions.execute_before_motion(block)
         if block.feed is not None:
             control.programmed_feed = block.feed * control.feed_unit

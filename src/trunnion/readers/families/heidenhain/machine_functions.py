@@ -180,6 +180,9 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
         raise KlartextError(Wording("NC210", "tool_needs_call_def"))
     block_words = words(rest, match.end())
     name = _tool_name(match, parameters)
+    of_axis = ["tool axis" if word.operand is None else word.name for word in block_words]
+    if twice := next((each for each in of_axis if of_axis.count(each) > 1), None):
+        raise KlartextError(Wording("NC212", "written_twice", word=twice))
     if match["kind"] == "DEF":
         # With a length and a radius it defines a tool; without them it announces the next one.
         sizes = {word.name: value_of(word.operand, parameters) for word in block_words if word.operand is not None}

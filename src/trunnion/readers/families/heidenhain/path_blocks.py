@@ -1,7 +1,7 @@
 """The words of path blocks, polar coordinates and circles."""
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Final
@@ -29,6 +29,32 @@ _AXES: Final = frozenset("XYZABCUVW")
 _VECTORS: Final = frozenset({"NX", "NY", "NZ", "TX", "TY", "TZ"})
 _FLAGS: Final = frozenset({"FMAX", "R0", "RL", "RR", "R", "DR+", "DR-", "F", "AUTO", "FAUTO", "MAX"})
 
+#: Feeds in two words, of which the first is F.
+_FEEDS: Final = ("MAX", "AUTO")
+
+#: Words of which a block takes one.
+_ALTERNATIVES: Final = (
+    *(frozenset({name}) for name in ("PR", "PA", *sorted(_VECTORS), "R", "LEN", "CCA", "CHF")),
+    frozenset({"R0", "RL", "RR"}),
+    frozenset({"DR+", "DR-"}),
+    frozenset({"F", "FMAX", "FAUTO"}),
+)
+
+#: What all path blocks take besides their positions.
+_OF_ALL_PATHS: Final = frozenset({*_AXES, "R", "R0", "RL", "RR", "F", "FMAX", "FAUTO", "MAX", "AUTO", "M"})
+
+#: What each takes besides.
+_OF_PATHS: Final = {
+    "L": _VECTORS,
+    "LN": _VECTORS,
+    "LP": {"PR", "PA", *_VECTORS},
+    "C": {"DR+", "DR-"},
+    "CR": {"DR+", "DR-"},
+    "CP": {"PA", "DR+", "DR-"},
+    "CTP": {"PR", "PA"},
+    "CT": set[str](),
+}
+
 
 def value_of(operand: Operand, parameters: Parameters) -> float:
     """Return the value of an operand."""
@@ -49,6 +75,7 @@ class Block:
     side          RL, RR or R0
     feed_of_tool  F AUTO: the feed of the tool call
     m             M functions with their words, whose value is None for flags
+    written       the names of all words but those of M functions
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -62,6 +89,7 @@ class Block:
     feed: float | None = None
     feed_of_tool: bool = False
     m: list[tuple[int, dict[str, float | None]]] = field(default_factory=list)
+    written: list[str] = field(default_factory=list)
 
     @property
     def tool_axis(self) -> Floats | None:
@@ -88,21 +116,44 @@ def read_block(words: Sequence[Word], parameters: Parameters, sizes: Collection[
     Raises ``KlartextError`` for a word that path blocks do not have, and for a parameter without a value.
     """
     block = Block()
-    for word in words:
+    for place, word in enumerate(words):
         arguments = M_ARGUMENTS.get(block.m[-1][0], frozenset()) if block.m else frozenset()
         name = word.name
         if word.text is not None or (name not in arguments and word.operand is None and name not in _FLAGS):
             raise KlartextError(Wording("NC211", "unknown_word", word=name or word.text))
         value = None if word.operand is None else value_of(word.operand, parameters)
+        if name == "F" and value is None and (place + 1 == len(words) or words[place + 1].name not in _FEEDS):
+            raise KlartextError(Wording("NC210", "word_needs_value", word=name))
         if name in arguments:
+            if name in block.m[-1][1]:
+                raise KlartextError(Wording("NC212", "written_twice", word=name))
             block.m[-1][1][name] = value
-        elif value is None:
+            continue
+        if name in _FEEDS and not (place and words[place - 1].name == "F" and words[place - 1].operand is None):
+            raise KlartextError(Wording("NC211", "unknown_word", word=name))
+        block.written.append("R0" if name == "R" and value == 0.0 else name)
+        if value is None:
             _flag(block, name)
         elif name in sizes:
             block.sizes[name] = value
         else:
             _value(block, name, value, PositionMode.INCREMENTAL if word.incremental else PositionMode.ABSOLUTE)
+    _check_alternatives(block)
     return block
+
+
+def only(written: Iterable[str], takes: Collection[str], block: str) -> None:
+    """Refuse a word that its block has no use for; ``takes``: those that it has one for."""
+    for name in written:
+        if name not in takes:
+            raise KlartextError(Wording("NC210", "block_takes_no", block=block, word=name))
+
+
+def _check_alternatives(block: Block) -> None:
+    """Refuse two words of a block of which it takes one, or one word twice."""
+    for group in _ALTERNATIVES:
+        if len(found := [name for name in block.written if name in group]) > 1:
+            raise KlartextError(Wording("NC212", "written_twice", word=" ".join(dict.fromkeys(found))))
 
 
 def _flag(block: Block, name: str) -> None:
@@ -147,6 +198,13 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
         block.m.append((int(value), {}))
     else:
         raise KlartextError(Wording("NC211", "unknown_word_with_value", word=name, value=value))
+
+
+def check_path_words(function: str, block: Block) -> None:
+    """Refuse words that a path function has no use for."""
+    only(block.written, _OF_ALL_PATHS | _OF_PATHS[function], function)
+    if block.rapid and function[0] == "C":
+        raise KlartextError(Wording("NC220", "arc_at_rapid", function=function))
 
 
 # Polar coordinates

@@ -18,7 +18,14 @@ from trunnion.readers.families.heidenhain.leads import LeadWords
 from trunnion.readers.families.heidenhain.lexer import words
 from trunnion.readers.families.heidenhain.machine_functions import MFunctions
 from trunnion.readers.families.heidenhain.parameters import KlartextError
-from trunnion.readers.families.heidenhain.path_blocks import Block, circle_of, polar_end, read_block
+from trunnion.readers.families.heidenhain.path_blocks import (
+    Block,
+    check_path_words,
+    circle_of,
+    only,
+    polar_end,
+    read_block,
+)
 from trunnion.readers.families.heidenhain.patterns import Pattern
 from trunnion.readers.families.heidenhain.words import M_CALL, M_MACHINE, M_SECOND_MACHINE
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -70,6 +77,7 @@ class PathInterpreter(FlowInterpreter):
             raise KlartextError(Wording("NC210", "no_polar_coordinates", function=function))
         if block.radius is not None and function != "CR":
             raise KlartextError(Wording("NC210", "no_radius", function=function))
+        check_path_words(function, block)
         circle = circle_of(control, function, block) if function[0] == "C" else None
         vector = block.tool_axis
         feed = self._feed(block)
@@ -138,10 +146,9 @@ class PathInterpreter(FlowInterpreter):
         control = self.control
         control.pole = None
         block = read_block(words(rest), active.parameters)
+        only(block.written, "XYZ", "CC")
         pole = control.programmed_position.copy()
         for name, (value, mode) in block.axes.items():
-            if name not in ("X", "Y", "Z"):
-                raise KlartextError(Wording("NC210", "cc_takes_no", name=name))
             axis = "XYZ".index(name)
             if axis == control.plane_axis:
                 raise KlartextError(Wording("NC220", "pole_outside_plane", axis=name))
@@ -187,6 +194,8 @@ class PathInterpreter(FlowInterpreter):
     def _departure(self, active: ActiveProgram, rest: str) -> None:
         control = self.control
         axes, block, lead = self._lead_block(active, "DEP", rest)
+        if block.side in ("RL", "RR"):
+            raise KlartextError(Wording("NC210", "block_takes_no", block=lead.word, word=block.side))
         to_a_point = bool(axes.keys() & {"X", "Y", "Z"} - {"XYZ"[control.plane_axis]})
         if to_a_point != (lead.kind == "LCT"):
             raise KlartextError(

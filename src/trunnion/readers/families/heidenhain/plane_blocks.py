@@ -14,12 +14,24 @@ from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.lexer import Word
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
-from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, value_of
+from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, only, value_of
 from trunnion.readers.families.heidenhain.plane_control import Positioning
-from trunnion.readers.families.heidenhain.plane_frames import plane
+from trunnion.readers.families.heidenhain.plane_frames import PLANE_WORDS, plane
 
 #: Kinds of PLANE that are simulated, besides RELATIV, AXIAL and RESET.
 _KINDS: Final = ("SPATIAL", "EULER", "VECTOR", "POINTS")
+
+#: Words that follow on others.
+_PAIRS: Final = {"COORD": "ROT", "TABLE": "ROT", "MB": "MAX"}
+
+#: Words of a PLANE block of which it takes one.
+_ALTERNATIVES: Final = (
+    frozenset({"TURN", "MOVE", "STAY"}), frozenset({"SEQ+", "SEQ-", "SYM+", "SYM-"}), frozenset({"F", "FMAX"}),
+    frozenset({"DIST", "ABST"}), frozenset({"MB"}), frozenset({"ROT"}),
+)  # fmt: skip
+
+#: What PLANE RESET takes: it turns the axes back, with no choice between two positions.
+_OF_RESET: Final = frozenset({"TURN", "MOVE", "STAY", "F", "FMAX", "MB", "MAX", "DIST", "ABST"})
 
 _SEQUENCES: Final = {"SEQ+": 1, "SEQ-": -1, "SYM+": 1, "SYM-": -1}
 
@@ -30,7 +42,13 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
         raise KlartextError(Wording("NC210", "plane_needs_kind"))
     control.say_mode("tilted plane")
     kind = block_words[0].name
+    written = [word.name for word in block_words[1:]]
     positioning, values = _positioning(control, block_words[1:], parameters, note)
+    if kind == "RESET":
+        only(written, _OF_RESET | values.keys(), "PLANE RESET")
+    _check_positioning(written, positioning)
+    if kind in PLANE_WORDS:
+        only(values, PLANE_WORDS[kind], f"PLANE {kind}")
     if kind == "RESET":
         control.untilt(positioning)
     elif kind == "AXIAL":
@@ -46,6 +64,19 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
         store_rotary_angles(parameters, control, control.tilt(plane(kind, values), positioning))
     else:
         note(Wording("NC220", "plane_known_but_not_simulated", kind=kind), Severity.ERROR)
+
+
+def _check_positioning(written: Sequence[str], positioning: Positioning) -> None:
+    """Refuse words that exclude each other, and those of a motion that the block does not make."""
+    for group in _ALTERNATIVES:
+        if len(found := [name for name in written if name in group]) > 1:
+            raise KlartextError(Wording("NC212", "written_twice", word=" ".join(dict.fromkeys(found))))
+    unused: tuple[str, ...] = () if positioning.mode == "MOVE" else ("DIST", "ABST")
+    if positioning.mode == "STAY" and not positioning.retract:
+        unused += ("F",)  # FMAX says nothing that may go missing
+    for name in written:
+        if name in unused:
+            raise KlartextError(Wording("NC210", "block_takes_no", block=f"PLANE … {positioning.mode}", word=name))
 
 
 def _axial(
@@ -82,8 +113,10 @@ def _positioning(
                 positioning = replace(positioning, retract=math.inf)
             case "ROT", None if before in ("COORD", "TABLE"):
                 positioning = replace(positioning, table=before == "TABLE")
-            case (("COORD" | "TABLE" | "MB"), None):
+            case (("COORD" | "TABLE" | "MB"), None) if names[place + 1 : place + 2] == [_PAIRS[word.name]]:
                 pass
+            case (("COORD" | "TABLE" | "MB"), None):
+                raise KlartextError(Wording("NC210", "word_needs_value", word=word.name))
             case "F", float() if 0.0 <= value <= MAX_FEED:
                 positioning = replace(positioning, feed=value * control.feed_unit)
             case (("DIST" | "ABST"), float()) if abs(value) * control.length_unit < MAX_POSITION:
@@ -106,6 +139,9 @@ def _positioning(
 def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: Note) -> None:
     """Execute FUNCTION TCPM; ``block_words`` without FUNCTION TCPM."""
     names = [word.name for word in block_words]
+    for word in block_words:
+        if word.operand is not None:
+            note(Wording("NC210", "block_takes_no", block="FUNCTION TCPM", word=word.name), Severity.ERROR)
     pairs = list(zip(names[::2], names[1::2], strict=False))
     spatial_angles = False
     orientation = Orientation.ANGLES

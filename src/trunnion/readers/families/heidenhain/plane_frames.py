@@ -77,6 +77,16 @@ def _unit(vector: Floats) -> Floats:
     return np.asarray(vector / length)
 
 
+#: The words that define a plane, by its kind; those of RELATIV and AXIAL depend on more.
+PLANE_WORDS: Final = {
+    "RESET": (),
+    "SPATIAL": ("SPA", "SPB", "SPC"),
+    "EULER": ("EULPR", "EULNU", "EULROT"),
+    "VECTOR": ("BX", "BY", "BZ", "NX", "NY", "NZ"),
+    "POINTS": tuple(f"P{k}{axis}" for k in (1, 2, 3) for axis in "XYZ"),
+}
+
+
 def plane(kind: str, values: Mapping[str, float]) -> Floats:
     """Return the matrix of a PLANE block, (3, 3); not of RELATIV and AXIAL, which depend on the axes.
 

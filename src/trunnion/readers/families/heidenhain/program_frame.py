@@ -26,7 +26,7 @@ def begin(active: ActiveProgram, words: list[str], row: int, note: Note) -> None
         note(Wording("NC160", "second_program_begins_needs_file"), Severity.ERROR)
     elif active.has_blocks or row > active.source.first_row:
         note(Wording("NC160", "begin_pgm_not_first_block"), Severity.ERROR)
-    active.name = _name(words)
+    active.name, active.unit = _name(words), _unit(words)
 
 
 def end(active: ActiveProgram, words: list[str], note: Note) -> None:
@@ -35,6 +35,8 @@ def end(active: ActiveProgram, words: list[str], note: Note) -> None:
     name = _name(words)
     if active.name is None:
         note(Wording("NC160", "program_no_begin_pgm_no"), Severity.ERROR)
+    elif active.unit and _unit(words) not in ("", active.unit):
+        note(Wording("NC160", "end_pgm_in_other_unit", begun=active.unit, ended=_unit(words)), Severity.ERROR)
     elif name != active.name:
         note(Wording("NC160", "end_pgm_ends_program_began", name=name, active=active.name), Severity.ERROR)
 
@@ -82,6 +84,10 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note, last: str)
             return
 
 
+def _unit(words: list[str]) -> str:
+    return words[-1] if words[-1:] and words[-1] in _UNITS else ""
+
+
 def _name(words: list[str]) -> str:
     """Return the name of a program, in capitals."""
-    return " ".join(words[1:-1] if words[-1:] and words[-1] in _UNITS else words[1:]).upper()
+    return " ".join(words[1:-1] if _unit(words) else words[1:]).upper()
