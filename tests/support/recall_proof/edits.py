@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from tests.support.recall_proof.languages import LANGUAGES, Language
+from tests.support.recall_proof.straight_rapids import is_on_rapid_way, returns_on_the_way
 from tests.support.recall_proof.straight_ways import is_on_straight_way
 
 _AXES = "XYZABC"
@@ -152,13 +153,15 @@ def _numbers(blocks: list[Block], language: Language) -> Iterator[Edit]:
                     and abs(float(new) - value) > 0.01
                     and not (letter == "C" and abs(float(new) - value) % 360 == 0)
                     and not (is_on_straight_way(blocks, k, {}) and is_on_straight_way(blocks, k, {letter: float(new)}))
+                    and not (letter == "Z" and is_on_rapid_way(blocks, k, language, float(new)))
                 ):
                     sign = "+" if number[0] in "+-" and new[0] not in "+-" else ""
                     yield Edit(
                         f"{letter}: {what}", k + 1, with_lines(blocks, k, _changed(block, word, letter + sign + new))
                     )
             known = block.before.get(letter)
-            if known is not None and abs(known - value) > 0.01 and not re.search(language.arc, block.code):
+            moves = known is not None and abs(known - value) > 0.01 and not re.search(language.arc, block.code)
+            if moves and not _is_passed(blocks, k, language, {letter: known or 0.0}):
                 yield Edit(f"{letter}: left out", k + 1, with_lines(blocks, k, _changed(block, word, "")))
         x, y = (next((w for w in block.words if w[1] == letter), None) for letter in "XY")
         if x and y and abs(float(x[2]) - float(y[2])) > 0.01 and x.end() < y.start():
@@ -168,6 +171,13 @@ def _numbers(blocks: list[Block], language: Language) -> Iterator[Edit]:
             if block.cuts and re.search(language.arc, block.code):
                 new = f"{word[1]}{float(word[2]) + 1.0:.3f}"
                 yield Edit("the centre of an arc", k + 1, with_lines(blocks, k, _changed(block, word, new)))
+
+
+def _is_passed(blocks: list[Block], k: int, language: Language, start: dict[str, float]) -> bool:
+    """Whether the way to the next point leads through that of a block, which then need not be said."""
+    if "Z" in start and is_on_rapid_way(blocks, k, language):
+        return True
+    return is_on_straight_way(blocks, k, {}) and is_on_straight_way(blocks, k, start)
 
 
 def _orders(blocks: list[Block], language: Language) -> Iterator[Edit]:
@@ -181,7 +191,7 @@ def _orders(blocks: list[Block], language: Language) -> Iterator[Edit]:
             if following and following.cuts and not centre and _code(following) != _code(block):
                 text = with_lines(blocks, k, following.line, block.line, end=k + 2)
                 yield Edit("two cuts exchanged", k + 1, text)
-        elif block.rapids and moves:
+        elif block.rapids and moves and not is_on_rapid_way(blocks, k, language):
             yield Edit("a rapid left out", k + 1, with_lines(blocks, k))
 
 
@@ -219,6 +229,7 @@ def _inserted(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 "a jump home in the cut": "Z" not in values and not block.cycle,
                 "a rotation in the cut": bool({"X", "Y"} & values.keys()),
                 "another feed in the cut": not re.search(r"\bF\d", block.code),
+                "another speed in the cut": not re.search(r"\bS\d", block.code),
                 "compensation in the cut": not is_arc and not compensated,
                 "an offset over another": "X" in values and abs(block.before.get("X", 9e9)) > 0.01,
                 "a shift in the cut": "X" in values,
@@ -264,6 +275,8 @@ def _replaced(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 continue
             if kind == "feed by time" and not any(re.search(r"\bF\d", each.code) for each in blocks):
                 continue  # threads alone have their feed by their pitch
+            if kind == "back to another height" and returns_on_the_way(blocks, k):
+                continue
             if kind in ("a tenth of the feed", "ten times the feed") and _is_before_own_feed(blocks, k):
                 continue
             for line in _substituted(block, pattern, new):
@@ -320,7 +333,7 @@ def _skipped(blocks: list[Block], language: Language) -> Iterator[Edit]:
     for k, block in enumerate(blocks):
         kinds = {
             "a cut that may be skipped": block.cuts and not is_on_straight_way(blocks, k),
-            "a rapid that may be skipped": block.rapids,
+            "a rapid that may be skipped": block.rapids and not is_on_rapid_way(blocks, k, language),
             "a start of the spindle that may be skipped": not block.spindle and re.search(r"\bM0?3\b", block.code),
             "coolant that may be skipped": not block.coolant and re.search(r"\bM0?[78]\b", block.code),
             "a tool change that may be skipped": re.search(r"\bM0?6\b|\bTOOL CALL \d|\bM306\b", block.code),

@@ -34,8 +34,8 @@ def is_on_straight_way(blocks: "list[Block]", k: int, changed: dict[str, float] 
     start = {**block.before, **_vector(blocks[k - 1].code)}
     point = {**start, **_coordinates(block), **_vector(block.code), **(changed or {})}
     end = {**point, **_coordinates(following), **_vector(following.code)}
-    if changed:
-        end |= {name: _coordinates(block)[name] for name in changed if name not in _coordinates(following)}
+    if changed and not changed.keys() <= _coordinates(following).keys():
+        return False  # it stays there
     if point.keys() != start.keys() or end.keys() != start.keys():
         return False
     way = {name: end[name] - start[name] for name in start}
