@@ -10,6 +10,9 @@ from trunnion.messages import Wording
 from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent, peck_depths
 
+#: The cycle of pecks, which alone has a use for D.
+PECKS: Final = 830
+
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "ZERDH"
 

@@ -153,6 +153,8 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
     def _drill_block(self, block: Block, *, selected: bool) -> None:
         """Drill at the position of a block; ``selected`` if the block itself selects the cycle."""
         control = self.control
+        if "D" in block.words and self.motion_code != cycles.PECKS:
+            self._note(Wording("NC213", "unused_word", word="D"), Severity.ERROR)
         self._modal_words |= {
             letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None
         }
