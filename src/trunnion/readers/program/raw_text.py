@@ -15,7 +15,7 @@ from trunnion.readers.program.words_beside import has_other_codes
 
 #: Parts of words: a number, what a variable may become, and comments of languages of the RS274 kind. A comment that
 #: begins with a name and a comma may be a command, and some are one without a comma.
-NUMBER: Final = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+NUMBER: Final = r"[-+]?(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]+)"
 RS274_COMMENT: Final = r"\((?!\s*(?:[A-Z_]+\s*,|(?:LOG|PROBE)(?:OPEN|APPEND|CLOSE)|ACTIVE_))[^()]*\)"
 RS274_VALUE: Final = rf"(?:{NUMBER}|[-+]?#[0-9]+|\[[^\[\]]*\])"
 

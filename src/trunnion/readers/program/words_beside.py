@@ -13,7 +13,7 @@ from typing import Final
 _POSITION: Final = re.compile(r"(?<![A-Z_])(?:[XYZABCUVWIJK]|R(?![0-9]*[ \t]*=))(?![A-Z_])")
 
 #: Arguments that a word may have where its block has no other code.
-_ARGUMENTS: Final = re.compile(r"(?:[ELPQ][ \t]*=?[ \t]*[-+]?(?:#?[0-9]+\.?[0-9]*|\.[0-9]+)[ \t]*)*")
+_ARGUMENTS: Final = re.compile(r"(?:[ELPQ][ \t]*=?[ \t]*[-+]?(?:#?[0-9]++(?:\.[0-9]*+)?+|\.[0-9]+)[ \t]*)*")
 _CODE: Final = re.compile(r"(?<![A-Z_])([GM])[ \t]*0*([0-9]+(?:\.[0-9])?)|(?<![A-Z_])[A-Z_][A-Z_][A-Z0-9_]*")
 _G_CODE: Final = re.compile(r"(?<![A-Z_<])G[ \t]*[0-9]", re.IGNORECASE)
 _VALUES: Final = re.compile(r"\[[^\]]*\]|<[^>]*>|\"[^\"]*\"")

@@ -15,7 +15,7 @@ MAX_LENGTH: Final = 8192
 _MAX_CODE: Final = 100_000
 
 #: A block of nothing but letters with numbers, and one of these.
-_PLAIN = re.compile(r"(?:[A-Z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))+")
+_PLAIN = re.compile(r"(?:[A-Z][-+]?(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]+))+")
 _PLAIN_WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
 
 #: What divides a line into code and comments.

@@ -16,7 +16,7 @@ from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
 _WORD = re.compile(r"IF|GOTO|WHILE|DO|END(?=[0-9#\[])")
 
 #: A number, a variable, a function or a value in brackets, whose content is left out.
-_VALUE: Final = r"[-+]*(?:[A-Z]*\[\]|#+(?:[0-9]+|_[A-Z0-9_]+|\[\])|[0-9]+\.?[0-9]*|\.[0-9]+)"
+_VALUE: Final = r"[-+]*(?:[A-Z]*\[\]|#+(?:[0-9]+|_[A-Z0-9_]+|\[\])|[0-9]++(?:\.[0-9]*+)?+|\.[0-9]+)"
 _NUMBER = re.compile(_VALUE)
 _ASSIGNMENT = re.compile(rf"#+(?:[0-9]+|_[A-Z0-9_]+|\[\])={_VALUE}(?:(?:[-+*/]|MOD|AND|XOR|OR){_VALUE})*")
 
