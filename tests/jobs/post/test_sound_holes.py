@@ -46,7 +46,7 @@ def test_a_hole_that_lost_its_cycle_is_refused(tmp_path: Path, capfd: pytest.Cap
 def test_the_cure_of_a_cycle_that_goes_on_makes_all_holes(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     text = (CASES / "R4_cycle_over_ops.apt").read_text(encoding="utf-8")
     assert posted(text, tmp_path) == 2
-    assert "need the whole CYCLE" in capfd.readouterr().err
+    assert "the whole CYCLE before them" in capfd.readouterr().err
     cycle = next(line for line in text.splitlines() if line.startswith("CYCLE/DRILL"))
     cured = text.replace("20.,30.,0\n", "20.,30.,0\nCYCLE/OFF\n").replace(
         "GOTO/140.,50.,0\n", f"{cycle}\nGOTO/140.,50.,0\n"

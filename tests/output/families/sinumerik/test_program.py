@@ -64,8 +64,8 @@ def test_feed_per_revolution_is_g95_and_what_was_in_force_comes_back(post: Post)
 
 
 def test_a_feed_is_said_again_when_it_means_something_else(post: Post) -> None:
-    lines = motion(post(HEAD + "FEDRAT/MMPR,500.0\nGOTO/20,0,5\n" + FOOT))
-    assert lines[2:] == ["G95 X20. F500.", "G94"]
+    lines = motion(post(HEAD + "FEDRAT/MMPR,0.5\nGOTO/20,0,5\n" + FOOT))
+    assert lines[2:] == ["G95 X20. F.5", "G94"]
 
 
 def test_dwells_stops_messages_and_inserts_are_blocks_of_their_own(post: Post) -> None:
