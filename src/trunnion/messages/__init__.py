@@ -1,8 +1,8 @@
 """The texts of all messages: data that a code, a variant and named parameters choose and fill in.
 
 The files of ``en`` hold for each code the variants of its message: ``VARIANT.what`` is the fault, ``VARIANT.cure`` how
-to correct it. Another language is another folder with the same names (decision 0018); a text that it lacks is English. A
-text is a template:
+to correct it. Another language is another folder with the same names (decision 0018); a text that it lacks is English.
+A text is a template:
 
     {name}, {name:.3f}           a parameter, with a format; of a wording its fault, and its cure by {name:cure}
     {count:# line|# lines}       a number with what it counts: its forms for one and for more, or one for all

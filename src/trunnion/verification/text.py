@@ -41,9 +41,7 @@ def stand_lines(asked: Sequence[Check], words: Words = LIBRARY) -> Iterator[str]
         yield f"{', '.join(on_them)}: {phrase('stands_on', values=tuple(values)).text('what', words)}"
 
 
-def place_lines(
-    verification: Verification, words: Words = LIBRARY, *, failed_only: bool = False
-) -> Iterator[str]:
+def place_lines(verification: Verification, words: Words = LIBRARY, *, failed_only: bool = False) -> Iterator[str]:
     """Yield the worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``.
 
     Lines say where those of checks that passed, and of those that were not made, begin.

@@ -2,7 +2,6 @@
 
 import shutil
 import sys
-import textwrap
 from collections.abc import Iterator
 from itertools import groupby
 from typing import Final
@@ -28,7 +27,13 @@ def overview() -> str:
         lines += ["", _title(_said("groups", title, english=title))]
         for job in jobs:
             lines += _entry(job.name, title_of(job), longest + 4)
-    lines += ["", _word("more"), _word("version"), "", *_entry(f"{LANGUAGE} {'|'.join(LANGUAGES)}", _word("language"), 27)]
+    lines += [
+        "",
+        _word("more"),
+        _word("version"),
+        "",
+        *_entry(f"{LANGUAGE} {'|'.join(LANGUAGES)}", _word("language"), 27),
+    ]
     return "\n".join(lines) + "\n"
 
 
