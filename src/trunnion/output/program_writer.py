@@ -6,6 +6,7 @@ with its events, operation end. An operation with several tool axes is several m
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import BinaryIO
 
 import numpy as np
@@ -14,7 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import DRAW_BACK, FOLLOWING
 from trunnion.controls.words import WordRangeError
-from trunnion.machines import SweptPart
+from trunnion.machines import Machine, SweptPart
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.template_passage import TemplatePassage
@@ -67,8 +68,10 @@ def _with_printed_planes(program: Program) -> Program:
     """Return the program with its tilted planes as they are for the digits that are printed."""
     if all(motion.plane is None for motion in program.motions):
         return program
-    if program.control.plane_from_pose:
-        adapt, number_format = with_plane_of_pose, "angle"
+    adapt: Callable[[Machine, Motion, int], Motion]
+    if program.planes_are_of_pose:
+        keeps_origin = not program.control.plane_from_pose
+        adapt, number_format = partial(with_plane_of_pose, keeps_origin=keeps_origin), "angle"
     else:
         adapt, number_format = with_plane_inside_limits, "plane_angle"
     decimals = program.control.number_formats(three_axis=False)[number_format].decimals
