@@ -12,6 +12,7 @@ import re
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from importlib.resources import files
 from typing import Final
 
 from trunnion.controls.words import NumberFormat, WordRangeError
@@ -30,6 +31,8 @@ class PrintedText(str):
 #: Operations of a template language that the texts of one program may take, and characters that they may have.
 _MOST_STEPS: Final = 50_000_000
 _MOST_CHARACTERS: Final = 64_000_000
+
+_SHIPPED: Final = str(files("trunnion"))
 
 _OPTIONAL_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
@@ -96,6 +99,11 @@ class Template:
     def title(self) -> Wording:
         """What messages call it: a phrase."""
         return phrase("template_of_definition", name=self.name)
+
+    @property
+    def is_of_user(self) -> bool:
+        """Whether it stands in a file of the user, and not in one that is shipped."""
+        return not self.file.startswith(_SHIPPED)
 
     @property
     def of_definition(self) -> "Template | None":

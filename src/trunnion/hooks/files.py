@@ -82,7 +82,8 @@ def _load(path: Path) -> HookFile:
             raise InputError(Problem(str(path), line, wording))
         _check_signature(path, name, function)
     if not named:
-        raise InputError(Problem(str(path), 0, Wording("HOK110", "file_no_hooks", functions=_OF_PATHS, place="at_tool_change")))
+        wording = Wording("HOK110", "file_no_hooks", functions=_OF_PATHS, place="at_tool_change")
+        raise InputError(Problem(str(path), 0, wording))
     return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
 
 

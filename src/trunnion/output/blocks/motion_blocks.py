@@ -6,7 +6,6 @@ Out:    blocks, through the block writer.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from importlib.resources import files
 from typing import BinaryIO, Final
 
 import numpy as np
@@ -31,9 +30,6 @@ from trunnion.output.coordinates.approach_leg import ApproachLegs
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import edge_setting
-
-#: Where the templates stand that are not the user's.
-_SHIPPED: Final = str(files("trunnion"))
 
 #: Words that are repeated where an operation continues in another file, besides those that every row has.
 _REPEATED_WORDS: Final = ("plane", "feed_mode", "cutter_comp", "speed", "edge", "spindle", "coolant")
@@ -165,13 +161,13 @@ class MotionBlockWriter:
         Raises ``InputError`` if another line is, or has a character that the program's encoding lacks.
         """
         sign, blocks, continues = self.control.continued, list[str](), False
-        is_own = source is not None and not source.file.startswith(_SHIPPED)
-        file, at = source.place_of(0) if source is not None and is_own else (self._file, 0)
+        own = source if source is not None and source.is_of_user else None
+        file, at = own.place_of(0) if own is not None else (self._file, 0)
         for line in self._texts.whole(lines, file, at, as_they_are=as_they_are):
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
             continues = bool(sign) and line.endswith(sign)
-        if source is not None and is_own:
-            self.passages.append((*self.writer.place, tuple("\n".join(blocks).split("\n")), source))
+        if own is not None:
+            self.passages.append((*self.writer.place, tuple("\n".join(blocks).split("\n")), own))
         self.writer.write_lines(blocks)
 
     def write_block(self, words: Mapping[str, int]) -> None:
