@@ -28,6 +28,10 @@ class Severity(StrEnum):
     WARNING = "warning"
     ERROR = "error"
 
+    def said(self, words: Words = LIBRARY) -> str:
+        """Return it as it is read."""
+        return Wording("terminal", "error" if self is Severity.ERROR else "warning").text("what", words)
+
 
 class SubjectKind(StrEnum):
     """What a problem may be with, if not with its file as a whole."""
@@ -112,7 +116,7 @@ class Problem:
         cure = self.wording.text("cure", words)
         cure = f"; {cure}" if cure else ""
         code = f" [{self.code}]" if self.code else ""
-        return one_line(f"{place}: {self.severity}: {self.wording.text('what', words)}{cure}{code}")
+        return one_line(f"{place}: {self.severity.said(words)}: {self.wording.text('what', words)}{cure}{code}")
 
 
 def warning(file: str, line: int, wording: Wording, *, subject: Subject | None = None) -> Problem:
