@@ -38,7 +38,7 @@ def rows_behind_retracts(run: Run) -> Ints:
     """Return the rows behind words that take the tool along its axis as far as it goes (k,), ascending."""
     events = [event.before_row for event in run.events if event.kind == "retract" and event.before_row < len(run)]
     rows = np.unique(np.array(events, np.int64))
-    return rows[~run.state.machine_frame.at(rows)]
+    return np.asarray(rows[~run.state.machine_frame.at(rows)])
 
 
 def stated_axes(one: Run, two: Run) -> Iterator[ComparedState]:
