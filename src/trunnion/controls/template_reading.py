@@ -10,6 +10,8 @@ from trunnion.controls.vocabulary import (
     FIVE_AXIS,
     FOLLOWING,
     LEAVING,
+    M114,
+    NEW_SPEED_WITH_M114,
     NEW_SPEED_WITH_TCP,
     PLACES,
     REQUIRED_TEMPLATES,
@@ -24,6 +26,9 @@ from trunnion.messages import Wording
 
 #: What only a template with statements or expressions has in it.
 _TEXT_SIGNS: Final = ("{%", "{{", "{#")
+
+#: Suffixes of the templates for operations whose tool axis changes.
+_SIMULTANEOUS: Final = (FIVE_AXIS, WITHOUT_TCP, M114)
 
 
 def read_templates(
@@ -54,12 +59,10 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     """
     plane_parts = ("approach", "plane_on", "next_plane", "operation_end")
     groups: list[tuple[str, ...]] = [(SPINDLE_ON,), (NEW_SPEED_WITH_TCP,)]
-    groups += [
-        tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
-    ]
-    groups += [(FOLLOWING,)]
-    groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, FIVE_AXIS, WITHOUT_TCP, *family.PLANE_COMMANDS)]
-    groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
+    groups += [tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in _SIMULTANEOUS]
+    groups += [(NEW_SPEED_WITH_M114,), (FOLLOWING,)]
+    groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, *_SIMULTANEOUS, *family.PLANE_COMMANDS)]
+    groups += [(f"next_axis_{suffix}",) for suffix in _SIMULTANEOUS]
     groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
     groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]
     for name in (name for group in groups for name in group):

@@ -44,9 +44,6 @@ _ACROSS = 1e-6
 #: Two tool axes are opposite above this negative cosine: printed decimals would choose the way between them.
 _OPPOSITE: Final = 1.0 - 1e-12
 
-#: Modes in which the tool axis may change.
-_SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
-
 
 def prepare_operations(
     sources: Sequence[tuple[str, Operation]], requests: Sequence[PlanRequest]
@@ -153,7 +150,7 @@ def _with_lines_for_arcs(prepared: PreparedOperation) -> PreparedOperation:
     keep = arcs_a_control_takes(written, capabilities.only_arcs_about_z, capabilities.helices_by_angle)
     if not capabilities.helices:
         keep &= flat_arcs(replace(operation, arcs=replace(operation.arcs, full_turns=0 * operation.arcs.full_turns)))
-    if prepared.mode is MachiningMode.TCP and not capabilities.arcs_with_tcp:
+    if prepared.mode is MachiningMode.M114 or (prepared.mode is MachiningMode.TCP and not capabilities.arcs_with_tcp):
         keep[:] = False
     if is_tilted and capabilities.planes_from_pose:
         keep &= arcs_about_tool(operation)
@@ -185,7 +182,7 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
     ranges = _ranges_in_planes(prepared)
     mode = prepared.mode if ranges is None else MachiningMode.TILTED
     objection = ""
-    if mode in _SIMULTANEOUS and not _drills_along_tool(prepared):
+    if mode.is_simultaneous and not _drills_along_tool(prepared):
         objection = f"no cycle along a tilted tool axis {'with' if mode is MachiningMode.TCP else 'without'} TCP"
         turns = axis_change_rows(operation)
         ranges = row_ranges(turns[operation.moves.kind[turns] == Kind.RAPID], len(operation.moves))
@@ -222,7 +219,7 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
 def _ranges_in_planes(prepared: PreparedOperation) -> list[tuple[int, int]] | None:
     """Rows of the planes in which holes along several axes are made; None: they are not made in planes."""
     options, capabilities = prepared.request.options, prepared.request.capabilities
-    if prepared.mode not in _SIMULTANEOUS or MachiningMode.TILTED not in capabilities.modes:
+    if not prepared.mode.is_simultaneous or MachiningMode.TILTED not in capabilities.modes:
         return None
     if options.mode_for(prepared.operation.name) is not None:
         return None
