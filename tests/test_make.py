@@ -92,10 +92,11 @@ def test_the_nearest_run_and_of_them_the_quickest_while_there_is_time() -> None:
 
 
 def test_what_changed_and_its_namesake_run_whatever_they_take() -> None:
-    tests, seconds = {"tests.cli.test_place": 1, "tests.matrix.test_matrix": 4}, {"cli/test_place.py": 99.0}
-    for changed in ("src/trunnion/cli/place.py", "tests/cli/test_place.py"):
-        assert "tests/cli/test_place.py" in chosen(tests, [changed], 0.0, seconds)[0]
-    assert "tests/cli/test_place.py" not in chosen(tests, ["src/trunnion/cli/post.py"], 98.0, seconds)[0]
+    tests = {"tests.cli.machine.test_place": 1, "tests.matrix.test_matrix": 4}
+    seconds = {"cli/machine/test_place.py": 99.0}
+    for changed in ("src/trunnion/cli/machine/place.py", "tests/cli/machine/test_place.py"):
+        assert "tests/cli/machine/test_place.py" in chosen(tests, [changed], 0.0, seconds)[0]
+    assert "tests/cli/machine/test_place.py" not in chosen(tests, ["src/trunnion/cli/post.py"], 98.0, seconds)[0]
 
 
 def test_where_nothing_can_be_said_all_tests_are_reached() -> None:

@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from tests.support.examples import examples
 from tests.support.machine_mutants import mutants
 from tests.support.machine_strategies import joints, machines
-from trunnion.cli.machine_text import machine_lines
+from trunnion.cli.machine.machine_text import machine_lines
 from trunnion.jobs.describe.machines import describe_machine
 from trunnion.machines import Axis, AxisKind, Machine, Mount, forward, load_machine, shipped_machines
 from trunnion.machines.jog_table import jog_table, rotary_pose

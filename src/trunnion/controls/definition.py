@@ -5,8 +5,7 @@ What these cannot express is code, in the writer module of the control's family.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from importlib.resources import files
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Final
 
@@ -285,10 +284,10 @@ class Control:
             return ""
         return min(name for place in places for name in place & empty)
 
-    def own_templates(self) -> frozenset[str]:
-        """Names of the templates that stand in files of the user, and not in those that are shipped."""
-        shipped = str(files("trunnion"))
-        return frozenset(name for name, each in self.templates.items() if not each.file.startswith(shipped))
+    def without_functions(self) -> "Control":
+        """Return the control with the templates of its definition alone, and none that are functions of a user."""
+        kept = ((name, template.of_definition) for name, template in self.templates.items())
+        return replace(self, templates={name: template for name, template in kept if template is not None})
 
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""

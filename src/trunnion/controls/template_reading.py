@@ -3,17 +3,16 @@
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.places import EVENT_PLACE, OWN_TEMPLATES
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     DRAW_BACK,
-    EVENT_PLACE,
     FIVE_AXIS,
     FOLLOWING,
     LEAVING,
     M114,
     NEW_SPEED_WITH_M114,
     NEW_SPEED_WITH_TCP,
-    PLACES,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
     SUBPROGRAM_TEMPLATES,
@@ -44,7 +43,7 @@ def read_templates(
         else:
             line += bool(line) * (len(text) - len(text.lstrip("\n")))
             found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
-    table.mark_read(*PLACES)
+    table.mark_read(*OWN_TEMPLATES)
     table.report_unread_keys()
     return found
 
@@ -68,7 +67,7 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     for name in (name for group in groups for name in group):
         table.text(name, None)  # known, though no definition needs it
     used = [name for group in groups if any(name in table for name in group) for name in group]
-    places = [name for name in list(table.keys()) if name in PLACES or name.startswith(EVENT_PLACE)]
+    places = [name for name in list(table.keys()) if name in OWN_TEMPLATES or name.startswith(EVENT_PLACE)]
     return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used, *places]
 
 

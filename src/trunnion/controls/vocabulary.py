@@ -140,23 +140,11 @@ RECORD_VALUES: Final = frozenset((*TOOL_VALUES, *OPERATION_VALUES))
 #: Lists that templates with expressions may go through, and records that they may ask.
 LISTS: Final = frozenset({"tools", "operations"})
 
-#: Places of a program where a shop may write a text of its own; shipped definitions have none there. Names that begin
-#: with `EVENT_PLACE` are places too: the word of a CL statement follows.
-PLACES: Final = (
-    "tool_list", "before_operation", "same_tool", "preselect", "after_approach", "first_cut", "rewind", "stop",
-    "between_planes", "retract", "after_operation",
-)  # fmt: skip
-EVENT_PLACE: Final = "event_"
-STOP_PLACE: Final = "stop"
-
 #: Filters of templates with expressions, besides the number formats; `controls.texts.filters` has them.
 FILTERS: Final = (
     "upper", "lower", "trim", "ascii", "cut", "pad", "replace", "default", "number", "round", "abs", "count", "first",
     "last", "join",
 )  # fmt: skip
-
-#: Values that only the templates of CL statements and of stops have.
-EVENT_VALUES: Final = frozenset({"text", "number", "words", "numbers"})
 
 #: Templates that every definition must have.
 REQUIRED_TEMPLATES: Final = (
@@ -174,14 +162,6 @@ M114: Final = "m114"
 
 #: Templates that every program has once.
 PROGRAM_TEMPLATES: Final = ("program_start", "program_end")
-
-#: Beginnings of template names in the order in which a program has them.
-TEMPLATE_ORDER: Final = (
-    "program_start", "tool_list", "before_operation", "operation_start", "operation_follows", "first_tool",
-    "tool_change", "same_tool", "preselect", "spindle_on", "approach_", "plane_on_", "after_approach", "first_cut",
-    "rewind", "stop", "event_", "between_planes", "next_axis_", "draw_back_", "next_plane_", "retract", "leave_",
-    "operation_end_", "after_operation", "program_end", "subprogram_",
-)  # fmt: skip
 
 #: Templates that say in which unit a file counts.
 PROGRAM_START_TEMPLATES: Final = ("program_start", "subprogram_start")

@@ -124,7 +124,7 @@ _EXPLAIN: Final = job(
 _SCHEMA: Final = job(
     "schema", "print the JSON Schema of definitions or projects, for editors",
     Option("kind", "", Choice(SCHEMAS, "KIND"), f"what the files are: {', '.join(SCHEMAS)}"),
-    run="new:schema",
+    run="machine.new:schema",
     examples=[
         ("trunnion schema project", "keys of project files, as an editor takes them"),
         ("trunnion schema machine > machine.schema.json", "into a file"),

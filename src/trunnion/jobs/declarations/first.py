@@ -12,7 +12,7 @@ _NEW: Final = job(
     Option("name", "", Text("NAME"), "name of the machine: NAME.toml is written"),
     Option("like", "--like", Text("MACHINE"), "shipped machine that it extends", required=True),
     JSON,
-    run="new:new",
+    run="machine.new:new",
     examples=[
         ("trunnion machines", "find the one that is most like yours"),
         ("trunnion new our_mill --like dmu65", "write our_mill.toml, with the numbers to measure"),
@@ -30,7 +30,7 @@ _CHECK: Final = job(
         "NC program of the machine: the keys of [control.reading] under which it reads best, to copy",
     ),
     JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
-    run="definitions:check",
+    run="machine.definitions:check",
     examples=[
         ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
         ("trunnion check part.toml", "a project, a tool library, an impeller or a file of jobs"),
@@ -46,7 +46,7 @@ _MACHINES: Final = job(
         "resolved", "--resolved", Switch(), "with all that it extends, and the file and line of each value"
     ),
     JSON,
-    run="definitions:machines",
+    run="machine.definitions:machines",
     examples=[
         ("trunnion machines", "a line each"),
         ("trunnion machines dmu65 --resolved", "every number, and where it comes from"),

@@ -195,7 +195,7 @@ _PLACE: Final = job(
         " where its zero is", own=True,
     ),
     SHEET.but(help="setup sheet of that program (.html or .json)", own=True),
-    run="place:run",
+    run="machine.place:run",
     examples=[
         ("trunnion place part.cls --machine yl569", "where the part may sit, and where best"),
         ("trunnion place part.cls --machine yl569 --goal time --apply part.mpf", "post it there"),

@@ -215,7 +215,7 @@ _REACH: Final = job(
         "plot", "--plot", FileOut("FILE", (".svg",), phrase("reach_is_svg")),
         "tool axes on the sphere, and volumes over the tilt (.svg)", own=True,
     ),
-    run="reach:run",
+    run="machine.reach:run",
     examples=[
         ("trunnion reach --machine yl569", "all tool axes"),
         ("trunnion reach part.cls --machine yl569 --zero 0,0,100", "the points of a CL file"),
@@ -242,7 +242,7 @@ _FIT: Final = job(
         "turns", "--turns", _NUMBER, "try the part at every so many degrees about Z", default=5.0,
     ),
     JSON,
-    run="fit:run",
+    run="machine.fit:run",
     examples=[
         ("trunnion fit part.cls", "which of the shipped machines can run it"),
         ("trunnion fit part.mpf --machine yl569 --machines dmu65,our_mill.toml", "where else a program runs"),
@@ -272,7 +272,7 @@ _SENSITIVITY: Final = job(
         "report", "--report", FileOut("FILE", (".html",), phrase("report_is_page")),
         "the table, and errors over the program, as a page (.html)", own=True,
     ),
-    run="sensitivity:run",
+    run="machine.sensitivity:run",
     examples=[
         ("trunnion sensitivity part.mpf --machine yl569", "which numbers to measure well"),
         ("trunnion sensitivity part.mpf --machine yl569 --length 0.02 --report part.html", "with curves"),

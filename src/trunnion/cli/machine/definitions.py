@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from trunnion.cli.checked_files import checked_data, checked_file
 from trunnion.cli.controls import control_lines
-from trunnion.cli.machine_text import machine_data, machine_lines, machine_list
+from trunnion.cli.machine.machine_text import machine_data, machine_lines, machine_list
 from trunnion.cli.printing import print_result, tell_problem
 from trunnion.cli.results import show
 from trunnion.cli.wording import problem_line

@@ -1,0 +1,1 @@
+"""Commands about a machine: its definition, what it reaches, and where a workpiece fits."""
