@@ -152,6 +152,7 @@ class Control:
     level_approach        after a retract the tool goes to X and Y first, then to Z, not only in tilted planes
     plane_from_pose       a tilted plane is taken from the rotary position, without angles: its origin is the work
                           offset's, its axes are those of the tool
+    projected_angles      what projected angles of a plane mean, of ``PROJECTED_CHOICES``
     rapid_into_planes     the first motion in a new tilted plane must be a rapid, which states X, Y and Z there
     holes_from            one of ``HOLE_APPROACH_HEIGHTS``
     subprograms           how subprograms are named; None: a program cannot call any
@@ -195,6 +196,7 @@ class Control:
     axis_tolerance: AxisTolerance
     level_approach: bool
     plane_from_pose: bool
+    projected_angles: str
     rapid_into_planes: bool
     holes_from: str
     subprograms: SubprogramNaming | None

@@ -266,3 +266,8 @@ OFFSETS_DIFFER: Final = "offsets_differ"
 
 #: ``Control.blocks_in_compensation`` of controls without a limit.
 NO_LIMIT: Final = 9999
+
+#: The key of a control that says what its projected angles of a plane mean, and its values: unknown; turns about Y and
+#: X, as spatial angles are; both rising with the axis.
+PROJECTED_ANGLES: Final = "projected_angles"
+PROJECTED_CHOICES: Final = ("unknown", "turning", "rising")
