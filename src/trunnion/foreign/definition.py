@@ -207,7 +207,7 @@ def _control(own: str, control: str, taken: Mapping[Key, Stated]) -> Iterator[st
     """Yield what differs from the control that counts; a control of another family brings its own."""
     if control and control != own:
         yield f"[control]\nextends = {written(control)} # measure: the files have its words\n"
-    known = load_control_table(control or own).to_dict()
+    known: dict[str, Any] = load_control_table(control or own).to_dict()
     tables: dict[str, list[str]] = {}
     for key, value in taken.items():
         if key[0] == "control" and key[1] == "format":

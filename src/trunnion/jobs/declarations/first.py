@@ -32,7 +32,7 @@ _IMPORT: Final = job(
     ),
     Option(
         "like", "--like", Text("MACHINE"),
-        "shipped machine that it extends; by default the nearest with the same rotary axes",
+        "shipped machine that it extends",
     ),
     JSON,
     run="machine.foreign:run",
