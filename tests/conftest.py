@@ -44,6 +44,8 @@ def pytest_configure(config: pytest.Config) -> None:
     without_waiting.setattr(os, "fsync", lambda descriptor: None)
     config.add_cleanup(without_waiting.undo)
     os.environ["LOCALAPPDATA"] = cache.name
+    os.environ["LC_MESSAGES"] = "C"  # English, wherever the tests run
+    os.environ.pop("LC_ALL", None)
     if config.getoption("nightly"):
         settings.load_profile("nightly")
 

@@ -39,6 +39,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.cli.columns",
         "trunnion.cli.command_line",
         "trunnion.cli.command_line.help_texts",
+        "trunnion.cli.command_line.language",
         "trunnion.cli.command_line.parser",
         "trunnion.cli.command_line.post_mistakes",
         "trunnion.cli.printing",
@@ -88,6 +89,8 @@ def test_the_version_is_said_without_the_commands(tmp_path: Path) -> None:
     assert {name for name in imported if name.startswith("trunnion.")} == {
         "trunnion.cli",
         "trunnion.cli.columns",
+        "trunnion.cli.command_line",
+        "trunnion.cli.command_line.language",
         "trunnion.cli.printing",
         "trunnion.cli.process",
         "trunnion.cli.terminal_text",

@@ -46,6 +46,9 @@ def same(one: Run, two: Run) -> None:
             np.testing.assert_allclose(a, b, rtol=1e-14, atol=1e-12, err_msg=name)
         else:
             np.testing.assert_array_equal(a, b, err_msg=name)
+    for name in ("row", "full_turns", "centre", "normal", "radius"):
+        a, b = getattr(one.arcs, name), getattr(two.arcs, name)
+        np.testing.assert_allclose(a, b, rtol=1e-12, atol=1e-9 if name == "centre" else 1e-12, err_msg=f"arcs: {name}")
     assert one.comments == two.comments
     assert one.events == two.events
     assert one.diagnostics == two.diagnostics

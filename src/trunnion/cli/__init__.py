@@ -67,10 +67,16 @@ def _show_log() -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    words = list(sys.argv[1:] if argv is None else argv)
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):  # Windows consoles and pipes are not UTF-8 by default
-            stream.reconfigure(encoding="utf-8", errors="replace")
+    from trunnion.cli.command_line.language import follow_terminals, speaking, with_language
+
+    follow_terminals()
+    words, language = with_language(list(sys.argv[1:] if argv is None else argv))
+    with speaking(language):
+        return _run(words)
+
+
+def _run(words: Sequence[str]) -> int:
+    """Run one command in the language that is spoken; returns the exit code."""
     try:
         if words[:1] == ["--version"]:
             print_result(f"trunnion {__version__}")
@@ -92,7 +98,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         ended = stop.signal if isinstance(stop, Ended) else 0
         notes = getattr(stop, "__notes__", [])
         if notes or not ended:
-            print(": ".join(["stopped", *notes]), file=sys.stderr)
+            from trunnion.cli.wording import said
+
+            print(": ".join([said("stopped"), *notes]), file=sys.stderr)
         return 128 + ended if ended else 2
     return code
 

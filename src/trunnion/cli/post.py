@@ -11,6 +11,7 @@ from trunnion.cli.printing import tell
 from trunnion.cli.results import show
 from trunnion.cli.suggest import NotingTerminal, suggestion
 from trunnion.cli.terminal import check_unnamed, output_folder, output_place, warn_of_old
+from trunnion.cli.wording import said
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, TrunnionError, argument_problem
 from trunnion.files import OutputGroup, check_outputs
@@ -26,7 +27,6 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Toolpath
 from trunnion.options.groups import BODIES, CUTTING
-from trunnion.wording import counted
 
 #: What is said of the tools on a sheet, and what of a simulation.
 _OF_SHEET: Final = ("tools", "tool_libraries", "unit")
@@ -129,7 +129,7 @@ def print_dialects(toolpaths: Sequence[Toolpath]) -> None:
     """Say what the toolpaths of a file or an archive are written in, where that is not NX's CLSF."""
     for toolpath in toolpaths:
         if toolpath.dialect != "clsf" or len(toolpaths) > 1:
-            tell(f"{toolpath.file}: read as {toolpath.recognized}")
+            tell(f"{toolpath.file}: {said('read_as', dialect=toolpath.recognized)}")
 
 
 def print_summary(target: str, result: PostResult) -> None:
@@ -139,9 +139,9 @@ def print_summary(target: str, result: PostResult) -> None:
         return
     rows = sum(len(motion.operation.moves) for motion in result.motions)
     operations = sum(motion.starts_operation for motion in result.motions)
-    tell(f"{target}: {counted(rows, 'point')}, {counted(operations, 'operation')}")
+    tell(f"{target}: {said('points_and_operations', points=rows, operations=operations)}")
     for subprogram in result.subprograms:
-        tell(f"{subprogram}: a subprogram of {result.output.name}")
+        tell(f"{subprogram}: {said('subprogram_of', program=result.output.name)}")
 
 
 def files_by_target(given: Given, machine: Machine) -> dict[str, list[str]]:

@@ -16,7 +16,6 @@ from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines
 from trunnion.messages import Wording
-from trunnion.options.groups import STOCK
 from trunnion.options.kinds import FileIn, FileOut, Setting, Switch
 from trunnion.options.option import Option
 from trunnion.wording import counted
@@ -108,10 +107,16 @@ def _unsaid(given: Given) -> list[str]:
 
 def _as_stated(value: object, option: Option, file: Path) -> object:
     """Return a value as a project has it."""
+    from trunnion.simulation.fixtures import is_stated_fixture
     from trunnion.simulation.stock.solids import is_mesh
 
-    names = isinstance(option.kind, FileIn | FileOut) and not (option.kind == STOCK.kind and not is_mesh(str(value)))
-    return _within(str(value), file) if names else value
+    kind = option.kind
+    if not isinstance(kind, FileIn | FileOut):
+        return value
+    leads = kind.leads if isinstance(kind, FileIn) else ""
+    if (leads == "stock" and not is_mesh(str(value))) or (leads == "fixture" and is_stated_fixture(str(value))):
+        return value
+    return _within(str(value), file)
 
 
 def _within(name: str, file: Path) -> str:

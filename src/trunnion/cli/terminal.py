@@ -2,15 +2,15 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
 
 from trunnion.cli.printing import tell, tell_problem
 from trunnion.cli.progress import progress
-from trunnion.cli.wording import in_command_words, problem_lines
-from trunnion.errors import InputError, Problem
+from trunnion.cli.wording import in_command_words, problem_lines, said, spoken
+from trunnion.errors import InputError, Problem, Severity
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.observer import Observer
 from trunnion.messages import Wording
@@ -35,7 +35,7 @@ class Terminal(Observer):
     def setup(self, name: str) -> None:
         """Print whose set-up the next lines are about, where there are several."""
         if name:
-            tell(f"set-up {name}")
+            tell(said("setup", name=name))
 
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line; of a flood of errors the first of each kind."""
@@ -50,16 +50,23 @@ class Terminal(Observer):
 
     def verified(self, verification: Verification) -> None:
         """Print one line a check, the places of failed checks, and times."""
-        places = place_lines(verification, failed_only=True)
-        stands = stand_lines(verification.checks)
-        tell(*check_lines(verification), *places, *time_lines(verification), *stands, verification.standing.told)
+        tell(*verification_lines(verification, failed_only=True))
         if not self._explained and _exceeds_rotary_speed(verification):
-            what = "a rotary axis cannot follow the feed everywhere; --explain says where, and what helps"
-            tell(f"{verification.program}: {what}")
+            tell(f"{verification.program}: {said('rotary_axis_behind')}")
 
     def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
         """Show a progress bar."""
         return progress(stage, total, unit)
+
+
+def verification_lines(verification: Verification, *, failed_only: bool = False) -> Iterator[str]:
+    """Yield one line a check, the worst places, times, and what the answer stands on."""
+    words = spoken()
+    yield from check_lines(verification, words)
+    yield from place_lines(verification, words, failed_only=failed_only)
+    yield from time_lines(verification, words)
+    yield from stand_lines(verification.checks, words)
+    yield verification.standing.line(words)
 
 
 class ConversionTerminal(Terminal):
@@ -74,7 +81,7 @@ class ConversionTerminal(Terminal):
         most = len(problems) if self._is_planned else _MOST_PRINTED
         super().problems(problems[:most])
         if len(problems) > most:
-            tell(f"and {len(problems) - most} more")
+            tell(said("and_more", count=len(problems) - most))
 
     def planned(self, plan: Plan) -> None:
         """From here on warnings are about the plan."""
@@ -94,7 +101,7 @@ def warn_of_old(names: Iterable[str]) -> None:
     """Say of programs and papers that are there that they are not those of a post that has just failed."""
     old = [name for name in names if name != "-" and Path(name).is_file()]
     if old:
-        tell(f"{', '.join(old)}: warning: from before this change: do not run it until it is posted again")
+        tell(f"{', '.join(old)}: {Severity.WARNING.said(spoken())}: {said('from_before')}")
 
 
 def check_unnamed(target: str, *, alone: bool = True) -> None:

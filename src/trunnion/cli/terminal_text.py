@@ -4,6 +4,9 @@ import os
 import sys
 from typing import Final, TextIO
 
+from trunnion.cli.command_line.language import spoken_language
+from trunnion.messages import said_in
+
 _STYLES: Final = {"error": "1;31", "warning": "33", "title": "1", "good": "32"}
 
 
@@ -23,7 +26,8 @@ def _has_colours(stream: TextIO) -> bool:
 def severity_painted(line: str) -> str:
     """Return a line of a message with its severity in colour."""
     for word in ("error", "warning"):
-        before, mark, rest = line.partition(f": {word}: ")
+        said = said_in(spoken_language(), "terminal", "terminal", word, "what")
+        before, mark, rest = line.partition(f": {said}: ")
         if mark:
-            return f"{before}: {painted(word, word)}: {rest}"
+            return f"{before}: {painted(said, word)}: {rest}"
     return line

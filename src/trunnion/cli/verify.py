@@ -6,14 +6,15 @@ from typing import Any, Final
 
 from trunnion.cli.printing import tell
 from trunnion.cli.results import show
-from trunnion.cli.terminal import Terminal
+from trunnion.cli.terminal import Terminal, verification_lines
+from trunnion.cli.wording import said
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
 from trunnion.jobs.verify.reports import add_report, write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.messages import Wording
-from trunnion.verification import Verification, check_lines, place_lines, stand_lines, time_lines
+from trunnion.verification import Verification
 from trunnion.wording import one_line
 
 #: Options that stand beside a manifest.
@@ -31,11 +32,7 @@ def run(given: Given) -> int:
         columns=given.report is not None or given.json is not None,
         observer=Terminal(),
     )
-    lines = (
-        *check_lines(verification), *place_lines(verification), *time_lines(verification),
-        *stand_lines(verification.checks), verification.standing.told,
-    )  # fmt: skip
-    show(given, lambda: _report_data(verification), lines)
+    show(given, lambda: _report_data(verification), verification_lines(verification))
     if given.report is not None:
         write_report(verification, given.report)
     return 0 if verification.passed else 1
@@ -51,9 +48,9 @@ def _run_manifest(given: Given) -> int:
     found = verify_manifest(given.nc, cl=given.cl)
     show(given, lambda: found, map(str, found.files))
     for name in found.not_compared:
-        tell(one_line(f"{name}: not compared, and the program was made from it: --cl FILE compares it"))
+        tell(one_line(f"{name}: {said('not_compared')}"))
     if not found.proven:
-        tell(f"{given.nc}: the program was written by force, and must not run as it is")
+        tell(f"{given.nc}: {said('written_by_force')}")
     return 0 if found.passed else 1
 
 

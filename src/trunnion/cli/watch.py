@@ -17,6 +17,7 @@ from trunnion.cli.terminal import warn_of_old
 from trunnion.cli.wording import problem_lines
 from trunnion.errors import Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk, output_group
+from trunnion.jobs.inputs.bodies import fixture_files
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
@@ -183,7 +184,7 @@ class _FilesWork:
             named |= {str(file) for file in simulation_files(simulation_of(given) or sheet_tools_of(given) or {})}
         except (TrunnionError, OSError):  # a project that is broken; posting will tell
             named |= {given.project, *mentioned_files(Path(given.project))} if given.project else set()
-            named |= {*given.tool_libraries, *given.fixtures, *filter(None, (given.part, given.stock))}
+            named |= {*given.tool_libraries, *fixture_files(given.fixtures), *filter(None, (given.part, given.stock))}
         return named | self._definitions
 
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:

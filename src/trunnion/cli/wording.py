@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
+from trunnion.cli.command_line.language import spoken_language
 from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import Problem, TrunnionError, first_of_kinds
 from trunnion.jobs.registry import JOBS
-from trunnion.messages import Words, phrase
+from trunnion.messages import ENGLISH, Wording, Words, phrase
 
 #: So many errors in lines are printed one by one; of more, so many kinds.
 _MOST_ERRORS: Final = 10
@@ -36,6 +37,7 @@ class CommandWords(Words):
     """Options in place of settings and arguments: of a command, where it has one for a setting."""
 
     command: str = ""
+    language: str = ENGLISH
 
     def setting(self, name: str, value: str) -> str:
         """Return a setting with a value."""
@@ -55,20 +57,28 @@ class CommandWords(Words):
         return _option(name)
 
 
-_PLAIN: Final = CommandWords()
-
-#: The words of the command that runs.
-_SPOKEN: Final[ContextVar[Words]] = ContextVar("spoken", default=_PLAIN)
+#: The command that runs, whose options messages name.
+_COMMAND: Final[ContextVar[str]] = ContextVar("command", default="")
 
 
 def speak_of(command: str) -> None:
     """Have messages name the options of a command from here on."""
-    _SPOKEN.set(CommandWords(command))
+    _COMMAND.set(command)
 
 
 def spoken() -> Words:
-    """Return the words of the command that runs."""
-    return _SPOKEN.get()
+    """Return the words of the command that runs, in its language."""
+    return CommandWords(_COMMAND.get(), spoken_language())
+
+
+def said(variant: str, /, **parameters: object) -> str:
+    """Return a line of the catalogue ``terminal``."""
+    return in_words(Wording("terminal", variant, **parameters))
+
+
+def in_words(wording: Wording) -> str:
+    """Return a wording in the language and the words of the command that runs."""
+    return in_command_words(wording.text("what", spoken()))
 
 
 def problem_line(problem: Problem) -> str:
@@ -87,7 +97,7 @@ def problem_lines(problems: Sequence[Problem]) -> Iterator[str]:
     shown, left = first_of_kinds(problems, _MOST_ERRORS)
     yield from map(problem_line, shown)
     if left:
-        yield str(phrase("errors_left", count=left))
+        yield in_words(phrase("errors_left", count=left))
 
 
 def error_lines(error: TrunnionError) -> str:

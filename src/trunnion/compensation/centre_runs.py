@@ -29,13 +29,18 @@ class CentreRun:
     """What a control drives.
 
     run     with the positions of the tool's centre
-    row_of  (n,) int64: the row of this run that ends a row of the program
     faults  rows of the program, each with what is wrong there
+    ends    (n,) int64: the row of this run that ends a row of the program; None: nothing is inserted
     """
 
     run: Run
-    row_of: Ints
     faults: tuple[tuple[int, Fault], ...]
+    ends: Ints | None = None
+
+    @property
+    def row_of(self) -> Ints:
+        """(n,) int64: the row of this run that ends a row of the program."""
+        return np.arange(len(self.run)) if self.ends is None else self.ends
 
 
 def run_of_centre(run: Run, offsets: Sequence[tuple[Stretch, float]]) -> CentreRun:
@@ -51,8 +56,9 @@ def run_of_centre(run: Run, offsets: Sequence[tuple[Stretch, float]]) -> CentreR
         if insertion is not None:
             found.append(insertion)
     if not found:
-        return CentreRun(run, np.arange(len(run)), tuple(faults))
-    return CentreRun(*with_inserted_rows(run, found), tuple(faults))
+        return CentreRun(run, tuple(faults))
+    centre, ends = with_inserted_rows(run, found)
+    return CentreRun(centre, tuple(faults), ends)
 
 
 def _insertion(run: Run, stretch: Stretch, offset: float, faults: list[tuple[int, Fault]]) -> Insertion | None:

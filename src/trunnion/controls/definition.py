@@ -5,8 +5,7 @@ What these cannot express is code, in the writer module of the control's family.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from importlib.resources import files
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Final
 
@@ -150,6 +149,7 @@ class Control:
     level_approach        after a retract the tool goes to X and Y first, then to Z, not only in tilted planes
     plane_from_pose       a tilted plane is taken from the rotary position, without angles: its origin is the work
                           offset's, its axes are those of the tool
+    projected_angles      what projected angles of a plane mean, of ``PROJECTED_CHOICES``
     rapid_into_planes     the first motion in a new tilted plane must be a rapid, which states X, Y and Z there
     holes_from            one of ``HOLE_APPROACH_HEIGHTS``
     subprograms           how subprograms are named; None: a program cannot call any
@@ -193,6 +193,7 @@ class Control:
     axis_tolerance: AxisTolerance
     level_approach: bool
     plane_from_pose: bool
+    projected_angles: str
     rapid_into_planes: bool
     holes_from: str
     subprograms: SubprogramNaming | None
@@ -282,10 +283,10 @@ class Control:
             return ""
         return min(name for place in places for name in place & empty)
 
-    def own_templates(self) -> frozenset[str]:
-        """Names of the templates that stand in files of the user, and not in those that are shipped."""
-        shipped = str(files("trunnion"))
-        return frozenset(name for name, each in self.templates.items() if not each.file.startswith(shipped))
+    def without_functions(self) -> "Control":
+        """Return the control with the templates of its definition alone, and none that are functions of a user."""
+        kept = ((name, template.of_definition) for name, template in self.templates.items())
+        return replace(self, templates={name: template for name, template in kept if template is not None})
 
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""

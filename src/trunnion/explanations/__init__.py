@@ -1,16 +1,17 @@
 """What each code of a message, and each check, means: data that ``trunnion explain`` and the docs print.
 
-The files of ``library`` hold a table for each code or check: ``title`` is what is wrong in a few words, ``means`` what
-has been found, ``matters`` what it would do at the machine, ``cure`` what to do about it.
+The files in the folder ``explanations`` of each language of ``trunnion.messages`` hold a table for each code or check:
+``title`` is what is wrong in a few words, ``means`` what has been found, ``matters`` what it would do at the machine,
+``cure`` what to do about it.
 """
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Final
 
-#: The files of ``library`` in the order of the docs, and what each is about.
+from trunnion.messages import ENGLISH, catalogue, said_in
+
+#: The files in the order of the docs, and what each is about.
 SUBJECTS: Final = {
     "arguments": "Arguments and settings",
     "files": "Files",
@@ -54,12 +55,13 @@ class Explanation:
 
 
 @cache
-def explanations() -> dict[str, Explanation]:
-    """Return every code and check with its explanation, in the order of the docs."""
+def explanations(language: str = ENGLISH) -> dict[str, Explanation]:
+    """Return every code and check with its explanation, in the order of the docs; English where there is no other."""
     found: dict[str, Explanation] = {}
     for subject in SUBJECTS:
-        text = files(__name__).joinpath("library", f"{subject}.toml").read_text(encoding="utf-8")
-        for code, entry in tomllib.loads(text).items():
+        file = f"explanations/{subject}"
+        for code, entry in catalogue(ENGLISH, file).items():
             assert code not in found, code
-            found[code] = Explanation(code, subject, **entry)
+            said = {name: said_in(language, file, code, name) for name in entry}
+            found[code] = Explanation(code, subject, **said)
     return found

@@ -16,6 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
+from trunnion.files.digests import FileDigests
 from trunnion.user_cache import user_cache
 
 #: Places that are remembered; of more the oldest are forgotten, down to the second number.
@@ -30,9 +31,13 @@ _OWNER: Final = ""
 
 
 class EarlierJob:
-    """The files that jobs whose first file has this path have written, by their digests."""
+    """The files that jobs whose first file has this path have written, by their digests.
+
+    digests  of the files that were looked at
+    """
 
     def __init__(self, first: Path) -> None:
+        self.digests = FileDigests()
         self._folder = first.parent
         cache = user_cache()
         name = hashlib.sha256(os.fsencode(os.path.normcase(first))).hexdigest()[:32]
@@ -44,7 +49,7 @@ class EarlierJob:
         if file.parent != self._folder:
             return EarlierJob(file).wrote(file)
         known = self._digests.get(os.path.normcase(file.name))
-        return known is not None and _is_as_known(file, known)
+        return known is not None and self._is_as_known(file, known)
 
     def has_edited(self, file: Path) -> bool:
         """Whether a file is one that these jobs have written, and that somebody has changed since; no empty one is."""
@@ -74,7 +79,7 @@ class EarlierJob:
             return True
         own = EarlierJob(file)
         known = own._digests.get(own._key(file), "")
-        return known.split(":")[2:] == [_PAPER] and _is_as_known(file, known)
+        return known.split(":")[2:] == [_PAPER] and self._is_as_known(file, known)
 
     @property
     def owner(self) -> tuple[str, ...]:
@@ -91,7 +96,7 @@ class EarlierJob:
 
     def written(self) -> list[Path]:
         """All files of the record that are there as these jobs have written them."""
-        return [file for file, known in self._known() if file.is_file() and _is_as_known(file, known)]
+        return [file for file, known in self._known() if file.is_file() and self._is_as_known(file, known)]
 
     def names(self) -> list[Path]:
         """All files of the record, whatever has become of them."""
@@ -107,9 +112,9 @@ class EarlierJob:
         stay = [
             (file, known)
             for file, known in self._known()
-            if self._key(file) not in again and file.is_file() and _is_as_known(file, known)
+            if self._key(file) not in again and file.is_file() and self._is_as_known(file, known)
         ]
-        job = _job(map(_digest, program)) if stay else ""
+        job = _job(map(self._digest, program)) if stay else ""
         return [file for file, known in stay if known.split(":")[2:] != [job]]
 
     def remember(
@@ -127,7 +132,7 @@ class EarlierJob:
         for other in (file for file in of_program if file.parent != self._folder):
             EarlierJob(other).remember([other], (), known)
         digests = {name: known for name, known in self._known_by_name().items() if (self._folder / name).exists()}
-        found = {file: (known or {}).get(file) or _digest(file) for file in (*of_program, *about_it)}
+        found = {file: (known or {}).get(file) or self._digest(file) for file in (*of_program, *about_it)}
         job = _job(found[file] for file in of_program)
         for file, digest in found.items():
             if digest and file.exists():
@@ -162,6 +167,16 @@ class EarlierJob:
             part.replace(self._record)
             _forget_oldest(self._record.parent)
 
+    def _is_as_known(self, file: Path, known: str) -> bool:
+        """Whether a file has the size and the digest of the record."""
+        size, digest = known.split(":")[:2] if ":" in known else ("", known)
+        # The size first: a file that is somebody else's may be endless.
+        return size in ("", str(file.stat().st_size)) and self._digest(file) == digest
+
+    def _digest(self, file: Path) -> str:
+        """Return the digest of a file, empty if it cannot be read."""
+        return self.digests.of(file) or ""
+
     def _key(self, file: Path) -> str:
         """Return what a file is called in the record: its name, or its whole path if it is in another folder."""
         return os.path.normcase(file.name if file.parent == self._folder else file)
@@ -174,25 +189,9 @@ class EarlierJob:
         return {name: text for name, text in found.items() if isinstance(text, str)} if isinstance(found, dict) else {}
 
 
-def _is_as_known(file: Path, known: str) -> bool:
-    """Whether a file has the size and the digest of the record."""
-    size, digest = known.split(":")[:2] if ":" in known else ("", known)
-    # The size first: a file that is somebody else's may be endless.
-    return size in ("", str(file.stat().st_size)) and _digest(file) == digest
-
-
 def _job(digests: Iterable[str]) -> str:
     """Digest of a program by those of its files."""
     return hashlib.sha256("".join(sorted(digests)).encode()).hexdigest()
-
-
-def _digest(file: Path) -> str:
-    """Digest of a file, empty if it cannot be read."""
-    try:
-        with file.open("rb") as stream:
-            return hashlib.file_digest(stream, "sha256").hexdigest()
-    except OSError:
-        return ""
 
 
 def _forget_oldest(folder: Path) -> None:

@@ -8,7 +8,6 @@ which nothing beside a hidden folder is touched: a journal that came with somebo
 A file that is neither the new one nor the one before was changed since by somebody, and stays as it is.
 """
 
-import hashlib
 import json
 import os
 import shutil
@@ -18,6 +17,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
+from trunnion.files.digests import FileDigests, digest_of
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.hidden_folders import JOURNAL, is_hidden_folder
 
@@ -186,10 +186,11 @@ class Journal:
             (folder / JOURNAL).unlink(missing_ok=True)
 
 
-def begin(files: Sequence[tuple[Path, Path, Path]]) -> tuple[Move, ...]:
+def begin(files: Sequence[tuple[Path, Path, Path]], digests: FileDigests) -> tuple[Move, ...]:
     """Return the moves of files, once those that they replace have second names under which they survive.
 
-    files  each the complete file, its place, and the hidden folder beside that
+    files    each the complete file, its place, and the hidden folder beside that
+    digests  of files that were read before
 
     Raises ``OSError`` if a file that is replaced can be kept under no other name.
     """
@@ -197,10 +198,10 @@ def begin(files: Sequence[tuple[Path, Path, Path]]) -> tuple[Move, ...]:
     for k, (file, place, folder) in enumerate(files):
         earlier = folder / _EARLIER / str(k)
         earlier.parent.mkdir(exist_ok=True)
-        before = digest_of(place)
+        before = digests.of(place)
         _keep(place, earlier)
         new = file.relative_to(folder).as_posix()
-        moves.append(Move(folder, new, place.name, f"{_EARLIER}/{k}", digest_of(file) or "", before))
+        moves.append(Move(folder, new, place.name, f"{_EARLIER}/{k}", digests.of(file) or "", before))
     return tuple(moves)
 
 
@@ -253,17 +254,6 @@ def _journal(found: dict[str, Any], first: Path) -> Journal:
     if not moves:
         raise ValueError("nothing moves")
     return Journal(word, tuple(moves), tuple(records), tuple(names))
-
-
-def digest_of(file: Path) -> str | None:
-    """Return the digest of a file; None: there is none; empty: it cannot be read."""
-    try:
-        with file.open("rb") as stream:
-            return hashlib.file_digest(stream, "sha256").hexdigest()
-    except FileNotFoundError:
-        return None
-    except OSError:
-        return ""
 
 
 def _keep(target: Path, before: Path) -> None:

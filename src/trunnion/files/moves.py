@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from trunnion.files.digests import FileDigests
 from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.journal import Journal, Names, Record, begin
@@ -24,12 +25,14 @@ class Moves:
     withdrawn  places of files that must not be seen beside the older ones of others: their older files go away first
     records    of the programs, once all is in place
     names      of the programs of projects
+    digests    of files that were read before
     """
 
     files: list[tuple[Path, OutputPlace, Path]] = field(default_factory=list)
     withdrawn: list[OutputPlace] = field(default_factory=list)
     records: list[Record] = field(default_factory=list)
     names: list[Names] = field(default_factory=list)
+    digests: FileDigests = field(default_factory=FileDigests)
 
     def add(self, hidden: HiddenFolders, file: Path, place: OutputPlace) -> int:
         """Take a complete file, and return its number."""
@@ -76,7 +79,7 @@ class Moves:
         at = self.files[0][1]
         journal = None
         try:
-            moves = begin([(file, place.path, folder) for file, place, folder in self.files])
+            moves = begin([(file, place.path, folder) for file, place, folder in self.files], self.digests)
             journal = Journal(os.urandom(16).hex(), moves, tuple(self.records), tuple(self.names))
             journal.write()
             for each in self.withdrawn:

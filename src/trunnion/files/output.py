@@ -215,6 +215,7 @@ class OutputFiles:
             moves.add(hidden, place.path, kept)
         if self._earlier is not None and main and self._place is not None:
             moves.records.append(Record(program[-1], tuple(program), tuple(papers)))
+            moves.digests.take(self._earlier.digests)
 
     def remember_alone(self, paper: Path) -> None:
         """Record a paper that was written although the program is not."""

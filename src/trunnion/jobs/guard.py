@@ -145,6 +145,14 @@ def _of_stocks(names: Iterable[str]) -> Iterator[FilePath]:
             yield name
 
 
+def _of_fixtures(names: Iterable[str]) -> Iterator[FilePath]:
+    for name in names:
+        from trunnion.simulation.fixtures import is_stated_fixture
+
+        if not is_stated_fixture(name):
+            yield name
+
+
 def _of_libraries(names: Iterable[str]) -> Iterator[FilePath]:
     for name in names:
         from trunnion.jobs.project.named_files import library_files
@@ -184,6 +192,7 @@ LEADS: Final[dict[str, Callable[[list[Any]], Iterable[FilePath]]]] = {
     "project": _of_projects,
     "posted": _of_posted,
     "stock": _of_stocks,
+    "fixture": _of_fixtures,
     "impeller": _of_impellers,
     "manifest": _of_manifests,
     "jobs": _named,

@@ -1,10 +1,11 @@
 """The texts of all messages: data that a code, a variant and named parameters choose and fill in.
 
 The files of ``en`` hold for each code the variants of its message: ``VARIANT.what`` is the fault, ``VARIANT.cure`` how
-to correct it. Another language is another folder. A text is a template:
+to correct it. Another language is another folder with the same names (decision 0018); a text that it lacks is English.
+A text is a template:
 
     {name}, {name:.3f}           a parameter, with a format; of a wording its fault, and its cure by {name:cure}
-    {count:# line|# lines}       a number with what it counts: its forms for one and for more
+    {count:# line|# lines}       a number with what it counts: its forms for one and for more, or one for all
     {setting:tool=5}             what a user may set, in the words of who asks (``Words``);
     {argument:trust=X}           so are arguments, and arguments that are switched on
     {switch:force}
@@ -12,7 +13,7 @@ to correct it. Another language is another folder. A text is a template:
 A file is read when a text of it is asked for, never before.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from numbers import Integral, Real
@@ -40,7 +41,12 @@ CATALOGUES: Final = {
     "SIM": "simulation",
     "TWN": "twin",
     "comparison": "comparison",
+    "terminal": "terminal",
 }
+
+#: The languages that there are catalogues of, the one that has all texts first.
+LANGUAGES: Final = ("en", "zh", "de")
+ENGLISH: Final = LANGUAGES[0]
 
 #: The files of what checks say, of sentences that stand around others, and of parts that stand in others.
 CHECKS: Final = "checks"
@@ -54,7 +60,9 @@ _NONE: Final[Mapping[str, object]] = MappingProxyType({})
 
 
 class Words:
-    """How what a user may set is called: here in the words of the library."""
+    """The language of who asks, and how what a user may set is called there: here in the words of the library."""
+
+    language: str = ENGLISH
 
     def setting(self, name: str, value: str) -> str:
         """Return a setting with a value."""
@@ -111,9 +119,9 @@ class Wording:
         """Return what a notebook shows of it, in records too: the data would hide what is said."""
         return f"Wording({self.what!r})"
 
-    def text(self, part: Part, words: Words = LIBRARY, language: str = "en") -> str:
-        """Return the fault or its cure, in the words of who asks."""
-        return _text(self, part, words, language)
+    def text(self, part: Part, words: Words = LIBRARY) -> str:
+        """Return the fault or its cure, in the language and the words of who asks."""
+        return _text(self, part, words)
 
     def within(self, sentence: str, /, **parameters: object) -> Self:
         """Return the same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
@@ -161,6 +169,12 @@ def phrase(variant: str, /, **parameters: object) -> Wording:
     return Wording("", variant, **parameters)
 
 
+def joined(wordings: Iterable[Wording], words: Words = LIBRARY) -> str:
+    """Return what wordings say, one behind the other, without those that say nothing."""
+    texts = tuple(filter(None, (wording.text("what", words) for wording in wordings)))
+    return Wording("terminal", "joined", texts=texts).text("what", words) if len(texts) > 1 else "".join(texts)
+
+
 def foreign(what: str, cure: str = "", code: str = "") -> Wording:
     """Return a text that is in no catalogue, since it is that of others: of a hook, or of a program without a code for
     it.
@@ -201,38 +215,73 @@ def filled_in(template: str, words: Words = LIBRARY, parameters: Mapping[str, ob
 
 @cache
 def catalogue(language: str, name: str) -> dict[str, Any]:
-    """Return a file of texts: the variants of each code, and their parts."""
+    """Return a file of texts: the variants of each code, and their parts; none where a language has no such file."""
     import tomllib  # most runs have nothing to say
-    from importlib.resources import files
+    from pkgutil import get_data  # importlib.resources imports ten times as much
 
-    return tomllib.loads(files(__name__).joinpath(language, f"{name}.toml").read_text(encoding="utf-8"))
+    try:
+        found = get_data(__name__, f"{language}/{name}.toml")
+    except OSError:
+        if language == ENGLISH:
+            raise
+        return {}
+    return tomllib.loads((found or b"").decode())
+
+
+def said_in(language: str, name: str, *path: str, english: str = "") -> str:
+    """Return a text without parameters: of a file, in a language, else in English.
+
+    english  what it is where no catalogue has it: English texts stand where they are declared
+    """
+    for each in dict.fromkeys((language, ENGLISH)):
+        try:
+            found = _entry(each, name, path)
+        except (LookupError, OSError, ValueError, TypeError):
+            continue
+        if isinstance(found, str) and found:
+            return found
+    return english
+
+
+def _entry(language: str, name: str, path: Iterable[str]) -> Any:
+    found: Any = catalogue(language, name)
+    for key in path:
+        found = found[key]
+    return found
 
 
 @lru_cache(4096)
-def _text(wording: Wording, part: Part, words: Words, language: str) -> str:
-    text = _inner_text(wording, part, words, language)
+def _text(wording: Wording, part: Part, words: Words) -> str:
+    text = _inner_text(wording, part, words)
     if part == "what":
         for sentence, parameters in wording.around:
-            try:
-                template = catalogue(language, AROUND)[sentence]
-                text = filled_in(template, words, {**dict(parameters), "what": text})
-            except (LookupError, ValueError, TypeError):
-                text = f"{text} ({_unfilled(sentence, parameters)})"
+            around = _filled_entry(words, AROUND, (sentence,), {**dict(parameters), "what": text})
+            text = f"{text} ({_unfilled(sentence, parameters)})" if around is None else around
     return text
 
 
-def _inner_text(wording: Wording, part: Part, words: Words, language: str) -> str:
+def _inner_text(wording: Wording, part: Part, words: Words) -> str:
     parameters = dict(wording.parameters)
     if not wording.variant:
         return str(parameters[part])
-    try:
-        if not wording.code:
-            return filled_in(catalogue(language, PHRASES)[wording.variant], words, parameters)
+    if wording.code:
         file = CATALOGUES.get(wording.code.rstrip("0123456789"), CHECKS)
-        variant = catalogue(language, file)[wording.code][wording.variant]
-        return filled_in(variant.get(part, ""), words, parameters)
-    except (LookupError, OSError, ValueError, TypeError):
+        text = _filled_entry(words, file, (wording.code, wording.variant, part), parameters)
+    else:
+        text = _filled_entry(words, PHRASES, (wording.variant,), parameters)
+    if text is None:
         return _unfilled(wording.variant, wording.parameters) if part == "what" else ""
+    return text
+
+
+def _filled_entry(words: Words, name: str, path: tuple[str, ...], parameters: Mapping[str, object]) -> str | None:
+    """Return the first text that is there and fits: that of the language, else the English one."""
+    for language in dict.fromkeys((words.language, ENGLISH)):
+        try:
+            return filled_in(_entry(language, name, path), words, parameters)
+        except (LookupError, OSError, ValueError, TypeError):
+            continue
+    return None
 
 
 def _unfilled(variant: str, parameters: Parameters) -> str:
@@ -258,9 +307,9 @@ def _field(field: str, spec: str, words: Words, parameters: Mapping[str, object]
         return value.text("cure" if spec == "cure" else "what", words)
     if isinstance(value, tuple):
         return spec.join(each.text("what", words) if isinstance(each, Wording) else each for each in value)
-    if "|" in spec:
-        one, more = spec.split("|")
-        return (one if value == 1 else more).replace("#", str(value))
+    if "|" in spec or "#" in spec:
+        one, _, more = spec.partition("|")
+        return (one if value == 1 else more or one).replace("#", str(value))
     return format(value, spec)
 
 

@@ -84,7 +84,7 @@ class _Walk:
     def __init__(self, run: Run) -> None:
         machine, n = run.machine, len(run)
         self.run = run
-        zero, length = stated_rows(run)
+        zero, length = (column.column() for column in stated_rows(run))
         self.placed = zero & length
         self.turns_in_place = zero & (length | np.bool_(not machine.has_rotary_head))
         self.tip_words = run.state.xyz_is_tip.column()

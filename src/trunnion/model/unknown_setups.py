@@ -5,12 +5,14 @@ Out:    its rows without one, and which they are without. No other offset's or t
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Ints
 from trunnion.messages import Wording, phrase
+from trunnion.model.columns import StepColumn
 from trunnion.model.programmed_words import ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.run_setups import Setup, known_values
@@ -35,13 +37,13 @@ def tools_without_length(run: Run) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_tool_name(setup.tool) for setup in used if setup.machine.tool_length is None))
 
 
-def stated_rows(run: Run) -> tuple[Flags, Flags]:
-    """Return in which rows the zero is stated, and in which the length of the tool, (n,) each."""
+def stated_rows(run: Run) -> tuple[StepColumn, StepColumn]:
+    """Return in which rows the zero is stated, and in which the length of the tool, bool each."""
     machines = [run.machine] if run.setups is None else [setup.machine for setup in run.setups.each]
-    number = np.zeros(len(run), np.int64) if run.setups is None else run.setups.number.column()
+    number = StepColumn.constant(len(run), 0, np.int64) if run.setups is None else run.setups.number
     zero = np.array([machine.workpiece_zero is not None for machine in machines])
     length = np.array([machine.tool_length is not None for machine in machines])
-    return zero[number], length[number]
+    return replace(number, values=zero[number.values]), replace(number, values=length[number.values])
 
 
 def rows_without_values(run: Run) -> Iterator[tuple[int, Wording]]:

@@ -224,8 +224,9 @@ BODIES: Final = Group(
         Option(
             "fixtures",
             "--fixture",
-            FileIn("MESH"),
-            "a fixture, as the program counts",
+            FileIn("FIXTURE", leads="fixture"),
+            "a fixture, as the program counts: a mesh file, box:X,Y,Z[,x0,y0,z0], cylinder:D,H[,z0],"
+            " chuck:D,height=MM,grip=D,jaw=LxWxH or vice:W,opening=MM,jaw=TxH,base=LxH",
             many=Many.REPEAT,
             key="fixtures",
             level=Level.OWN,

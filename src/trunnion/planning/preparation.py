@@ -44,6 +44,9 @@ _ACROSS = 1e-6
 #: Two tool axes are opposite above this negative cosine: printed decimals would choose the way between them.
 _OPPOSITE: Final = 1.0 - 1e-12
 
+#: The product of a component of one direction with that of the opposite one is less, whatever is rounded.
+_SAME_SIGN: Final = 1e-9
+
 #: Modes in which the tool axis may change.
 _SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
 
@@ -86,8 +89,10 @@ def prepare_operations(
 def _axes_turned_over(file: str, operation: Operation) -> Iterator[Problem]:
     """Yield cuts along which the tool axis turns to the opposite direction: no one great circle leads there."""
     moves = operation.moves
-    cosines = np.einsum("ij,ij->i", moves.axis[:-1], moves.axis[1:])
-    for row in (1 + np.flatnonzero((cosines < -_OPPOSITE) & (moves.kind[1:] != Kind.RAPID))).tolist():
+    # An axis turned over has no component of the same sign: few rows are left to be looked at closer.
+    rows = 1 + np.flatnonzero(moves.axis[:-1, 2] * moves.axis[1:, 2] < _SAME_SIGN)
+    cosines = (moves.axis[rows - 1] * moves.axis[rows]).sum(axis=1)
+    for row in rows[(cosines < -_OPPOSITE) & (moves.kind[rows] != Kind.RAPID)].tolist():
         yield Problem(file, int(moves.line[row]), Wording("PLN130", "axis_turns_over"))
 
 

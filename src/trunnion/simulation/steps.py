@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Protocol
 
 from trunnion.errors import Problem, warning
@@ -16,7 +17,7 @@ from trunnion.simulation.remarks import of_setup, part_remarks, simulation_remar
 from trunnion.simulation.simulator import CuttingModel, SimulatedProgram, Simulation, cut_share, simulate
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.stock.turning import turned_stock
-from trunnion.simulation.sunk_bodies import sunk_bodies
+from trunnion.simulation.sunk_bodies import jaws_in_stock, sunk_bodies
 from trunnion.simulation.turned_parts import as_clamped, places_of_drawing
 
 
@@ -143,6 +144,7 @@ class SetupSteps:
             if turn is not None:
                 blank = tuple(as_clamped(mesh, turn) for mesh in blank)
             remarks += sunk_bodies(clamped[0].machine, (*blank, *around))
+            remarks += chain.from_iterable(jaws_in_stock(stock, around) for stock in blank)
         machines = [each for each in dict.fromkeys(machines) if each not in self._of_machines]
         self._of_machines += machines
         self._watcher.problems(machines)

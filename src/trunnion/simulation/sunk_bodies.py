@@ -21,6 +21,17 @@ from trunnion.simulation.meshes import TriangleMesh
 _STANDS: Final = 0.1
 
 
+def jaws_in_stock(stock: TriangleMesh, fixtures: Sequence[TriangleMesh]) -> Iterator[Problem]:
+    """Yield a warning for each fixture that is inside of the stock, all in workpiece coordinates."""
+    solid = Solid(stock)
+    for fixture in fixtures:
+        other = Solid(fixture)
+        if touches(solid, other, np.eye(4)):
+            depth, _ = PairQuery(solid, other).depth(np.eye(4))
+            if depth > _STANDS:
+                yield warning(fixture.name, 0, Wording("SIM314", "in_stock", depth=depth))
+
+
 def sunk_bodies(machine: Machine, meshes: Sequence[TriangleMesh]) -> Iterator[Problem]:
     """Yield a warning for each of some bodies in workpiece coordinates that is inside of what carries it.
 

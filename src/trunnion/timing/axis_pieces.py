@@ -129,7 +129,7 @@ class _Motion:
     def _has_length(self, first: int, end: int, tool: Ints) -> Flags:
         """Which rows have a tool of which somebody has stated the length, (n,)."""
         given = np.array([bool(self.lengths.get(int(k))) for k in tool.tolist()], np.bool_)
-        return given | self._stated_length[first:end]
+        return np.asarray(given | self._stated_length.part(first, end))
 
     def _row_joints(self, first: int, end: int, xyz_is_tip: Flags, length: Floats, machine: Flags) -> Floats:
         """Axis values at the end of rows, with the real lengths of tools."""

@@ -12,7 +12,7 @@ from trunnion.arrays import Flags, Floats, Lines
 from trunnion.compensation.centre_runs import CentreRun
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
-from trunnion.messages import Wording, phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
@@ -106,6 +106,14 @@ class State(StrEnum):
     FAIL = "FAIL"
     NOT_CHECKED = "not checked"
 
+    def said(self, words: Words = LIBRARY) -> str:
+        """Return it as it is read."""
+        return Wording("all", _STATES[self]).text("what", words)
+
+
+#: What is said of each state.
+_STATES: Final = {State.OK: "state_ok", State.FAIL: "state_fail", State.NOT_CHECKED: "state_not_checked"}
+
 
 def _texts(wordings: Sequence[Wording]) -> list[str]:
     return [wording.what for wording in wordings]
@@ -160,12 +168,21 @@ class Check:
     @property
     def told(self) -> str:
         """``summary`` as it is printed: behind what is missing."""
+        return self.said()
+
+    def said(self, words: Words = LIBRARY) -> str:
+        """Return ``told`` in the words of who asks."""
         covered = () if self.coverage is None else tuple(self.coverage.wordings())
-        return "; ".join(filter(None, _texts((*self.missing, *filter(None, (self.answer,)), *covered))))
+        wordings = (*self.missing, *filter(None, (self.answer,)), *covered)
+        return joined(wordings, words)
+
+    def line(self, words: Words = LIBRARY) -> str:
+        """Return the line that the command prints: key, state, summary."""
+        return f"{self.key:<{_KEY_WIDTH}}  {self.state.said(words):<4}  {self.said(words)}"
 
     def __str__(self) -> str:
-        """Return the line that the command prints: key, state, summary."""
-        return f"{self.key:<{_KEY_WIDTH}}  {self.state:<4}  {self.told}"
+        """Return ``line`` in English."""
+        return self.line()
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
-from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.results import NOT_DATA, Figure
 
 
@@ -96,12 +96,17 @@ class Standing:
         if self.axes_from_home:
             yield phrase("assumed_home", axes=self.axes_from_home)
 
-    def said(self, words: Words = LIBRARY, language: str = "en") -> str:
+    def said(self, words: Words = LIBRARY) -> str:
         """Return what is said behind the verdict."""
-        return "; ".join(wording.text("what", words, language) for wording in self.wordings())
+        return joined(self.wordings(), words)
+
+    def line(self, words: Words = LIBRARY) -> str:
+        """Return the line that is said of the program."""
+        verdict = phrase(self.verdict.value).text("what", words)
+        return f"{verdict}: {said}" if (said := self.said(words)) else verdict
 
     @property
     @Figure("text")
     def told(self) -> str:
         """The line that is said of the program."""
-        return f"{self.verdict.word}: {said}" if (said := self.said()) else self.verdict.word
+        return self.line()

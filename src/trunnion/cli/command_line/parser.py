@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final, NoReturn
 
 from trunnion.cli.command_line.help_texts import command_help, overview, signature
+from trunnion.cli.command_line.language import LANGUAGE, is_language_option
 from trunnion.cli.command_line.post_mistakes import post_mistake
 from trunnion.cli.printing import print_result
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.job import Given, Job
 from trunnion.jobs.registry import JOBS
-from trunnion.messages import Wording
-from trunnion.options.kinds import Setting, Switch, WrongValueError
+from trunnion.messages import LANGUAGES, Wording
+from trunnion.options.kinds import Choice, Setting, Switch, WrongValueError
 from trunnion.options.option import Many, Option
 from trunnion.wording import nearest_word
 
@@ -37,6 +38,8 @@ def parse(words: Sequence[str]) -> Given:
 
     Ends the process after ``--help``, and with exit code 2 where it cannot be understood.
     """
+    if wrong := _wrong_language(words):
+        _fail("trunnion", wrong)
     if not words:
         _fail("trunnion", Wording("ARG120", "no_command"))
     if words[0] in ("-h", "--help"):
@@ -282,7 +285,7 @@ def _unclear_option(words: Iterable[str], job: Job) -> Wording | None:
     """Return what is wrong with the first word that looks like an option but is not one, or an abbreviation of several;
     None if there is none.
     """
-    known = ["--help", *(each.flag for each in job.flags)]
+    known = ["--help", LANGUAGE, *(each.flag for each in job.flags)]
     for word in words:
         name = word.partition("=")[0]
         if name == "--":
@@ -292,6 +295,22 @@ def _unclear_option(words: Iterable[str], job: Job) -> Wording | None:
             return _no_option(name, job)
         if name.startswith("--") and len(meant) > 1 and name not in meant:
             return Wording("ARG120", "several_options", option=name, flags=tuple(meant))
+    return None
+
+
+def _wrong_language(words: Sequence[str]) -> Wording | None:
+    """Return what is wrong with a language that is none: those that there are have been taken out of the words."""
+    before = words[: words.index("--")] if "--" in words else words
+    for at, word in enumerate(before):
+        name, equals, value = word.partition("=")
+        if not is_language_option(name):
+            continue
+        if not equals and at + 1 == len(before):
+            return Wording("ARG120", "no_value", option=LANGUAGE, written=f"{LANGUAGE} {'|'.join(LANGUAGES)}")
+        try:
+            Choice(LANGUAGES).parse(value if equals else before[at + 1])
+        except WrongValueError as error:
+            return Wording("ARG120", "wrong_value", option=LANGUAGE, value=error.wording)
     return None
 
 

@@ -6,12 +6,12 @@ from typing import Final
 
 from trunnion.controls import Control, load_control, shipped_controls
 from trunnion.controls.definition_files import is_control_file, load_control_table
+from trunnion.controls.places import TEMPLATE_ORDER
 from trunnion.controls.setting_rules import SettingKind
 from trunnion.controls.vocabulary import (
     PROGRAM_MEANINGS,
     SUBPROGRAM_TEMPLATES,
     SURFACE_NORMAL_WORDS,
-    TEMPLATE_ORDER,
     TOOL_VECTOR_WORDS,
     UNKNOWN_FEED,
 )

@@ -11,6 +11,7 @@ from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.messages import phrase
 from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.fixtures import is_stated_fixture, stated_fixture
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.tools.choice import ClTool, choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.library import ToolLibrary, read_tools
@@ -39,23 +40,34 @@ def read_mesh(mesh: MeshLike, name: str, remarks: list[Problem], deviation: floa
     return load_mesh(mesh, name=name, closed=True, deviation=deviation, warn=remarks.append)
 
 
-def fixture_names(fixtures: Sequence[MeshLike]) -> list[str]:
-    """Return what findings call fixtures: by their files, and by their numbers where these are the same or there is
-    none.
-    """
-    files = ["" if isinstance(each, TriangleMesh) else Path(each).name for each in fixtures]
-    alone = [name and files.count(name) == 1 for name in files]
-    return [
-        f"fixture {name}" if is_alone else f"fixture {k} {name}".rstrip()
-        for k, (name, is_alone) in enumerate(zip(files, alone, strict=True), 1)
-    ]
+def fixture_files(fixtures: Any) -> list[FilePath]:
+    """Return the files among fixtures: neither meshes as they are nor texts of sizes."""
+    given = listed("fixtures", fixtures, TriangleMesh)
+    return [each for each in given if not isinstance(each, TriangleMesh) and not is_stated_fixture(str(each))]
 
 
 def fixture_meshes(fixtures: Any, remarks: list[Problem], deviation: float = DEVIATION) -> tuple[TriangleMesh, ...]:
-    """Return the meshes of fixtures, with their names."""
+    """Return the meshes of fixtures, with what findings call them: by file or kind, and by their numbers where these
+    are the same or there is none.
+    """
     given: list[MeshLike] = listed("fixtures", fixtures, TriangleMesh)
-    named = zip(given, fixture_names(given), strict=True)
-    return tuple(read_mesh(fixture, name, remarks, deviation) for fixture, name in named)
+    pieces = [_fixture_pieces(fixture, remarks, deviation) for fixture in given]
+    firsts = [meshes[0].name for meshes in pieces]
+    return tuple(
+        mesh.named(
+            f"fixture {mesh.name}" if mesh.name and firsts.count(first) == 1 else f"fixture {k} {mesh.name}".rstrip()
+        )
+        for k, (first, meshes) in enumerate(zip(firsts, pieces, strict=True), 1)
+        for mesh in meshes
+    )
+
+
+def _fixture_pieces(fixture: MeshLike, remarks: list[Problem], deviation: float) -> list[TriangleMesh]:
+    if isinstance(fixture, TriangleMesh):
+        return [fixture.named("")]
+    if is_stated_fixture(str(fixture)):
+        return stated_fixture(str(fixture))
+    return [read_mesh(fixture, Path(fixture).name, remarks, deviation)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

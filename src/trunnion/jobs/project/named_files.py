@@ -7,7 +7,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TypeGuard
 
-from trunnion.jobs.inputs.bodies import listed
+from trunnion.jobs.inputs.bodies import fixture_files, listed
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.simulation_input import SetupInput
@@ -71,7 +71,8 @@ def simulated_files(project: Project, number: int) -> list[FilePath]:
 
 
 def _named_files(setup: SetupInput) -> Iterator[FilePath]:
-    several: tuple[Iterable[object], ...] = setup.programs, setup.subprograms, setup.fixtures, setup.tool_libraries
+    fixtures = fixture_files(setup.fixtures)
+    several: tuple[Iterable[object], ...] = setup.programs, setup.subprograms, fixtures, setup.tool_libraries
     for names in (*several, listed("cl", setup.cl, Toolpath), (setup.part or None,)):
         yield from (name for name in names if _is_path(name))
 

@@ -30,14 +30,17 @@ class ProjectPaths:
         """Whether a file lies in the folder of the project; never asked of another folder."""
         return PurePosixPath(name).name == name and "\\" not in name and _answer(Path.is_file, self._folder / name)
 
-    def files(self, table: Table, key: str, *, required: bool = False) -> tuple[str, ...]:
+    def files(
+        self, table: Table, key: str, *, required: bool = False, is_text: Callable[[str], bool] | None = None
+    ) -> tuple[str, ...]:
+        """Return the paths of files that are read; what ``is_text`` says to be no name of a file, as it stands."""
         names = table.texts(key) if required else table.texts(key, ())
         if required and key in table and not names:
             table.add_problem(key, Wording("DEF330", "no_programs"))
         if len(names) > _MOST_FILES:
             table.add_problem(key, Wording("DEF330", "too_many_files", count=len(names), most=_MOST_FILES))
             return ()
-        return tuple(self.file(table, key, name) for name in names)
+        return tuple(name if is_text and is_text(name) else self.file(table, key, name) for name in names)
 
     def output(self, table: Table, key: str) -> Path | None:
         """Return the path of a file that a project writes; it lies beside the project or below.

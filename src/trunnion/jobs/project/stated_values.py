@@ -8,6 +8,7 @@ from trunnion.jobs.project.paths import ProjectPaths
 from trunnion.machines import shipped_machines
 from trunnion.options.kinds import Choice, FileIn, Measure, Number, Point, Switch
 from trunnion.options.option import SEVERAL, Option
+from trunnion.simulation.fixtures import is_stated_fixture
 from trunnion.simulation.stock.solids import is_mesh
 
 
@@ -52,7 +53,8 @@ class StatedValues:
 
     def _files(self, table: Table, option: Option, kind: FileIn) -> Any:
         if option.many in SEVERAL:
-            return self.paths.files(table, option.key)
+            is_text = is_stated_fixture if kind.leads == "fixture" else None
+            return self.paths.files(table, option.key, is_text=is_text)
         if kind.leads == "machine":
             return self.machine(table, option.key)
         if kind.leads == "stock":

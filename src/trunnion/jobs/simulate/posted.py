@@ -15,6 +15,7 @@ from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, Severity, argument_problem, key_subject
 from trunnion.jobs.arguments import with_present_names
 from trunnion.jobs.inputs.arguments import check_path, checked_angles
+from trunnion.jobs.inputs.bodies import fixture_files, fixture_meshes
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput
 from trunnion.jobs.inputs.stated_setup import set_up_machine
@@ -126,9 +127,9 @@ def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh
 def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
     setup = given.setups[0]
     yield "stock", stock_shape(given.stock).as_mesh()
-    for kind, meshes in (("part", [] if setup.part is None else [setup.part]), ("fixture", setup.fixtures)):
-        for mesh in meshes:
-            yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)
+    if setup.part is not None:
+        yield "part", setup.part if isinstance(setup.part, TriangleMesh) else load_mesh(setup.part)
+    yield from (("fixture", mesh) for mesh in fixture_meshes(setup.fixtures, []))
 
 
 def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> SimulationInput:
@@ -195,7 +196,8 @@ def simulation_files(given: SimulationLike) -> list[FilePath]:
         value = given.get(option.name)
         several = [value] if isinstance(value, str | os.PathLike) or not isinstance(value, Iterable) else value
         files = [each for each in several if isinstance(each, str | os.PathLike)]
-        named += library_files(files) if getattr(option.kind, "leads", "") == "library" else files
+        leads = getattr(option.kind, "leads", "")
+        named += library_files(files) if leads == "library" else fixture_files(files) if leads == "fixture" else files
     return named
 
 

@@ -13,7 +13,7 @@ from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.files import atomic_file
 from trunnion.jobs.arguments import ViewArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_path, check_paths
-from trunnion.jobs.inputs.bodies import KnownTools, known_tools
+from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools
 from trunnion.jobs.inputs.control_settings import register_value
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.settings import Settings
@@ -88,10 +88,10 @@ def _prepared(
     viewed = view_program(files, placed, given=given, settings=settings, observer=observer)
     if any(given[name] for name in ("stock", "part", "fixtures")):
         observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
-    fixtures = check_paths("fixtures", given["fixtures"])
+    fixtures = fixture_meshes(given["fixtures"], [])
     run = viewed.verification.run
     machine = _with_zero_of(frame_of_offset([run], None), viewed.verification.machine)
-    around = [fixture_body(load_mesh(mesh, name=f"fixture {k}"), machine) for k, mesh in enumerate(fixtures, 1)]
+    around = [fixture_body(mesh, machine) for mesh in fixtures]
     part = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     clamped = around if part is None else [part_body(part, machine), *around]
     bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))

@@ -77,10 +77,12 @@ def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
 
 def _first_of_each_feed(moves: Moves, rows: Ints) -> list[int]:
     """Return the first of ``rows`` (k,) with each feed, ascending."""
+    feed, per_rev = moves.feed[rows], moves.per_rev[rows]
+    begins = np.append(True, (feed[1:] != feed[:-1]) | (per_rev[1:] != per_rev[:-1]))[: len(rows)]
     first = []
-    for per_rev in (False, True):
-        here = rows[moves.per_rev[rows] == per_rev]
-        first += here[np.unique(moves.feed[here], return_index=True)[1]].tolist()
+    for mode in (False, True):
+        here = np.flatnonzero(begins & (per_rev == mode))  # few, where a million points have a handful of feeds
+        first += rows[here[np.unique(feed[here], return_index=True)[1]]].tolist()
     return sorted(first)
 
 

@@ -25,11 +25,15 @@ from trunnion.readers.control.contours import ContourError, Corner, Element
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import ScannedRows, within_limits
 from trunnion.readers.control.setup_control import SetupControl
-from trunnion.readers.scan.buffers import ScanSettings
+from trunnion.readers.scan.buffers import MOTION_BITS, ScannedCircles, ScanSettings
+from trunnion.readers.scan.circles import find_circles
 
 #: What the feed of a corner without one of its own is that of.
 FEED_BEFORE: Final = "block_before"
 FEED_BEHIND: Final = "block_behind"
+
+#: G2 in a scan.
+CLOCKWISE: Final = 2
 
 _ROTARY: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
 
@@ -85,6 +89,11 @@ class ContourControl(SetupControl):
         # The last element, with its place behind its row; and that before a scan, with the row and position there.
         self._last: tuple[Place, Element] | None = None
         self._scan: tuple[Place, int, Floats] | None = None
+        self._found = ScannedCircles.empty()
+        # How many of them the next blocks have, and their map, which holds until rotary axes turn.
+        self._found_count, self._found_map = 0, arcs.ArcMap.of(np.eye(3), np.zeros(3))
+        # The last circle of that scan, with its row and start.
+        self._scanned_arc: tuple[int, Floats, arcs.Arc] | None = None
         self._awaited: Awaited | None = None
         # The first row that programs an axis, by axis.
         self._first_rows: dict[int, int] = {}
@@ -135,19 +144,62 @@ class ContourControl(SetupControl):
             return None
         _, first, start = self._scan
         last = self.row - 1
+        if self._scanned_arc is not None and self._scanned_arc[0] == last:
+            return Element(self._scanned_arc[1], self._scanned_arc[2].end, self._scanned_arc[2])
         if last > first:
             start = AffineMap(self.position_map[:, :3], self.position_map[:, 3]).solve(self.columns.xyz[last - 1])
         rapid = self.columns.kind[last] == Kind.RAPID
         turns = bool(self.columns.programmed[last] & _ROTARY)
         return Element(start, self.programmed_position.copy(), rapid=bool(rapid), turns=turns)
 
+    def find_circles(self, count: int) -> int:
+        """Work out the circles of the first ``count`` blocks of ``words``.
+
+        Returns how many blocks are before the first circle that the interpreter must judge.
+        """
+        kinds = self.words.kind[:count]
+        self._found_count = 0
+        if not count or kinds.max() <= Kind.LINEAR:
+            return count
+        self._found_map, keeps_circles = self._map_of_circles()
+        if not keeps_circles:
+            circles = (kinds > Kind.LINEAR) & (self.words.seen[:count] & MOTION_BITS != 0)
+            return int(circles.argmax()) if circles.any() else count
+        plain, self._found_count = find_circles(
+            count,
+            self.words,
+            self.length_unit,
+            self.plane_axis,
+            self.tip_programmed,
+            self.programmed_position,
+            self._found,
+        )
+        return plain
+
     def execute_scanned(self, count: int, settings: ScanSettings) -> ScannedRows:
         """Execute the first ``count`` blocks of ``words``, which begin at ``line``."""
         first, start = self.row, self.programmed_position.copy()
         scanned = super().execute_scanned(count, settings)
+        self._scanned_arc = None
+        if self._found_count:
+            self._add_circles(first)
         if self.row > first:
             self._scan = self._place, first, start
         return scanned
+
+    def _add_circles(self, first: int) -> None:
+        """Record the circles of a scan whose rows begin at one."""
+        found, n = self._found, self._found_count
+        starts, centres, radii = found.start[:n], found.centre[:n], found.radius[:n]
+        arc_map, plane = self._found_map, self.plane_axis
+        signs = np.where(self.words.kind[found.block[:n]] == CLOCKWISE, -1.0, 1.0)
+        normals = signs[:, None] * arc_map.normals[:, plane]
+        rows = first + found.row[:n]
+        self._circles.add_scanned(rows, centres @ arc_map.linear.T + arc_map.shift, normals, radii * arc_map.scale)
+        if rows[-1] == self.row - 1:
+            end, normal = self.programmed_position.copy(), arcs.normal_of(plane, bool(signs[-1] < 0.0))
+            last = arcs.Arc(end, centres[-1].copy(), normal, float(radii[-1]))
+            self._scanned_arc = int(rows[-1]), starts[-1].copy(), last
 
     def add_element(
         self,
@@ -299,17 +351,21 @@ class ContourControl(SetupControl):
         """Return centre, normal and radius in the workpiece frame; None, with a diagnostic, if it is no circle."""
         if axes_turn:
             self.note(Wording("NC321", "circle_of_axes_turns"), Severity.WARNING)
+        arc_map, keeps_circles = self._map_of_circles()
+        mapped = arc_map.map_arc(arc) if keeps_circles else arc_map.map_in_plane(arc)
+        if mapped is None:
+            self.note(Wording("NC320", "circle_under_unequal_scales_ellipse"), Severity.ERROR)
+        return mapped
+
+    def _map_of_circles(self) -> tuple[arcs.ArcMap, bool]:
+        """Return the map of circles into the workpiece frame, and whether all of them stay circles."""
         slide_map = None if self.tip_programmed else self._slides_to_tip()
         if self._arc_map is None:
             linear, shift = self.position_map[:, :3], self.position_map[:, 3]
             if slide_map is not None:
                 linear, shift = slide_map[:, :3] @ linear, slide_map[:, :3] @ shift + slide_map[:, 3]
             self._arc_map = arcs.ArcMap.of(linear, shift), self.frame.keeps_circles
-        arc_map, keeps_circles = self._arc_map
-        mapped = arc_map.map_arc(arc) if keeps_circles else arc_map.map_in_plane(arc)
-        if mapped is None:
-            self.note(Wording("NC320", "circle_under_unequal_scales_ellipse"), Severity.ERROR)
-        return mapped
+        return self._arc_map
 
     def _slides_to_tip(self) -> Floats:
         """Return the map (3, 4) from slide positions to the tip, with the rotary axes where they are."""

@@ -129,8 +129,8 @@ class StepColumnBuilder(Generic[T]):
     def part(self, first: int, end: int) -> Flags:
         """Return whether the value is other than 0 in the rows from ``first`` to before ``end``, (end - first,)."""
         change = bisect_right(self._rows, first) - 1
-        at, values = np.array(self._rows[change:]), np.array(self._values[change:], np.bool_)
-        return np.asarray(values[np.searchsorted(at, np.arange(first, end), "right") - 1])
+        bounds = np.append(np.clip(np.array(self._rows[change:]), first, end), end)
+        return np.repeat(np.array(self._values[change:], np.bool_), np.diff(bounds))
 
     def extend(self, rows: Ints, values: Floats) -> None:
         """Append changes at ascending rows beyond the last change; every value differs from the one before it."""

@@ -30,9 +30,10 @@ from trunnion.model.run import Comment, Diagnostic, ProgrammedWord, Run
 from trunnion.model.run_columns import SurfaceNormals
 from trunnion.model.spindle_work import SpindleHole, SpindleWork
 from trunnion.model.splines import SplineRows, Splines
-from trunnion.model.toolpath import Arcs, Kind
+from trunnion.model.toolpath import Kind
 from trunnion.readers.control.affine_map import affine_matrix
 from trunnion.readers.control.axis_word import NO_ROTARY, RotaryTarget
+from trunnion.readers.control.circle_columns import CircleColumns
 from trunnion.readers.control.event_recorder import EventRecorder, Note
 from trunnion.readers.control.start_modes import Relied, assumed_modes
 from trunnion.readers.scan.buffers import MAX_BLOCKS, BlockWords, RowColumns, ScanRecords, ScanSettings
@@ -94,7 +95,7 @@ class RowRecorder(EventRecorder):
         self.machine = machine
         self.block_number = -1
         self.units_from: int | None = 0 if self.knows_units else None
-        self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
+        self._circles = CircleColumns()
         #: Whole turns of all arcs so far.
         self.turns = 0
         self._splines: list[SplineRows] = []
@@ -199,7 +200,7 @@ class RowRecorder(EventRecorder):
 
     def add_arc(self, row: int, centre: Floats, normal: Floats, radius: float, turns: int) -> None:
         """Record the circle of a row of kind ``Kind.ARC``, in the workpiece frame."""
-        self._arcs.append((row, centre, normal, radius, turns))
+        self._circles.add(row, centre, normal, radius, turns)
         self.turns += turns
 
     def add_spline(self, rows: SplineRows) -> None:
@@ -336,7 +337,7 @@ class RowRecorder(EventRecorder):
             rotary=c.rotary[:n],
             state=self.modal.state(n),
             start=self.start,
-            arcs=self._arc_columns(),
+            arcs=self._circles.joined(),
             splines=Splines.joined(self._spline_columns),
             normals=self._normal_columns(),
             tools=tuple(self.tools),
@@ -362,14 +363,6 @@ class RowRecorder(EventRecorder):
             return SurfaceNormals.empty()
         rows, vectors = zip(*self._normals, strict=True)
         return SurfaceNormals(np.concatenate(rows), np.concatenate(vectors))
-
-    def _arc_columns(self) -> Arcs:
-        if not self._arcs:
-            return Arcs.empty()
-        rows, centres, normals, radii, turns = zip(*self._arcs, strict=True)
-        return Arcs(
-            np.array(rows, np.int64), np.array(centres), np.array(normals), np.array(radii), np.array(turns, np.int64)
-        )
 
 
 def within_limits(point: Floats) -> bool:

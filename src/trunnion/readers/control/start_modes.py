@@ -88,26 +88,25 @@ class Relied:
     in_machine: Flags
     tcp: Flags
 
-    def first_row(self, mode: str) -> int:
-        """Return the first row that relies on a mode; the number of rows if none does."""
+    def _is_relied_on(self, mode: str, end: int) -> bool:
+        """Whether a row before ``end`` relies on a mode."""
         if mode in (END_OF_CYCLES, CENTRES):
-            return self.relied_from.get(mode, len(self.kind))
-        rows = self._rows_with(_POSITIONS)
+            return self.relied_from.get(mode, end) < end
         if mode == "feed":
-            rows = self.kind != Kind.RAPID
-        elif mode in _OF_WORKPIECE:
-            rows = self._rows_with(_OF_WORKPIECE[mode]) & ~self.in_machine
+            return bool((self.kind[:end] != Kind.RAPID).any())
+        rows = self._rows_with(_OF_WORKPIECE.get(mode) or _OF_TCP.get(mode) or _POSITIONS, end)
+        if mode in _OF_WORKPIECE:
+            rows &= ~self.in_machine[:end]
         elif mode in _OF_TCP:
-            rows = self._rows_with(_OF_TCP[mode]) & self.tcp
-        return next(iter(np.flatnonzero(rows)[:1].tolist()), len(self.kind))
+            rows &= self.tcp[:end]
+        return bool(rows.any())
 
-    def _rows_with(self, words: ProgrammedWord) -> Flags:
-        return np.asarray((self.programmed & int(words)) != 0)
+    def _rows_with(self, words: ProgrammedWord, end: int) -> Flags:
+        return np.asarray((self.programmed[:end] & int(words)) != 0)
 
     def is_unsaid(self, mode: str) -> bool:
         """Whether the program relies on a mode before it says it."""
-        first = self.first_row(mode)
-        return first < len(self.kind) and self.said_from.get(mode, len(self.kind)) > first
+        return self._is_relied_on(mode, min(self.said_from.get(mode, len(self.kind)), len(self.kind)))
 
 
 def assumed_modes(machine: Machine, modes: Mapping[str, str], relied: Relied) -> tuple[str, ...]:

@@ -269,6 +269,9 @@ class Interpreter(ABC, Generic[A]):
             self._reserve_rows(source)
             limit = control.scan_limit()
             count, position = self._read_blocks(source, limit)
+            plain = control.find_circles(count)
+            if plain < count:
+                count, position = plain, int(control.words.begin[plain])
             if count:
                 control.line = source.line
                 scanned = control.execute_scanned(count, self._scan_settings())

@@ -32,14 +32,19 @@ _MOSTLY: Final = 0.5
 
 @dataclass(frozen=True, slots=True)
 class ProgramKind:
-    """A kind of files, and the marks of one: the letters of a line that match are shown.
+    """A kind of files, and the marks of one, patterns in capitals or not: the letters of a line that match are shown.
 
     languages  in which readers read it; empty: none does
     """
 
     name: str
-    marks: tuple[re.Pattern[str], ...]
+    marks: tuple[str, ...]
     languages: tuple[str, ...] = ()
+
+    @property
+    def patterns(self) -> list[re.Pattern[str]]:
+        """The marks, compiled when a file is looked at: most programs are understood."""
+        return [re.compile(mark, re.IGNORECASE) for mark in self.marks]
 
     @property
     def readers(self) -> tuple[str, ...]:
@@ -56,7 +61,7 @@ class Recognized:
 
 
 def _kind(name: str, *marks: str, languages: tuple[str, ...] = ()) -> ProgramKind:
-    return ProgramKind(name, tuple(re.compile(mark, re.IGNORECASE) for mark in marks), languages)
+    return ProgramKind(name, marks, languages)
 
 
 _N: Final = r"^/? ?(?:N\d+ ?)?"
@@ -134,9 +139,10 @@ def recognize(file: Path) -> Recognized | None:
     lines = list(_lines(file))
     best: Recognized | None = None
     for kind in KINDS:
-        found = [_first(mark, lines) for mark in kind.marks]
+        patterns = kind.patterns
+        found = [_first(mark, lines) for mark in patterns]
         marks = tuple({each[0]: each for each in sorted(filter(None, found), reverse=True)}.values())[::-1]
-        repeated = len(marks) == 1 and _count(kind.marks[[bool(each) for each in found].index(True)], lines) >= _ENOUGH
+        repeated = len(marks) == 1 and _count(patterns[[bool(each) for each in found].index(True)], lines) >= _ENOUGH
         if (len(marks) >= _ENOUGH or repeated) and (best is None or len(marks) > len(best.found)):
             best = Recognized(kind, marks)
     if best is None and lines and sum(not _WORD.search(line) for _, line in lines) >= _MOSTLY * len(lines):

@@ -14,6 +14,7 @@ from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord
+from trunnion.model.toolpath import Kind
 from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import ScannedRows
@@ -27,6 +28,7 @@ from trunnion.readers.rs274 import arc_vectors
 from trunnion.readers.rs274.block import Block, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER_CLOCKWISE, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.scan.buffers import BlockModes
 from trunnion.readers.scan.letter_blocks import read_blocks
 
 #: G codes, in tenths: those of motions and what they set, and the one that ends cycles.
@@ -36,12 +38,18 @@ CANCEL: Final = 800
 #: How the definition says that M2 and M30 of a subprogram end only that.
 _RETURNS: Final = ("end_in_subprogram", "returns")
 
+#: How it says that a circle is not modal.
+_LINE_BEHIND_CIRCLES: Final = ("behind_circles", "line")
+
 #: Letters of axes; a machine has five of them.
 AXES: Final = "XYZABCUVW"
 
-#: Beginnings of lines that may be plain blocks, so that a scan is worth starting.
-_PLAIN_START = re.compile(
-    rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[\r\n]|G[ \t]*0?[01](?![0-9.])|[A-FXYZ][ \t]*[-+.0-9])", re.IGNORECASE
+#: Beginnings of lines that may be plain blocks, so that a scan is worth starting, with circles and without.
+_PLAIN_START, _PLAIN_LINE = (
+    re.compile(
+        rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[\r\n]|G[ \t]*0?[%s](?![0-9.])|[A-FXYZ][ \t]*[-+.0-9])" % motions, re.IGNORECASE
+    )
+    for motions in (b"0-3", b"01")
 )
 _PREFIX_LENGTH: Final = 48
 
@@ -131,10 +139,12 @@ class Rs274Interpreter(Interpreter[A]):
     # Plain blocks
 
     def _may_scan(self, source: SourceText) -> bool:
-        if self.motion_code not in (0, 10) or not self.control.absolute or MOTION not in self.control.said_from:
+        circles = self._plane_of_circles >= 0
+        motions = (0, 10, 20, 30) if circles else (0, 10)
+        if self.motion_code not in motions or not self.control.absolute or MOTION not in self.control.said_from:
             return False
-        beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
-        return _PLAIN_START.match(beginning.tobytes()) is not None
+        beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH].tobytes()
+        return (_PLAIN_START if circles else _PLAIN_LINE).match(beginning) is not None
 
     @property
     @abstractmethod
@@ -142,19 +152,29 @@ class Rs274Interpreter(Interpreter[A]):
         """The table of ``letter_blocks`` for the present modes."""
 
     def _read_blocks(self, source: SourceText, limit: int) -> tuple[int, int]:
-        motion = MOTIONS[self.motion_code]
-        return read_blocks(source.buffer, source.position, limit, self._letter_table, False, motion, self.control.words)
+        modes = BlockModes(MOTIONS[self.motion_code], False, self._plane_of_circles)
+        return read_blocks(source.buffer, source.position, limit, self._letter_table, modes, self.control.words)
+
+    @property
+    def _plane_of_circles(self) -> int:
+        """The normal axis of the plane in which I J K are plain centres; -1: they are something else."""
+        control = self.control
+        plain = control.relative_centres and not control.arc_vectors
+        return control.plane_axis if plain and not self._form.is_so(*_LINE_BEHIND_CIRCLES) else -1
 
     @property
     def _inverse_time(self) -> bool:
         return self.control.modal.feed_mode.current == 93
 
     def _check_scanned(self, scanned: ScannedRows) -> None:
-        """Report lines without a feed."""
+        """Report lines and circles without a feed."""
         control, columns = self.control, self.control.columns
         self.motion_code = 10 * control.motion
         rows = scanned.rows
-        lines = columns.kind[rows.start : rows.stop] != 0
+        kinds = columns.kind[rows.start : rows.stop]
+        lines, circles = kinds != Kind.RAPID, kinds == Kind.ARC
+        if circles.any():
+            control.relied_from.setdefault(CENTRES, rows.start + int(circles.argmax()))
         if self._inverse_time:
             with_feed = (columns.programmed[rows.start : rows.stop] & int(ProgrammedWord.FEED)) != 0
             missing = np.flatnonzero(lines & ~with_feed) + rows.start
@@ -168,7 +188,8 @@ class Rs274Interpreter(Interpreter[A]):
         here = control.line
         for row in missing.tolist():
             control.line = int(columns.line[row - columns.base])
-            self._note(Wording("NC240", "line_without_feed"), Severity.ERROR)
+            variant = "circle_without_feed" if columns.kind[row] == Kind.ARC else "line_without_feed"
+            self._note(Wording("NC240", variant), Severity.ERROR)
         control.line = here
 
     # Words
@@ -246,7 +267,7 @@ class Rs274Interpreter(Interpreter[A]):
             if "R" not in circle_words:
                 control.relied_from.setdefault(CENTRES, control.row)
         control.move(axes, None, circle=control.circle(circle_words, turns), feed_written=self._check_feed(block))
-        if control.motion > LINEAR and self._form.is_so("behind_circles", "line"):
+        if control.motion > LINEAR and self._form.is_so(*_LINE_BEHIND_CIRCLES):
             self.motion_code, control.motion = 10, LINEAR
 
     def _check_feed(self, block: Block) -> bool:

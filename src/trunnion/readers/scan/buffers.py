@@ -20,12 +20,14 @@ SLIDE: Final = 4  # X, and the two after it: Y, Z
 ROTARY: Final = 7  # and the one after it
 VECTOR: Final = 9  # and the two after it: the tool axis
 NORMAL: Final = 12  # and the two after it: the surface normal
-SLOT_COUNT: Final = 15
+CENTRE: Final = 15  # and the two after it: the centre of a circle from its start
+SLOT_COUNT: Final = 18
 
 SLIDE_BITS: Final = 0b111 << SLIDE
 ROTARY_BITS: Final = 0b11 << ROTARY
 VECTOR_BITS: Final = 0b111 << VECTOR
 NORMAL_BITS: Final = 0b111 << NORMAL
+CENTRE_BITS: Final = 0b111 << CENTRE
 MOTION_BITS: Final = SLIDE_BITS | ROTARY_BITS | VECTOR_BITS
 
 
@@ -33,10 +35,11 @@ class BlockWords(NamedTuple):
     """The words of up to m plain blocks, which are those of consecutive lines.
 
     seen     (m,) int64       bits of the words that are written
-    kind     (m,) uint8       motion in force: 0 rapid, 1 line
+    kind     (m,) uint8       motion in force: 0 rapid, 1 line, 2 circle clockwise, 3 counter-clockwise
     number   (m,) int64       N number, -1 for none
-    values   (m, 15) float64  numbers by their slots
+    values   (m, 18) float64  numbers by their slots
     comment  (m, 2) int64     first byte of the comment, -1 for none, and the byte after it
+    begin    (m,) int64       first byte of the block
     """
 
     seen: Ints
@@ -44,6 +47,7 @@ class BlockWords(NamedTuple):
     number: Ints
     values: Floats2
     comment: Ints2
+    begin: Ints
 
     @staticmethod
     def empty() -> "BlockWords":
@@ -54,7 +58,21 @@ class BlockWords(NamedTuple):
             np.empty(MAX_BLOCKS, np.int64),
             np.empty((MAX_BLOCKS, SLOT_COUNT)),
             np.empty((MAX_BLOCKS, 2), np.int64),
+            np.empty(MAX_BLOCKS, np.int64),
         )
+
+
+class BlockModes(NamedTuple):
+    """What holds where a scan of letters begins.
+
+    motion   the motion in force: 0 rapid, 1 line, 2 and 3 circles, more for others
+    vectors  whether A3= B3= C3= are allowed
+    plane    the normal axis of the plane in which circles are plain; -1: none are
+    """
+
+    motion: int
+    vectors: bool
+    plane: int
 
 
 class ScanSettings(NamedTuple):
@@ -113,4 +131,32 @@ class ScanRecords(NamedTuple):
             np.empty(MAX_BLOCKS),
             np.empty(MAX_BLOCKS, np.int64),
             np.empty((MAX_BLOCKS, 3)),
+        )
+
+
+class ScannedCircles(NamedTuple):
+    """The circles of blocks that were read, in programmed positions, mm.
+
+    block   (k,) int64      the block
+    row     (k,) int64      its row, counted from that of the first block
+    start   (k, 3) float64
+    centre  (k, 3) float64  at the height of the start
+    radius  (k,) float64
+    """
+
+    block: Ints
+    row: Ints
+    start: Floats2
+    centre: Floats2
+    radius: Floats
+
+    @staticmethod
+    def empty() -> "ScannedCircles":
+        """Return buffers with room for what ``MAX_BLOCKS`` blocks can hold."""
+        return ScannedCircles(
+            np.empty(MAX_BLOCKS, np.int64),
+            np.empty(MAX_BLOCKS, np.int64),
+            np.empty((MAX_BLOCKS, 3)),
+            np.empty((MAX_BLOCKS, 3)),
+            np.empty(MAX_BLOCKS),
         )

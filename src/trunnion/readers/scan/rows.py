@@ -1,9 +1,12 @@
 """Rows from the words of plain blocks: the second step of a scan, the same for all languages."""
 
+from typing import Final
+
 import numpy as np
 
 from trunnion.arrays import Floats, Floats2
 from trunnion.jit import inner, kernel
+from trunnion.model.toolpath import Kind
 from trunnion.readers.scan.buffers import (
     FEED,
     MOTION_BITS,
@@ -18,6 +21,9 @@ from trunnion.readers.scan.buffers import (
     ScanRecords,
     ScanSettings,
 )
+
+#: The kind of a row that is a circle, whichever way it turns.
+_CIRCLE: Final = int(Kind.ARC)
 
 
 @kernel(writes="commanded rows records")
@@ -50,7 +56,7 @@ def execute_blocks(
             pending = row - rows.base
             rows.line[pending] = first_line + block
             rows.block_number[pending] = words.number[block]
-            rows.kind[row] = words.kind[block]
+            rows.kind[row] = min(words.kind[block], _CIRCLE)
             rows.turn_rule[pending] = settings.turn_rule
             # An unknown feed (NaN) differs from itself, but is no change.
             if commanded[3] != commanded[4] and (commanded[3] == commanded[3] or commanded[4] == commanded[4]):

@@ -21,7 +21,7 @@ def lengths_lost_at_part(context: Context) -> Iterator[Place]:
     run = context.run
     axes = run.state.length_axis.column()
     lost = np.flatnonzero((axes[1:] < 0) & (axes[:-1] >= 0)) + 1
-    lost = lost[~stated_rows(run)[1][lost]]
+    lost = lost[~stated_rows(run)[1].at(lost)]
     lost = lost[(axes[lost] < 0) | ~run.state.tcp.column()[lost].astype(np.bool_)]  # with TCP it counts along the tool
     for row in _begun_at_part(run, lost):
         yield context.place(row, 0.0, Wording("modal", "length_lost"))

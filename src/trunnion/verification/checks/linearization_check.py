@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.messages import Wording, phrase
 from trunnion.model.columns import StepColumn
 from trunnion.model.feed_path import NO_ROTATION
@@ -154,13 +154,19 @@ def _seen(context: Context, *, rapids: bool) -> SeenRows:
     for first, end in chunk_bounds(len(run)):
         kind, state = run.kind[first:end], run.state
         here = (kind == Kind.RAPID) & ~(rapids & ~state.tcp.part(first, end))
-        before = run.rotary[first - 1] if first else np.asarray(run.start)[list(run.machine.rotary)]
-        turns = np.abs(np.diff(np.vstack((before, run.rotary[first:end])), axis=0)).max(axis=1) > NO_ROTATION
-        on_arc = (kind == Kind.ARC) & turns & (run.orientation_between(first, end) == Orientation.ANGLES)
+        on_arc = (kind == Kind.ARC) & (run.orientation_between(first, end) == Orientation.ANGLES)
+        on_arc[on_arc] = _turning(run, first + np.flatnonzero(on_arc))
         in_machine = phrase("left_in_machine"), state.machine_frame.part(first, end)
         reasons = (in_machine, (phrase("left_rapid"), here), (phrase("left_turns_on_arc"), on_arc))
         seen.add(first, end - first, reasons)
     return seen
+
+
+def _turning(run: Run, rows: Ints) -> Flags:
+    """Which rows turn a rotary axis, (k,)."""
+    start = np.asarray(run.start)[list(run.machine.rotary)]
+    before = np.where((rows > 0)[:, None], run.rotary[np.maximum(rows - 1, 0)], start)
+    return np.asarray(np.abs(run.rotary[rows] - before).max(axis=1, initial=0.0) > NO_ROTATION)
 
 
 def _allowed_tip(settings: ExpectedValues) -> Iterator[Wording]:

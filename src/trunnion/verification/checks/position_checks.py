@@ -72,6 +72,8 @@ def _depends_on_values(context: ComparedContext, found: Faults) -> tuple[Wording
     on_length = on_zero = False
     for nc, cl in context.matching.pair_chunks():
         rows = with_linear_positions(run, nc)
+        if not len(rows):
+            continue
         on_length, on_zero = on_length or depends_on_length(run, rows), on_zero or depends_on_zero(run, rows)
         moved = moved_tips(run, rows)
         points = cl[np.searchsorted(nc, [tip.row for tip in moved])].tolist()

@@ -52,7 +52,7 @@ def moved_tips(run: Run, rows: Ints) -> list[MovedTip]:
     axes, along = run.state.length_axis.at(rows), _along(run.machine)
     counts_somewhere = bool((run.state.length_axis.values >= 0).any())
     elsewhere = (axes != along) & (counts_somewhere | (axes >= 0))
-    suspects = np.where(stated_rows(run)[1][rows], axes >= BY_PARAMETER, elsewhere)
+    suspects = np.where(stated_rows(run)[1].at(rows), axes >= BY_PARAMETER, elsewhere)
     if not suspects.any():
         return []
     rows, axes = rows[suspects], axes[suspects]
@@ -64,12 +64,12 @@ def depends_on_length(run: Run, rows: Ints) -> bool:
     """Whether a head turns the tool in one of these rows, and its length is not stated."""
     if not run.machine.has_rotary_head:
         return False
-    return _turned(run, rows[~stated_rows(run)[1][rows]], Mount.TOOL)
+    return _turned(run, rows[~stated_rows(run)[1].at(rows)], Mount.TOOL)
 
 
 def depends_on_zero(run: Run, rows: Ints) -> bool:
     """Whether a table turns the part in one of these rows, and the zero is not stated."""
-    return _turned(run, rows[~stated_rows(run)[0][rows]], Mount.PART)
+    return _turned(run, rows[~stated_rows(run)[0].at(rows)], Mount.PART)
 
 
 def _turned(run: Run, rows: Ints, mount: Mount) -> bool:

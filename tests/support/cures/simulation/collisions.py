@@ -63,5 +63,13 @@ CURES: Final = (
     Cure("SIM150", "tool_not_known", _checked(""), SLOT, (), cured_by=_checked()),
     Cure("SIM310", "collision_check_machine", _checked(placed=False), SLOT, (), cured_by=_checked()),
     Cure("SIM310", "length_tool_not", _checked("1=flat:10,flutes=20"), SLOT, (), cured_by=_checked()),
+    Cure(
+        "SIM314",
+        "in_stock",
+        on(),
+        SLOT,
+        ({"fixtures": "vice:50,opening=40,jaw=10x5,base=80x9,at=25/0/-10"},),
+        {"fixtures": "vice:50,opening=36,jaw=10x5,base=80x9,at=25/0/-10"},
+    ),
     Cure("SIM313", "sunk_in", on(), SLOT, ({"zero": "0,0,-60"},), {"zero": "0,0,-75"}),
 )

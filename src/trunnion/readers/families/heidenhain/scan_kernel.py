@@ -137,6 +137,7 @@ def read_blocks(
         words.seen[count] = seen & ~(1 << FEED) if rapid else seen
         words.kind[count] = 0 if rapid else 1
         words.number[count] = number
+        words.begin[count] = position
         words.comment[count, 0] = comment
         words.comment[count, 1] = signed(at)
         count += 1

@@ -45,6 +45,7 @@ from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.scan.buffers import BlockModes
 from trunnion.readers.scan.letter_blocks import read_blocks
 
 #: Names with arguments that are no subprograms.
@@ -63,7 +64,7 @@ _OF_THROUGH: Final = frozenset({"I1", "J1", "K1", "TURN"})
 _OF_CIRCLES: Final = frozenset({"I", "J", "K", "CR", "AR", "TURN", "ANG"})
 
 #: Beginnings of lines that may be plain blocks, so that a scan is worth starting.
-_PLAIN_START = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
+_PLAIN_START = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[0-3](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
 _PREFIX_LENGTH: Final = 48
 
 
@@ -116,8 +117,7 @@ class SinumerikInterpreter(WordInterpreter):
             source.position,
             limit,
             control.letter_table,
-            control.tip_programmed,
-            control.motion,
+            BlockModes(control.motion, control.tip_programmed, control.plane_axis),
             control.words,
         )
 

@@ -1,0 +1,77 @@
+"""Translations have the parameters of the English texts, and completed rooms have no text that is missing or stale."""
+
+import re
+
+import pytest
+
+from tests.support import translations
+from tests.support.translations import TRANSLATED, completed, missing, rooms, stale, translated, wrong_fields
+from trunnion import messages
+from trunnion.messages import LANGUAGES, Wording, Words, catalogue, said_in
+
+
+class Spoken(Words):
+    def __init__(self, language: str) -> None:
+        self.language = language
+
+
+@pytest.mark.parametrize("language", TRANSLATED)
+def test_parameters_are_those_of_the_english_text(language: str) -> None:
+    assert not wrong_fields(language), "\n".join(wrong_fields(language))
+
+
+@pytest.mark.parametrize("language", TRANSLATED)
+def test_files_are_named_as_in_english(language: str) -> None:
+    assert set(rooms(language)) <= set(rooms())
+
+
+@pytest.mark.parametrize("language", TRANSLATED)
+def test_completed_rooms_have_nothing_missing_or_stale(language: str) -> None:
+    done = set(completed()[language])
+    behind = [f"{key.room} {key.path}" for key in (*missing(language), *stale(language)) if key.room in done]
+    assert not behind, f"python -m tests.support.translations {language}\n" + "\n".join(behind)
+    assert done <= set(rooms())
+
+
+@pytest.mark.parametrize("language", TRANSLATED)
+def test_translations_keep_what_is_typed_and_read_by_machines(language: str) -> None:
+    """Codes, options, keys in brackets and what stands in backquotes are those of the English text."""
+    behind = set(stale(language))
+    changed = [
+        f"{key.room} {key.path}: {sorted(typed(english) ^ typed(text))}"
+        for key, text in translated(language).items()
+        if key not in behind and typed(english := translations.english()[key]) != typed(text)
+    ]
+    assert not changed, "\n".join(changed)
+
+
+def typed(text: str) -> set[str]:
+    """What is typed: options, and code in backquotes."""
+    return set(re.findall(r"`[^`]+`|(?<![\w-])--[a-z][a-z-]+", text))
+
+
+@pytest.mark.parametrize(
+    "entry", [{"": {}}, {"FIL130": {}}, {"FIL130": {"folder_not": {"what": "{none}"}}}, {"FIL130": "odd"}]
+)
+def test_a_language_that_lacks_a_text_says_it_in_english(
+    entry: dict[str, object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wording = Wording("FIL130", "folder_not", subject="x")
+    said = wording.text("what")
+    monkeypatch.setattr(
+        messages, "catalogue", lambda language, name: entry if language == "zh" else catalogue(language, name)
+    )
+    assert wording.text("what", Spoken("zh")) == said
+
+
+def test_a_text_without_parameters_falls_back_as_well() -> None:
+    assert said_in("en", "help", "words", "usage") == "usage:"
+    assert said_in("zh", "help", "no", "such", english="as declared") == "as declared"
+    assert said_in("xx", "help", "words", "usage") == "usage:"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_parts_are_said_in_the_language_of_the_whole(language: str) -> None:
+    inner = Wording("FIL130", "folder_not", subject="x")
+    outer = Wording("", "with_cure", fault=inner)
+    assert inner.text("what", Spoken(language)) in outer.text("what", Spoken(language))
