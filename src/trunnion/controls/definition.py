@@ -19,7 +19,10 @@ from trunnion.controls.vocabulary import (
     INCH,
     LENGTH_FIELDS,
     LENGTH_UNITS,
+    M114,
     MM,
+    NEW_SPEED_WITH_M114,
+    NEW_SPEED_WITH_TCP,
     ORIENT_BY_VECTOR_WORD,
     PRINTED_SETTINGS,
     PROGRAM_CHOICES,
@@ -295,11 +298,17 @@ class Control:
             MachiningMode.THREE_AXIS: THREE_AXIS,
             MachiningMode.TILTED: plane,
             MachiningMode.WITHOUT_TCP: WITHOUT_TCP,
+            MachiningMode.M114: M114,
         }
         suffix = suffixes.get(mode, FIVE_AXIS if self.tcp else "")
         if suffix == WITHOUT_TCP and self.feed_without_tcp == UNKNOWN_FEED:
             return ""
         return suffix if f"approach_{suffix}" in self.templates else ""
+
+    def new_speed_template(self, mode: MachiningMode) -> str:
+        """Return the template for a new speed while TCP, or M114, is on; empty where the mode needs none of its own."""
+        name = {MachiningMode.TCP: NEW_SPEED_WITH_TCP, MachiningMode.M114: NEW_SPEED_WITH_M114}.get(mode, "")
+        return name if name in self.templates else ""
 
     def modes(self, settings: Mapping[str, str]) -> frozenset[MachiningMode]:
         """Return the machining modes for which the control has templates."""

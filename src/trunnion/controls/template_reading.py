@@ -10,6 +10,8 @@ from trunnion.controls.vocabulary import (
     FIVE_AXIS,
     FOLLOWING,
     LEAVING,
+    M114,
+    NEW_SPEED_WITH_M114,
     NEW_SPEED_WITH_TCP,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
@@ -23,6 +25,9 @@ from trunnion.messages import Wording
 
 #: What only a template with statements or expressions has in it.
 _TEXT_SIGNS: Final = ("{%", "{{", "{#")
+
+#: Suffixes of the templates for operations whose tool axis changes.
+_SIMULTANEOUS: Final = (FIVE_AXIS, WITHOUT_TCP, M114)
 
 #: Parts of the templates of a plane command that it may share with another.
 _SHARED_PLANE_PARTS: Final = ("approach", "next_plane", "operation_end")
@@ -61,12 +66,10 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     """
     plane_parts = ("plane_on", *_SHARED_PLANE_PARTS)
     groups: list[tuple[str, ...]] = [(SPINDLE_ON,), (NEW_SPEED_WITH_TCP,)]
-    groups += [
-        tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
-    ]
-    groups += [(FOLLOWING,)]
-    groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, FIVE_AXIS, WITHOUT_TCP, *family.PLANE_COMMANDS)]
-    groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
+    groups += [tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in _SIMULTANEOUS]
+    groups += [(NEW_SPEED_WITH_M114,), (FOLLOWING,)]
+    groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, *_SIMULTANEOUS, *family.PLANE_COMMANDS)]
+    groups += [(f"next_axis_{suffix}",) for suffix in _SIMULTANEOUS]
     groups += [
         tuple(f"{part}_{plane}" for part in plane_parts)
         for plane in family.PLANE_COMMANDS

@@ -156,8 +156,10 @@ class TemplateValues:
         return values
 
     def time_of(self, operation: int) -> Value:
-        """Return the machining time of an operation, by its number; None where no template prints any."""
-        return self._time_values(operation)["time"]
+        """Return the machining time of an operation, by its number, with what it leaves out; None where no template
+        prints any.
+        """
+        return self._time_text(operation) if self._prints_times else None
 
     def _time_values(self, operation: int) -> dict[str, Value]:
         """Machining times of the operation and of the program; computed only if a template prints them."""

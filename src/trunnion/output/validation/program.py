@@ -71,7 +71,7 @@ def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
     problems += [*plane_entry_problems(program, motion), *normal_problems(program, motion)]
     problems += [*compensation_problems(program, motion), *corner_problems(program, motion)]
     problems += skipped_side_problems(program, motion)
-    if motion.mode is MachiningMode.WITHOUT_TCP and program.template_suffix(motion):
+    if motion.mode.goes_straight and program.template_suffix(motion):
         problems += problems_without_tcp(program, motion)
     problems += [*missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]
     return [*problems, *rapid_feed_problems(program, motion)]

@@ -23,9 +23,15 @@ def variables_of(machine: Machine) -> dict[str, float]:
     read_form(table, family_of(machine))
     check_start_modes(table, START_MODES)
     table.flag("approach_without_side", False)  # asked for by approaches
+    table.flag("m114", False)  # asked for by the control
     table.report_unread_keys()
     table.raise_problems()
     return variables
+
+
+def has_m114(machine: Machine) -> bool:
+    """Whether the control has M114, which places the tip at the ends of blocks."""
+    return reading_of(machine).flag("m114", False)
 
 
 def approaches_without_side(machine: Machine) -> bool:
