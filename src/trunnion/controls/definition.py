@@ -19,7 +19,10 @@ from trunnion.controls.vocabulary import (
     INCH,
     LENGTH_FIELDS,
     LENGTH_UNITS,
+    M114,
     MM,
+    NEW_SPEED_WITH_M114,
+    NEW_SPEED_WITH_TCP,
     ORIENT_BY_VECTOR_WORD,
     PRINTED_SETTINGS,
     PROGRAM_CHOICES,
@@ -149,6 +152,7 @@ class Control:
     level_approach        after a retract the tool goes to X and Y first, then to Z, not only in tilted planes
     plane_from_pose       a tilted plane is taken from the rotary position, without angles: its origin is the work
                           offset's, its axes are those of the tool
+    projected_angles      what projected angles of a plane mean, of ``PROJECTED_CHOICES``
     rapid_into_planes     the first motion in a new tilted plane must be a rapid, which states X, Y and Z there
     holes_from            one of ``HOLE_APPROACH_HEIGHTS``
     subprograms           how subprograms are named; None: a program cannot call any
@@ -192,6 +196,7 @@ class Control:
     axis_tolerance: AxisTolerance
     level_approach: bool
     plane_from_pose: bool
+    projected_angles: str
     rapid_into_planes: bool
     holes_from: str
     subprograms: SubprogramNaming | None
@@ -293,11 +298,17 @@ class Control:
             MachiningMode.THREE_AXIS: THREE_AXIS,
             MachiningMode.TILTED: plane,
             MachiningMode.WITHOUT_TCP: WITHOUT_TCP,
+            MachiningMode.M114: M114,
         }
         suffix = suffixes.get(mode, FIVE_AXIS if self.tcp else "")
         if suffix == WITHOUT_TCP and self.feed_without_tcp == UNKNOWN_FEED:
             return ""
         return suffix if f"approach_{suffix}" in self.templates else ""
+
+    def new_speed_template(self, mode: MachiningMode) -> str:
+        """Return the template for a new speed while TCP, or M114, is on; empty where the mode needs none of its own."""
+        name = {MachiningMode.TCP: NEW_SPEED_WITH_TCP, MachiningMode.M114: NEW_SPEED_WITH_M114}.get(mode, "")
+        return name if name in self.templates else ""
 
     def modes(self, settings: Mapping[str, str]) -> frozenset[MachiningMode]:
         """Return the machining modes for which the control has templates."""

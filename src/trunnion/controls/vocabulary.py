@@ -152,11 +152,13 @@ REQUIRED_TEMPLATES: Final = (
     "program_end",
 )  # fmt: skip
 
-#: Suffixes of the templates for operations with the tool along +Z, with TCP, and without TCP while rotary axes turn.
+#: Suffixes of the templates for operations with the tool along +Z, with TCP, and without TCP while rotary axes turn;
+#: and with M114, on controls that have it.
 #: Those for tilted planes end with the plane command.
 THREE_AXIS: Final = "three_axis"
 FIVE_AXIS: Final = "five_axis"
 WITHOUT_TCP: Final = "without_tcp"
+M114: Final = "m114"
 
 #: Templates that every program has once.
 PROGRAM_TEMPLATES: Final = ("program_start", "program_end")
@@ -167,8 +169,9 @@ PROGRAM_START_TEMPLATES: Final = ("program_start", "subprogram_start")
 #: The template that starts the spindle, on controls where that takes blocks of its own.
 SPINDLE_ON: Final = "spindle_on"
 
-#: The same for a new speed while TCP is on, on controls where the block of a speed wants TCP off.
+#: The same for a new speed while TCP, or M114, is on, on controls where the block of a speed wants it off.
 NEW_SPEED_WITH_TCP: Final = "spindle_on_with_tcp"
+NEW_SPEED_WITH_M114: Final = "spindle_on_with_m114"
 
 #: Templates for a program with subprograms: the call, the start of a subprogram, the start of one that continues an
 #: operation, and the end.
@@ -263,3 +266,8 @@ OFFSETS_DIFFER: Final = "offsets_differ"
 
 #: ``Control.blocks_in_compensation`` of controls without a limit.
 NO_LIMIT: Final = 9999
+
+#: The key of a control that says what its projected angles of a plane mean, and its values: unknown; turns about Y and
+#: X, as spatial angles are; both rising with the axis.
+PROJECTED_ANGLES: Final = "projected_angles"
+PROJECTED_CHOICES: Final = ("unknown", "turning", "rising")

@@ -133,6 +133,7 @@ class FunctionTemplate(Template):
             "control": self.run.control,
             "settings": types.MappingProxyType({**self.run.settings}),
             "fields": types.MappingProxyType({**values}),
+            "formats": types.MappingProxyType({**printing.formats}),
             **{name: self._made(lists.get(name)) for name in ("operation", "tool", "next_tool", "tools", "operations")},
         }
         made: Place = kind(**said)

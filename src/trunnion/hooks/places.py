@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from trunnion.controls.words import NumberFormat
 from trunnion.model.toolpath import Kind, Phase
 
 
@@ -86,6 +87,7 @@ class Place:
     fields      what templates print as ``{name}``, and settings of the definition
     operation, tool, next_tool  the operation here, its tool, the next other tool
     tools, operations  of the program, in its order
+    formats     number formats of the control: ``place.formats["coordinate"].text(12.5)`` is what a program prints
     """
 
     name: str
@@ -100,6 +102,7 @@ class Place:
     next_tool: ToolValues | None
     tools: tuple[ToolValues, ...]
     operations: tuple[OperationValues, ...]
+    formats: Mapping[str, NumberFormat]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

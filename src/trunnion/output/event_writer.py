@@ -13,10 +13,10 @@ from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.inches import without_comments
 from trunnion.controls.places import STOP_PLACE
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, SPINDLE_ON
+from trunnion.controls.vocabulary import SPINDLE_ON
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -287,13 +287,13 @@ class EventWriter:
     def _start_spindle(self, event: SpindleOn) -> None:
         self._blocks.spindle = event
         program, values = self._program, spindle_values(self._program, event)
-        with_tcp = self._motion.mode is MachiningMode.TCP and NEW_SPEED_WITH_TCP in self._control.templates
+        with_tcp = self._control.new_speed_template(self._motion.mode)
         if not (with_tcp and self._templates.speed_changes(event.rpm)):
             self._templates.write(SPINDLE_ON, values, self._motion)
             return
         settings = {**self._control.settings, **program.settings_of(self._motion.operation)}
         words = {**self._family.template_values(settings, None), **values}
-        self._templates.write(NEW_SPEED_WITH_TCP, words, self._motion)
+        self._templates.write(with_tcp, words, self._motion)
         writer = self._blocks.writer
         active = writer.modal_state()
         writer.forget()  # what X, Y and Z mean has changed between, and not how feeds count

@@ -15,7 +15,7 @@ from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import DRAW_BACK, FOLLOWING
 from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn, Stop
@@ -271,7 +271,7 @@ class _ProgramWriter:
 
         planned  the motion in coordinates of the workpiece: an operation, or what follows behind a turn within one
         """
-        if self._passages.in_turn(motion) and motion.mode is not MachiningMode.TCP:
+        if self._passages.in_turn(motion) and not motion.mode.holds_tips:
             self._blocks.xy_before_z = True
         leg = self._passages.above(planned) if continues else self._passages.first_leg(planned)
         if leg is None or motion.plane is None:

@@ -277,6 +277,7 @@ def _abilities(control: Control) -> list[str]:
         f"three-axis: {has[MachiningMode.THREE_AXIS]}",
         f"tilted planes: {', '.join(planes) if planes else has[MachiningMode.TILTED]}",
         f"TCP: {has[MachiningMode.TCP]}",
+        *(["M114: yes"] if MachiningMode.M114 in modes else []),
         f"five axes without TCP: {without}",
         f"tool axis as a vector: {_yes(set(TOOL_VECTOR_WORDS) <= word_names)}",
         f"surface normals: {_yes(set(SURFACE_NORMAL_WORDS) <= word_names)}",
