@@ -217,6 +217,7 @@ PROGRAM_SETTINGS: Final = frozenset(
     {
         "title", "part", "date", "program", "series", "blank", "call", "call_folder", "normals", "rapid_feed",
         "rotary_feed", "orientation", "plane", HOLES_SETTING, SPLINES_SETTING, "bore_lift", "disengage", "rigid_tap",
+        "cycle_form",
     }
 )  # fmt: skip
 
