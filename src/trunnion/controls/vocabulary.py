@@ -246,6 +246,8 @@ DRAW_BACK: Final = "draw_back"
 #: The header of an operation with the tool of the one before, and the beginning of the templates by which the one
 #: before leaves the part for it.
 FOLLOWING: Final = "operation_follows"
+#: The start of an operation with the tool of the one before, which has gone home; without it the usual one.
+AGAIN: Final = "operation_again"
 LEAVING: Final = "leave"
 COOLANTS: Final = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES: Final = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")
