@@ -103,13 +103,29 @@ RUN_ONLY_SETTINGS: Final = frozenset(
         "cl_units", "cutcom", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance",
         "axis_tolerance", "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways",
         "tool_retract", "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit",
-        "compensation", "first_number", "listing", "missing_feed", "open_cycle", "spindle",
+        "compensation", "first_block", "first_number", "listing", "missing_feed", "open_cycle", "spindle",
         *(option.setting for option in POSTING),
     }
 )  # fmt: skip
 
 #: Settings whose value is also a template field.
 FIELD_SETTINGS: Final = frozenset({"tool"})
+
+#: Settings of definitions that writers read themselves, on any control; others are printed by templates, or have rules.
+READ_SETTINGS: Final = frozenset({"method", "disengage", "program", "bore_lift", "missing_cycles"})
+
+#: Keys of ``[control.reading]``, which count nowhere else.
+READING_KEYS: Final = frozenset(
+    {
+        "approach_without_side", "arc_centres", "arc_vectors", "behind_circles", "block_ends", "compensation_start",
+        "corner_feed", "cycles_along_tool", "cycles_repeat_with", "dwells", "end_in_subprogram", "extended_offsets",
+        "feed_without_tcp", "home_ends_length", "home_takes_all", "kept_by", "least_increment_mm", "length_along_z",
+        "m114", "m_codes", "machine_positions", "more_comments", "needs_program_number", "nested_comments",
+        "numbers_anywhere", "peck_clearance_mm", "program_digits", "program_numbers", "start_distances", "start_modes",
+        "start_plane", "swivel_axes", "tape_marks", "threads_stop_spindle", "units", "variables", "whole_feeds",
+        "whole_numbers", "words",
+    }
+)  # fmt: skip
 
 #: Formats that writers use although no word and no template names them, and that of plane angles, which the basic Fanuc
 #: keeps for definitions that have planes.
@@ -217,6 +233,7 @@ PROGRAM_SETTINGS: Final = frozenset(
     {
         "title", "part", "date", "program", "series", "blank", "call", "call_folder", "normals", "rapid_feed",
         "rotary_feed", "orientation", "plane", HOLES_SETTING, SPLINES_SETTING, "bore_lift", "disengage", "rigid_tap",
+        "cycle_form",
     }
 )  # fmt: skip
 
@@ -245,6 +262,8 @@ DRAW_BACK: Final = "draw_back"
 #: The header of an operation with the tool of the one before, and the beginning of the templates by which the one
 #: before leaves the part for it.
 FOLLOWING: Final = "operation_follows"
+#: The start of an operation with the tool of the one before, which has gone home; without it the usual one.
+AGAIN: Final = "operation_again"
 LEAVING: Final = "leave"
 COOLANTS: Final = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES: Final = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")
