@@ -10,7 +10,7 @@ import pytest
 from trunnion.impeller.paths.passes import Stepover
 from trunnion.impeller.steps import MachiningStep, StepKind
 from trunnion.jobs.impeller.step_times import StepTimes, setting_for_published, step_times
-from trunnion.model.toolpath import Arcs, Frame, Kind, Moves, Operation, Phase, Tool
+from trunnion.model.toolpath import Arcs, Frame, Moves, Operation, Phase, Tool
 from trunnion.verification.results import OperationRows
 
 STEP = cast(
@@ -62,7 +62,6 @@ def test_seconds_are_divided_by_what_the_cl_file_does_in_them() -> None:
         np.arange(10, 10 + n, dtype=np.int32),
     )
     operation = Operation("A", Tool(), Frame(), moves, Arcs.empty(), (), 1)
-    assert Kind.RAPID == 0
     seconds = np.array([60.0, 1.0, 2.0, 3.0, 3.0, 4.0, 3.0, 5.0])
     line = np.array([0, 10, 11, 12, 13, 14, 15, 16], np.int32)
     proof = cast(Any, SimpleNamespace(seconds=seconds, tip_feed=np.ones(8), cl_line=line))
