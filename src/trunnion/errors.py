@@ -113,10 +113,10 @@ class Problem:
         """Return what ``str`` does in the words of a front, which may call the file otherwise."""
         place = called or self.file
         place = f"{place}:{self.line}" if self.line else place
-        cure = self.wording.text("cure", words)
-        cure = f"; {cure}" if cure else ""
+        what, cure = self.wording.text("what", words), self.wording.text("cure", words)
+        said = Wording("terminal", "with_cure", what=what, cure=cure).text("what", words) if cure else what
         code = f" [{self.code}]" if self.code else ""
-        return one_line(f"{place}: {self.severity.said(words)}: {self.wording.text('what', words)}{cure}{code}")
+        return one_line(f"{place}: {self.severity.said(words)}: {said}{code}")
 
 
 def warning(file: str, line: int, wording: Wording, *, subject: Subject | None = None) -> Problem:

@@ -18,7 +18,8 @@ from trunnion.options.option import Many, Option, outputs
 #: Files that stand for what an option leads to; others are read as they are, or their names are enough.
 SAMPLES = {
     "machine": "mine.toml", "machines": "mine.toml", "definition": "mine.toml", "library": "tools.toml",
-    "project": "part.mpf", "posted": "part.cls", "stock": "stock.stl", "fixture": "stock.stl", "impeller": "impeller/impeller.toml",
+    "project": "part.mpf", "posted": "part.cls", "stock": "stock.stl", "fixture": "stock.stl",
+    "impeller": "impeller/impeller.toml",
     "named": "nodes.toml", "jobs": "jobs.toml", "manifest": "part.mpf", "": "part.cls",
 }  # fmt: skip
 

@@ -27,7 +27,14 @@ MAKERS_OF_WORDINGS = {
 }
 
 #: What makes a wording, and the code of those whose code is no argument.
-SAYERS = {"Wording": None, "phrase": "", "said": "terminal", "Fault": "DEF580", "_TextError": "SIM153"}
+SAYERS = {
+    "Wording": None,
+    "phrase": "",
+    "said": "terminal",
+    "Fault": "DEF580",
+    "_TextError": "SIM153",
+    "_SizeError": "SIM123",
+}
 
 #: Names of fields that are no parameters but what a user may set.
 SETTABLE = {"setting", "argument", "switch"}

@@ -1,4 +1,4 @@
-"""The golden programs for Fanuc, Haas and LinuxCNC, and what they are posted from."""
+"""The golden programs for Fanuc, Haas, LinuxCNC and an iTNC 530, and what they are posted from."""
 
 from dataclasses import dataclass
 
@@ -17,6 +17,8 @@ class Case:
 
 
 _BLADE = "yl569/3_blade_finish.cls"
+_CAP = "mikron_600u/cap.cls"
+_PLACE = ("zero=0,0,100", "tool_length=100")
 CASES = {
     "fanuc/flange.expected.nc": Case(
         "fanuc/flange.cls", "matsuura_mx330", ("program=7118", "title=Flange 7-1182 Rev B", "work_offset=G54.1 P3")
@@ -37,5 +39,10 @@ CASES = {
     "linuxcnc/contour.expected.ngc": Case("yl569/1_contour_rough.cls", "xyzac_trt"),
     "linuxcnc/plate.expected.ngc": Case(
         "linuxcnc/plate.cls", "xyzac_trt", ("title=plate",), warned=" expanded to rapids"
+    ),
+    "mikron_600u/cap.expected.h": Case(_CAP, "mikron_600u", ("tcp=on", *_PLACE)),
+    "mikron_600u/cap_m114.expected.h": Case(_CAP, "mikron_600u", ("tcp=m114", *_PLACE)),
+    "mikron_600u/cap_without_tcp.expected.h": Case(
+        _CAP, "mikron_600u", ("tcp=off", *_PLACE), warned="so short that F would be above"
     ),
 }

@@ -10,6 +10,7 @@ from trunnion.model.run import Run
 MACHINES: Final = {
     "Sinumerik": "yl569",
     "Klartext": "dmu65",
+    "iTNC 530": "mikron_600u",
     "Fanuc": "matsuura_mx330",
     "Haas": "haas_umc750",
     "Fidia": "hs664rt",
@@ -42,7 +43,7 @@ G90
 """
 
 #: A program of each control, with room for a state in its head, above the part, in the cut, behind it and at the end.
-PROGRAMS: Final = {
+PROGRAMS: Final[dict[str, str]] = {
     "Sinumerik": """G17 G90 G71
 T3
 M6
@@ -126,6 +127,8 @@ G53 G0 Z0
 %
 """,
 }
+
+PROGRAMS["iTNC 530"] = PROGRAMS["Klartext"]
 
 _ROOMS: Final = ("head", "above", "cut", "behind")
 
@@ -217,6 +220,9 @@ SAMPLES: Final = {
     ),
     "frame and shift": Sample("Sinumerik", rooms={"head": "TRANS X5"}, cl=r"GOTO/25\.0"),
     "TCP": Sample("Sinumerik", rooms={"head": "G0 B30 C0\nTRAORI\nG54"}, cl=r"GOTO/[^,]*,[^,]*,[^,]*,0\.5"),
+    "tip at the ends of blocks": Sample(
+        "iTNC 530", rooms={"head": "L B-30 C+0 R0 FMAX\nM114", "behind": "M115"}, cl=r"GOTO/[^,]*,[^,]*,[^,]*,-0\.5",
+    ),
     "turn of the tool on a great circle": Sample(
         "Sinumerik", rooms={"head": "TRAORI\nG54\nORIWKS\nORIVECT", "cut": "X10 B10 C0"},
         change=(("G0 X0 Y0 Z50", "G0 X0 Y0 Z50 B0 C0"),), says="the tool turns on a great circle",

@@ -76,6 +76,7 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
             compensation=same(0, np.int8),
             radius=same(0, np.int8),
             compensation_plane=same(0, np.int8),
+            at_ends=same(False, np.bool_),
             compensation_style=same(0, np.uint8),
             stated_radius=same(np.nan, np.float64),
             work_offset=same(54, np.uint16),

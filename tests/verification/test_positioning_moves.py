@@ -42,7 +42,12 @@ def run_of(rows: list[tuple[int, bool, bool, bool]]) -> Any:
         machine_at=lambda _: machine,
         programmed=np.array([words for words, *_ in rows], np.uint8),
         kind=np.where([rapid for _, rapid, *_ in rows], Kind.RAPID, Kind.LINEAR).astype(np.uint8),
-        state=SimpleNamespace(machine_frame=frame.steps(len(rows), np.bool_), tcp=tcp),
+        state=SimpleNamespace(
+            machine_frame=frame.steps(len(rows), np.bool_),
+            tcp=tcp,
+            follows=tcp.part,
+            follows_at=tcp.at,
+        ),
         events=[SimpleNamespace(kind="retract", before_row=row) for row, each in enumerate(rows) if each[3]],
     )
 

@@ -11,7 +11,8 @@ from typing import Annotated, Any, Final
 
 from trunnion.builder.document import FieldPath
 from trunnion.controls.loading import shipped_controls
-from trunnion.controls.vocabulary import FEEDS_WITHOUT_TCP, HOLE_APPROACH_HEIGHTS, PROGRAM_CHOICES, TEMPLATE_ORDER
+from trunnion.controls.places import TEMPLATE_ORDER
+from trunnion.controls.vocabulary import FEEDS_WITHOUT_TCP, HOLE_APPROACH_HEIGHTS, PROGRAM_CHOICES
 from trunnion.definitions import LocatedValue
 from trunnion.machines.machine import AngleOutput, AxisKind, Mount, PositiveDirection, PreferredSign
 from trunnion.results import NOT_DATA, Figure

@@ -66,7 +66,7 @@ def wrapped(text: str, width: int) -> list[str]:
 
 
 def folded(line: str, width: int | None) -> Iterator[str]:
-    """Yield a line in pieces of a width, broken at blanks and wide characters; they go on under the last column that has
+    """Yield a line in pieces of a width, broken at blanks and wide characters; they go on under the last column with
     room.
 
     >>> list(folded("limits  ok    X 12 mm left, Y 40 mm left", 24))

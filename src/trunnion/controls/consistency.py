@@ -8,16 +8,14 @@ import re
 from collections.abc import Iterable, Sequence
 
 from trunnion.controls.definition import Control
+from trunnion.controls.places import own_values
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     COMMON_TEMPLATE_FIELDS,
-    EVENT_PLACE,
-    EVENT_VALUES,
     FIELD_SETTINGS,
     FILTERS,
     LISTS,
     RUN_ONLY_SETTINGS,
-    STOP_PLACE,
     SUBPROGRAM_TEMPLATES,
     WRITER_FORMATS,
 )
@@ -36,7 +34,7 @@ def check_templates(table: Table, control: Control) -> None:
     for template in control.templates.values():
         for text in template.unread_fields():
             _report_brace(table, template, text)
-        here = known | (EVENT_VALUES if _is_about_event(template.name) else frozenset())
+        here = known | own_values(template.name)
         for line, fields in enumerate(template.fields_by_line()):
             _check_names(table, template, line, fields, here)
         for name, number_format in sorted(template.fields() | template.numbers()):
@@ -90,11 +88,6 @@ def _check_names(
         else:
             wording = Wording("DEF510", "no_field", name=name, known=tuple(sorted(known)))
         _report_line(table, template, line, wording)
-
-
-def _is_about_event(name: str) -> bool:
-    """Whether a template is written for an event of the CL file."""
-    return name.startswith(EVENT_PLACE) or name == STOP_PLACE
 
 
 def check_formats(entries: Sequence[Table], control: Control) -> None:

@@ -5,8 +5,7 @@ What these cannot express is code, in the writer module of the control's family.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from importlib.resources import files
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Final
 
@@ -20,7 +19,10 @@ from trunnion.controls.vocabulary import (
     INCH,
     LENGTH_FIELDS,
     LENGTH_UNITS,
+    M114,
     MM,
+    NEW_SPEED_WITH_M114,
+    NEW_SPEED_WITH_TCP,
     ORIENT_BY_VECTOR_WORD,
     PRINTED_SETTINGS,
     PROGRAM_CHOICES,
@@ -150,6 +152,7 @@ class Control:
     level_approach        after a retract the tool goes to X and Y first, then to Z, not only in tilted planes
     plane_from_pose       a tilted plane is taken from the rotary position, without angles: its origin is the work
                           offset's, its axes are those of the tool
+    projected_angles      what projected angles of a plane mean, of ``PROJECTED_CHOICES``
     rapid_into_planes     the first motion in a new tilted plane must be a rapid, which states X, Y and Z there
     holes_from            one of ``HOLE_APPROACH_HEIGHTS``
     subprograms           how subprograms are named; None: a program cannot call any
@@ -193,6 +196,7 @@ class Control:
     axis_tolerance: AxisTolerance
     level_approach: bool
     plane_from_pose: bool
+    projected_angles: str
     rapid_into_planes: bool
     holes_from: str
     subprograms: SubprogramNaming | None
@@ -282,10 +286,10 @@ class Control:
             return ""
         return min(name for place in places for name in place & empty)
 
-    def own_templates(self) -> frozenset[str]:
-        """Names of the templates that stand in files of the user, and not in those that are shipped."""
-        shipped = str(files("trunnion"))
-        return frozenset(name for name, each in self.templates.items() if not each.file.startswith(shipped))
+    def without_functions(self) -> "Control":
+        """Return the control with the templates of its definition alone, and none that are functions of a user."""
+        kept = ((name, template.of_definition) for name, template in self.templates.items())
+        return replace(self, templates={name: template for name, template in kept if template is not None})
 
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""
@@ -294,11 +298,17 @@ class Control:
             MachiningMode.THREE_AXIS: THREE_AXIS,
             MachiningMode.TILTED: plane,
             MachiningMode.WITHOUT_TCP: WITHOUT_TCP,
+            MachiningMode.M114: M114,
         }
         suffix = suffixes.get(mode, FIVE_AXIS if self.tcp else "")
         if suffix == WITHOUT_TCP and self.feed_without_tcp == UNKNOWN_FEED:
             return ""
         return suffix if f"approach_{suffix}" in self.templates else ""
+
+    def new_speed_template(self, mode: MachiningMode) -> str:
+        """Return the template for a new speed while TCP, or M114, is on; empty where the mode needs none of its own."""
+        name = {MachiningMode.TCP: NEW_SPEED_WITH_TCP, MachiningMode.M114: NEW_SPEED_WITH_M114}.get(mode, "")
+        return name if name in self.templates else ""
 
     def modes(self, settings: Mapping[str, str]) -> frozenset[MachiningMode]:
         """Return the machining modes for which the control has templates."""

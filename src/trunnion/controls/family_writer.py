@@ -64,6 +64,8 @@ class FamilyWriter(Protocol):
     COMPENSATES_WITH_TCP  radius compensation is by the radius of the tool with TCP too, in the working plane
     CODES             codes that its definitions must give
     PLANE_COMMANDS    its commands for tilted planes, the default first; template names end with them
+    PLANE_TEMPLATES_OF  commands -> the command whose templates they share, but for the one that switches the plane on
+    PLANES_OF_POSE    commands that take the plane from the rotary positions that they print
     SETTING_CHOICES   settings of its definitions with a fixed set of values, the default first
     SETTING_MEANINGS  what each of these settings changes, in sentences
     SETTING_FIELDS    settings that act through values of its templates alone -> those values; where no template of a
@@ -80,6 +82,8 @@ class FamilyWriter(Protocol):
     COMPENSATES_WITH_TCP: bool
     CODES: tuple[str, ...]
     PLANE_COMMANDS: tuple[str, ...]
+    PLANE_TEMPLATES_OF: Mapping[str, str]
+    PLANES_OF_POSE: frozenset[str]
     SETTING_CHOICES: Mapping[str, tuple[str, ...]]
     SETTING_MEANINGS: Mapping[str, str]
     SETTING_FIELDS: Mapping[str, tuple[str, ...]]
@@ -144,6 +148,14 @@ class FamilyWriter(Protocol):
     def validate_settings(self, settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
         """Return the invalid settings, each with the phrase of what to write; those of ``SETTING_CHOICES`` are checked
         elsewhere.
+        """
+
+    def validate_plane(self, settings: Mapping[str, str], plane: Floats, of_pose: Floats) -> Wording | None:
+        """Return why the control cannot say a tilted plane by the command of the settings; None if it can.
+
+        settings  those of the run over those of the definition, and ``PROJECTED_ANGLES`` of the vocabulary
+        plane     (3, 3) float64: X, Y and Z of the plane as columns, in program coordinates
+        of_pose   (3, 3) float64: the same of the plane in which the machine stands at its rotary position
         """
 
     def cycle_call(

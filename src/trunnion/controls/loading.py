@@ -29,6 +29,8 @@ from trunnion.controls.vocabulary import (
     MM,
     NO_LIMIT,
     PHASES,
+    PROJECTED_ANGLES,
+    PROJECTED_CHOICES,
     RADIUS_ARC_WORDS,
     TOOL_TYPES,
 )
@@ -114,6 +116,7 @@ def load_control(own: Table) -> Control:
         axis_tolerance=_read_axis_tolerance(table.table("between_points")),
         level_approach=table.flag("level_approach", False),
         plane_from_pose=plane_from_pose,
+        projected_angles=table.text(PROJECTED_ANGLES, PROJECTED_CHOICES[0], one_of=PROJECTED_CHOICES),
         rapid_into_planes=table.flag("rapid_into_planes", False),
         holes_from=table.text("holes_from", "above", one_of=HOLE_APPROACH_HEIGHTS),
         subprograms=_read_subprogram_naming(table.table("subprograms")) if "subprograms" in table else None,

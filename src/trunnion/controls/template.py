@@ -9,14 +9,15 @@ Templates with conditions and loops are ``trunnion.controls.text_template``, in 
 """
 
 import re
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from importlib.resources import files
 from typing import Final
 
 from trunnion.controls.words import NumberFormat, WordRangeError
 from trunnion.errors import InputError, Problem
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 Value = str | float | None
 
@@ -30,6 +31,8 @@ class PrintedText(str):
 #: Operations of a template language that the texts of one program may take, and characters that they may have.
 _MOST_STEPS: Final = 50_000_000
 _MOST_CHARACTERS: Final = 64_000_000
+
+_SHIPPED: Final = str(files("trunnion"))
 
 _OPTIONAL_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
@@ -55,6 +58,7 @@ class Printing:
     numbers  settings that are numbers, for conditions
     lists    lists of records, and records, by name: the program's tools and operations
     budget   of the program
+    own      what only the place has, for functions: `lines` that stand there without a template, and its values
     """
 
     formats: Mapping[str, NumberFormat]
@@ -63,6 +67,23 @@ class Printing:
     numbers: Container[str] = ()
     lists: Mapping[str, object] = field(default_factory=dict)
     budget: Budget = field(default_factory=Budget)
+    own: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Answer:
+    """What stands at a place of a program.
+
+    lines  of text
+    words  of the place that are others, by their keys; None: left out
+    base   the lines of the definition, where a function has written others in their place; None: it has not
+    source  what has written the lines; None: the writer of the program itself
+    """
+
+    lines: Sequence[str]
+    words: Mapping[str, float | None] = field(default_factory=dict)
+    base: Sequence[str] | None = None
+    source: "Template | None" = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,6 +94,21 @@ class Template:
     lines: tuple[str, ...]
     file: str = ""
     line: int = 0
+
+    @property
+    def title(self) -> Wording:
+        """What messages call it: a phrase."""
+        return phrase("template_of_definition", name=self.name)
+
+    @property
+    def is_of_user(self) -> bool:
+        """Whether it stands in a file of the user, and not in one that is shipped."""
+        return not self.file.startswith(_SHIPPED)
+
+    @property
+    def of_definition(self) -> "Template | None":
+        """What the definition has in its place: itself, unless it is a function of the user."""
+        return self
 
     @property
     def is_text(self) -> bool:
@@ -121,6 +157,10 @@ class Template:
     def unread_fields(self) -> list[str]:
         """Return the lines with braces or double brackets that are no field and no optional part."""
         return [text for text in self.lines if _LEFT.search(without_fields(_OPTIONAL_PART.sub(r"\1", text)))]
+
+    def answer(self, values: Mapping[str, Value], printing: Printing) -> Answer:
+        """Return what stands at its place; errors as ``expand`` raises them."""
+        return Answer(self.expand(values, printing), source=self)
 
     def expand(self, values: Mapping[str, Value], printing: Printing) -> list[str]:
         """Return the lines with their values, without the lines and bracketed parts whose values are absent.

@@ -3,15 +3,16 @@
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.places import EVENT_PLACE, OWN_TEMPLATES
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     DRAW_BACK,
-    EVENT_PLACE,
     FIVE_AXIS,
     FOLLOWING,
     LEAVING,
+    M114,
+    NEW_SPEED_WITH_M114,
     NEW_SPEED_WITH_TCP,
-    PLACES,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
     SUBPROGRAM_TEMPLATES,
@@ -24,6 +25,12 @@ from trunnion.messages import Wording
 
 #: What only a template with statements or expressions has in it.
 _TEXT_SIGNS: Final = ("{%", "{{", "{#")
+
+#: Suffixes of the templates for operations whose tool axis changes.
+_SIMULTANEOUS: Final = (FIVE_AXIS, WITHOUT_TCP, M114)
+
+#: Parts of the templates of a plane command that it may share with another.
+_SHARED_PLANE_PARTS: Final = ("approach", "next_plane", "operation_end")
 
 
 def read_templates(
@@ -39,7 +46,12 @@ def read_templates(
         else:
             line += bool(line) * (len(text) - len(text.lstrip("\n")))
             found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
-    table.mark_read(*PLACES)
+    for command, other in family.PLANE_TEMPLATES_OF.items():
+        shared = (f"{part}_" for part in (*_SHARED_PLANE_PARTS, LEAVING)) if f"plane_on_{command}" in found else ()
+        for part in shared:
+            if f"{part}{other}" in found:
+                found.setdefault(f"{part}{command}", found[f"{part}{other}"])
+    table.mark_read(*OWN_TEMPLATES)
     table.report_unread_keys()
     return found
 
@@ -52,20 +64,23 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     operation with the tool of the one before, and the one that retracts the tool where a tilted plane is taken from the
     rotary position: without it the tool always goes home.
     """
-    plane_parts = ("approach", "plane_on", "next_plane", "operation_end")
+    plane_parts = ("plane_on", *_SHARED_PLANE_PARTS)
     groups: list[tuple[str, ...]] = [(SPINDLE_ON,), (NEW_SPEED_WITH_TCP,)]
+    groups += [tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in _SIMULTANEOUS]
+    groups += [(NEW_SPEED_WITH_M114,), (FOLLOWING,)]
+    groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, *_SIMULTANEOUS, *family.PLANE_COMMANDS)]
+    groups += [(f"next_axis_{suffix}",) for suffix in _SIMULTANEOUS]
     groups += [
-        tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in (FIVE_AXIS, WITHOUT_TCP)
+        tuple(f"{part}_{plane}" for part in plane_parts)
+        for plane in family.PLANE_COMMANDS
+        if plane not in family.PLANE_TEMPLATES_OF
     ]
-    groups += [(FOLLOWING,)]
-    groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, FIVE_AXIS, WITHOUT_TCP, *family.PLANE_COMMANDS)]
-    groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
-    groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
+    groups += [(f"{part}_{plane}",) for plane in family.PLANE_TEMPLATES_OF for part in plane_parts]
     groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]
     for name in (name for group in groups for name in group):
         table.text(name, None)  # known, though no definition needs it
     used = [name for group in groups if any(name in table for name in group) for name in group]
-    places = [name for name in list(table.keys()) if name in PLACES or name.startswith(EVENT_PLACE)]
+    places = [name for name in list(table.keys()) if name in OWN_TEMPLATES or name.startswith(EVENT_PLACE)]
     return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used, *places]
 
 

@@ -140,23 +140,11 @@ RECORD_VALUES: Final = frozenset((*TOOL_VALUES, *OPERATION_VALUES))
 #: Lists that templates with expressions may go through, and records that they may ask.
 LISTS: Final = frozenset({"tools", "operations"})
 
-#: Places of a program where a shop may write a text of its own; shipped definitions have none there. Names that begin
-#: with `EVENT_PLACE` are places too: the word of a CL statement follows.
-PLACES: Final = (
-    "tool_list", "before_operation", "same_tool", "preselect", "after_approach", "first_cut", "rewind", "stop",
-    "between_planes", "retract", "after_operation",
-)  # fmt: skip
-EVENT_PLACE: Final = "event_"
-STOP_PLACE: Final = "stop"
-
 #: Filters of templates with expressions, besides the number formats; `controls.texts.filters` has them.
 FILTERS: Final = (
     "upper", "lower", "trim", "ascii", "cut", "pad", "replace", "default", "number", "round", "abs", "count", "first",
     "last", "join",
 )  # fmt: skip
-
-#: Values that only the templates of CL statements and of stops have.
-EVENT_VALUES: Final = frozenset({"text", "number", "words", "numbers"})
 
 #: Templates that every definition must have.
 REQUIRED_TEMPLATES: Final = (
@@ -164,22 +152,16 @@ REQUIRED_TEMPLATES: Final = (
     "program_end",
 )  # fmt: skip
 
-#: Suffixes of the templates for operations with the tool along +Z, with TCP, and without TCP while rotary axes turn.
+#: Suffixes of the templates for operations with the tool along +Z, with TCP, and without TCP while rotary axes turn;
+#: and with M114, on controls that have it.
 #: Those for tilted planes end with the plane command.
 THREE_AXIS: Final = "three_axis"
 FIVE_AXIS: Final = "five_axis"
 WITHOUT_TCP: Final = "without_tcp"
+M114: Final = "m114"
 
 #: Templates that every program has once.
 PROGRAM_TEMPLATES: Final = ("program_start", "program_end")
-
-#: Beginnings of template names in the order in which a program has them.
-TEMPLATE_ORDER: Final = (
-    "program_start", "tool_list", "before_operation", "operation_start", "operation_follows", "first_tool",
-    "tool_change", "same_tool", "preselect", "spindle_on", "approach_", "plane_on_", "after_approach", "first_cut",
-    "rewind", "stop", "event_", "between_planes", "next_axis_", "draw_back_", "next_plane_", "retract", "leave_",
-    "operation_end_", "after_operation", "program_end", "subprogram_",
-)  # fmt: skip
 
 #: Templates that say in which unit a file counts.
 PROGRAM_START_TEMPLATES: Final = ("program_start", "subprogram_start")
@@ -187,8 +169,9 @@ PROGRAM_START_TEMPLATES: Final = ("program_start", "subprogram_start")
 #: The template that starts the spindle, on controls where that takes blocks of its own.
 SPINDLE_ON: Final = "spindle_on"
 
-#: The same for a new speed while TCP is on, on controls where the block of a speed wants TCP off.
+#: The same for a new speed while TCP, or M114, is on, on controls where the block of a speed wants it off.
 NEW_SPEED_WITH_TCP: Final = "spindle_on_with_tcp"
+NEW_SPEED_WITH_M114: Final = "spindle_on_with_m114"
 
 #: Templates for a program with subprograms: the call, the start of a subprogram, the start of one that continues an
 #: operation, and the end.
@@ -283,3 +266,8 @@ OFFSETS_DIFFER: Final = "offsets_differ"
 
 #: ``Control.blocks_in_compensation`` of controls without a limit.
 NO_LIMIT: Final = 9999
+
+#: The key of a control that says what its projected angles of a plane mean, and its values: unknown; turns about Y and
+#: X, as spatial angles are; both rising with the axis.
+PROJECTED_ANGLES: Final = "projected_angles"
+PROJECTED_CHOICES: Final = ("unknown", "turning", "rising")

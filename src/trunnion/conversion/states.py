@@ -89,6 +89,7 @@ STATES: Final = (
     ),
     State("frame and shift", "TRANS, ROT, SCALE, G52, cycle 7", _PATH, kinds=("frame",)),
     State("TCP", "TRAORI, M128, G43.4, G96 (Fidia)", _PATH, columns=("tcp",)),
+    State("tip at the ends of blocks", "M114", _PATH, columns=("at_ends",)),
     State("turn of the tool on a great circle", "ORIVECT, PATHCTRL VECTOR", _REPORTED, columns=("orientation",)),
     State("other rotary positions than the tool axis gives", "C90 with an upright tool", _REPORTED),
     State(

@@ -165,8 +165,10 @@ def _turns_only(run: Run, rows: Ints) -> Flags:
 
 
 def _rotary_positioning(run: Run, rows: Ints) -> Flags:
-    """(n,) bool: rapids of the rotary axes alone, without TCP, away from the part or after the last position there."""
-    alone = _turns_only(run, rows) & ~run.tcp[rows] & (run.kind[rows] == Kind.RAPID)
+    """(n,) bool: rapids of the rotary axes alone that move no tip with them, away from the part or behind the last
+    position there.
+    """
+    alone = _turns_only(run, rows) & ~run.state.follows_at(rows) & (run.kind[rows] == Kind.RAPID)
     works = ~alone & ~run.machine_frame[rows]
     order = np.arange(len(rows))
     after_last = order > (int(np.flatnonzero(works)[-1]) if works.any() else -1)

@@ -1,9 +1,10 @@
 """What a file of hooks works with: the operations, events and blocks of a CL file, as records.
 
 A hook changes what a CL file asks for, before it is planned; it sees and returns events and operations, and no text of
-a program. A file of hooks is a Python file with one or more of the functions ``on_operation``, ``on_event`` and
-``on_block``. It is run only when its user names it: ``trunnion post … --hooks FILE.py``, or ``trunnion.post(…,
-hooks=["FILE.py"])``. docs/hooks.md tells how to write one.
+a program. A function at a place of output writes lines there, or changes words. A file of hooks is a Python file with
+functions ``on_operation``, ``on_event`` and ``on_block``, or ``at_…`` for a place. It is run only when its user names
+it: ``trunnion post … --hooks FILE.py``, or ``trunnion.post(…, hooks=["FILE.py"])``. docs/hooks.md tells how to write
+one.
 
 All records are frozen: ``dataclasses.replace`` makes a changed one. Lengths are in mm, angles in degrees, feeds in
 mm/min or mm/rev; coordinates are those of the operation's own coordinate system.
@@ -13,6 +14,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from trunnion.hooks.places import (
+    AtPlace,
+    CoolantPlace,
+    CyclePlace,
+    MotionPlace,
+    OperationValues,
+    Place,
+    StopPlace,
+    ToolValues,
+)
 from trunnion.model.toolpath import (
     Arcs,
     BlockSkip,
@@ -43,13 +54,16 @@ from trunnion.model.toolpath import (
 
 __all__ = [
     "Arcs",
+    "AtPlace",
     "Block",
     "BlockSkip",
     "Context",
     "Coolant",
+    "CoolantPlace",
     "CutterComp",
     "CycleOff",
     "CycleOn",
+    "CyclePlace",
     "Dwell",
     "Event",
     "From",
@@ -58,19 +72,24 @@ __all__ = [
     "Kind",
     "LoadTool",
     "Message",
+    "MotionPlace",
     "Moves",
     "OnBlock",
     "OnEvent",
     "OnOperation",
     "Operation",
+    "OperationValues",
     "Phase",
+    "Place",
     "SelectTool",
     "Sense",
     "SetMode",
     "SpindleOff",
     "SpindleOn",
     "Stop",
+    "StopPlace",
     "Tool",
+    "ToolValues",
     "UnknownStatement",
 ]
 

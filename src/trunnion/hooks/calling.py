@@ -9,17 +9,19 @@ import sys
 import types
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import redirect_stdout
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import TypeVar, cast
 
 import numpy as np
 
 from trunnion.cl import unknown_statement_remarks
+from trunnion.controls.definition import Control
 from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.errors import InputError, Problem, warning
 from trunnion.hooks import Block, Context
 from trunnion.hooks.checks import fingerprint, operation_fault, value_fault
 from trunnion.hooks.files import HookFile, function_failure
+from trunnion.hooks.functions import RunOf, with_functions
 from trunnion.messages import Wording
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines
@@ -43,15 +45,6 @@ _Kind = TypeVar("_Kind", Operation, Event)
 _T = TypeVar("_T")
 
 
-@dataclass(frozen=True, slots=True)
-class _RunOf:
-    """Names of machine and control, and the settings, that hooks see."""
-
-    machine: str
-    control: str
-    settings: Mapping[str, str]
-
-
 class Hooks:
     """Calls the functions of hook files for toolpaths, with what ``Context`` says of the run.
 
@@ -60,7 +53,7 @@ class Hooks:
     """
 
     def __init__(self, files: Sequence[HookFile], machine: str, control: str, settings: Mapping[str, str]) -> None:
-        self._files, self._run_of = files, _RunOf(machine, control, types.MappingProxyType({**settings}))
+        self._files, self._run_of = files, RunOf(machine, control, types.MappingProxyType({**settings}))
         self.changed_motion: list[str] = []
         self.decisions: list[Decision] = []
 
@@ -71,6 +64,10 @@ class Hooks:
             return ()
         files = ", ".join(file.path.name for file in self._files)
         return (f"{HOOKS_NOTICE} {files}: {', '.join(dict.fromkeys(self.changed_motion))}",)
+
+    def at_places(self, control: Control, encoding: str) -> Control:
+        """Return a control that writes what the functions at places of output return, in letters of an encoding."""
+        return with_functions(control, self._files, replace(self._run_of, encoding=encoding))
 
     def change(self, toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
         """Return what hooks make of toolpaths, with remarks on what they changed.
@@ -172,7 +169,7 @@ def _motion_change(before: Operation, after: Sequence[Operation]) -> list[str]:
 class _Caller:
     """Calls the functions of one file for one operation, and checks what they return."""
 
-    def __init__(self, file: HookFile, cl_file: str, run: _RunOf, number: int) -> None:
+    def __init__(self, file: HookFile, cl_file: str, run: RunOf, number: int) -> None:
         self._file, self._cl_file, self._run, self._number = file, cl_file, run, number
         self._watched: list[tuple[Operation, bytes]] = []
 

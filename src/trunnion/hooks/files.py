@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from trunnion.controls.places import OUTPUT_PLACES
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.messages import Wording
@@ -22,7 +23,14 @@ _FUNCTIONS: Final = {
     "on_operation": ("operation", "context"),
     "on_event": ("event", "context"),
     "on_block": ("block", "context"),
+    **{place.function: ("place",) for place in OUTPUT_PLACES if place.function},
 }
+
+#: Those that change what the CL file asks for.
+_OF_PATHS: Final = tuple(name for name in _FUNCTIONS if name.startswith("on_"))
+
+#: What their names begin with.
+_BEGINNINGS: Final = ("on_", "at_")
 
 _MODULE: Final = "trunnion_hooks"
 
@@ -61,7 +69,7 @@ def _load(path: Path) -> HookFile:
             exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
     except (Exception, SystemExit) as error:
         raise InputError(failure(path, error, Wording("HOK120", "file_fails", error=_said(error)))) from error
-    named = {name: value for name, value in vars(module).items() if name.startswith("on_") and callable(value)}
+    named = {name: value for name, value in vars(module).items() if name.startswith(_BEGINNINGS) and callable(value)}
     for name, function in named.items():
         if name not in _FUNCTIONS:
             line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
@@ -74,7 +82,8 @@ def _load(path: Path) -> HookFile:
             raise InputError(Problem(str(path), line, wording))
         _check_signature(path, name, function)
     if not named:
-        raise InputError(Problem(str(path), 0, Wording("HOK110", "file_no_hooks", functions=tuple(_FUNCTIONS))))
+        wording = Wording("HOK110", "file_no_hooks", functions=_OF_PATHS, place="at_tool_change")
+        raise InputError(Problem(str(path), 0, wording))
     return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
 
 

@@ -169,6 +169,12 @@ def phrase(variant: str, /, **parameters: object) -> Wording:
     return Wording("", variant, **parameters)
 
 
+def joined(wordings: Iterable[Wording], words: Words = LIBRARY) -> str:
+    """Return what wordings say, one behind the other, without those that say nothing."""
+    texts = tuple(filter(None, (wording.text("what", words) for wording in wordings)))
+    return Wording("terminal", "joined", texts=texts).text("what", words) if len(texts) > 1 else "".join(texts)
+
+
 def foreign(what: str, cure: str = "", code: str = "") -> Wording:
     """Return a text that is in no catalogue, since it is that of others: of a hook, or of a program without a code for
     it.

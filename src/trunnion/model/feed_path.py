@@ -31,11 +31,14 @@ class FeedPath(IntEnum):
             that turns farthest
     AXES    all axes together as one path, a degree counting as a millimetre
     TIP     the path that the tip would cover at the speed that it has at the start of the block
+    ENDS    the straight line between the tips at both ends; where they are one, the degrees of the axis that turns
+            farthest
     """
 
     SLIDES = 0
     AXES = 1
     TIP = 2
+    ENDS = 3
 
 
 def feed_path_lengths(machine: Machine, before: Floats, after: Floats, path: Codes) -> Floats:
@@ -56,13 +59,17 @@ def feed_path_lengths(machine: Machine, before: Floats, after: Floats, path: Cod
             forward(machine, before[at_start] + share * steps[at_start])[0] for share in (0.0, _START_SHARE)
         )
         length[at_start] = np.linalg.norm(shortly_after - tip, axis=1) / _START_SHARE
+    at_ends = path == FeedPath.ENDS
+    if at_ends.any():
+        way = np.linalg.norm(forward(machine, after[at_ends])[0] - forward(machine, before[at_ends])[0], axis=1)
+        length[at_ends] = np.where(way < _NO_TRAVEL, turned[at_ends], way)
     return length
 
 
 def row_feed_path_lengths(run: Run, rows: Ints) -> Floats:
     """Return the lengths that F in mm/min refers to in rows, (k,), in any order; NaN where it is the tip's path."""
     length = np.full(len(rows), np.nan)
-    without_tcp = ~run.state.tcp.at(rows)
+    without_tcp = ~run.state.tcp.at(rows) & (run.state.feed_path.at(rows) != FeedPath.ENDS)
     if not without_tcp.any():
         return length
     candidates = np.flatnonzero(without_tcp & (run.kind[rows] == Kind.LINEAR) & (run.state.feed_mode.at(rows) == 94))

@@ -26,12 +26,31 @@ class PoleStrategy(StrEnum):
 
 
 class MachiningMode(StrEnum):
-    """How the machine makes an operation; values are words for messages."""
+    """How the machine makes an operation; values are words for messages.
+
+    With M114 blocks hold tips, as with TCP, and the axes go straight between their ends, as without it.
+    """
 
     THREE_AXIS = "three-axis"
     TILTED = "tilted plane"
     TCP = "TCP"
     WITHOUT_TCP = "without TCP"
+    M114 = "M114"
+
+    @property
+    def is_simultaneous(self) -> bool:
+        """Whether the tool axis may change within a cut."""
+        return self in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP, MachiningMode.M114)
+
+    @property
+    def goes_straight(self) -> bool:
+        """Whether the axes go straight between the ends of blocks, while rotary ones turn."""
+        return self in (MachiningMode.WITHOUT_TCP, MachiningMode.M114)
+
+    @property
+    def holds_tips(self) -> bool:
+        """Whether X, Y and Z of blocks are the tip while rotary axes turn."""
+        return self in (MachiningMode.TCP, MachiningMode.M114)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

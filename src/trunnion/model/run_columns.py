@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints, make_read_only
+from trunnion.arrays import Flags, Floats, Ints, make_read_only
 from trunnion.model.columns import StepColumn
 
 
@@ -39,6 +39,7 @@ BY_PARAMETER: Final = 3
 class ModalState:
     """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
 
+    at_ends     the control places the tip at the ends of blocks alone: axes go straight between them (M114)
     xyz_is_tip  ``Run.xyz`` is the tool tip, not the positions of the linear axes
     plane       the row of ``Run.planes`` in whose coordinates words are; -1: in none of them
     compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
@@ -65,6 +66,7 @@ class ModalState:
     stated_radius: StepColumn
     work_offset: StepColumn
     tcp: StepColumn
+    at_ends: StepColumn
     machine_frame: StepColumn
     machine_steps: StepColumn
     inches: StepColumn
@@ -73,3 +75,13 @@ class ModalState:
     plane: StepColumn
     feed_path: StepColumn
     length_axis: StepColumn
+
+    def follows(self, first: int, end: int) -> Flags:
+        """Whether linear axes follow the rotary ones to the tip, with TCP or at the ends of blocks, in consecutive
+        rows.
+        """
+        return np.asarray(self.tcp.part(first, end) | self.at_ends.part(first, end))
+
+    def follows_at(self, rows: Ints) -> Flags:
+        """As ``follows`` for rows (k,) in any order."""
+        return np.asarray(self.tcp.at(rows) | self.at_ends.at(rows))

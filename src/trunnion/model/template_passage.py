@@ -2,21 +2,27 @@
 
 from dataclasses import dataclass
 
+from trunnion.messages import Wording
+
 
 @dataclass(frozen=True, slots=True)
 class TemplatePassage:
-    """The lines that a template of the user's definition has written at one place.
+    """The lines that a template of the user's definition, or a function of theirs, has written at one place.
 
     file      name of the subprogram they are in, empty for the program itself
     line      of the first, counted from 1
     texts     its lines, as the template printed them
     template  its name
+    title     what messages call it: a phrase
+    source    file and line where it stands
     """
 
     file: str
     line: int
     texts: tuple[str, ...]
     template: str
+    title: Wording
+    source: tuple[str, int]
 
     def text_at(self, file: str, line: int) -> str | None:
         """Return what stands in a line of a file; None if that is none of these."""

@@ -11,11 +11,12 @@ from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.inches import without_comments
+from trunnion.controls.places import STOP_PLACE
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, SPINDLE_ON, STOP_PLACE
+from trunnion.controls.vocabulary import SPINDLE_ON
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -34,6 +35,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.blocks.spline_blocks import write_rows_and_splines
+from trunnion.output.changed_words import ChangedWords
 from trunnion.output.holes.hole_blocks import write_holes
 from trunnion.output.holes.hole_groups import HoleRows
 from trunnion.output.program import Program
@@ -63,7 +65,7 @@ class EventWriter:
         self._next_row = 0
         self._phase = -1
         self._cycle: CycleOn | None = None
-        self._joining_events: list[WordEvent] = []
+        self._joining_events: list[WordEvent | ChangedWords] = []
         self._last_in_rows = _LastInRows(())
         self._spindle_turns = False
         self._resumes = False  # the spindle stands at a stop, and turns again before the row
@@ -102,7 +104,7 @@ class EventWriter:
                 self._write_event(k, event, end_lines if at_end else ())
         self._write_rows(rows)
         for event in self._joining_events:
-            if event.row == rows:
+            if event.row == rows and not isinstance(event, ChangedWords):
                 self._blocks.write_event(event)
 
     def set_block_skip(self, on: bool, row: int = 0) -> None:
@@ -154,6 +156,8 @@ class EventWriter:
             was, self._cycle = self._cycle, event if isinstance(event, CycleOn) else None
             if was is not None:
                 self._turn_again_after_thread(was, event)
+        elif isinstance(event, ChangedWords):
+            self._joining_events.append(event)
         elif isinstance(event, SpindleOn | SpindleOff | Coolant | CutterComp):
             self._write_word_event(event, end_lines)
             if isinstance(event, SpindleOn | SpindleOff):
@@ -182,7 +186,7 @@ class EventWriter:
         elif not self._is_switched_in(end_lines, event):
             self._blocks.write_event(event)
 
-    def _joining_at(self, row: int) -> list[WordEvent]:
+    def _joining_at(self, row: int) -> list[WordEvent | ChangedWords]:
         """Return the events that are to join a row, the last one that any joins so far, in their order."""
         here = list(takewhile(lambda joining: joining.row == row, reversed(self._joining_events)))
         return here[::-1]
@@ -199,7 +203,8 @@ class EventWriter:
             blocks.write_lines([line for line in lines if event.text or line not in self._family.comment("")])
         elif isinstance(event, Insert):
             lines = event.text.split("\n")
-            blocks.write_lines(lines, as_they_are=True, template=event.template)
+            source = self._control.templates[event.template] if event.template else None
+            blocks.write_lines(lines, as_they_are=True, source=source)
             if event.template:
                 self._templates.forget_words(lines)
             else:
@@ -221,7 +226,7 @@ class EventWriter:
         if self._spindle_turns and not event.optional:
             self._blocks.write_event(SpindleOff(event.row, event.line))
             self._spindle_turns = False
-        self._blocks.write_lines(self._stop_lines(event), template=STOP_PLACE)
+        self._write_stop_lines(event)
         self._blocks.writer.forget("coolant", *(("spindle",) if event.optional else ()))
         if event.row == len(self._motion.operation.moves):
             return
@@ -238,28 +243,32 @@ class EventWriter:
         """Write an optional stop between operations, with the ``values`` of the template of stops."""
         self._motion, self._values = motion, values
         rows = len(motion.operation.moves)
-        self._blocks.write_lines(
-            self._stop_lines(Stop(rows, motion.operation.line, optional=True)), template=STOP_PLACE
-        )
+        self._write_stop_lines(Stop(rows, motion.operation.line, optional=True))
 
-    def _stop_lines(self, event: Stop) -> list[str]:
-        """Return the lines of a stop: the family's, or those of the shop's template, which must stop as well."""
+    def _write_stop_lines(self, event: Stop) -> None:
+        """Write the lines of a stop: the family's, or those of the shop's template, which must stop as well."""
+        usual = self._family.stop(replace(event, text=spelled(event.text, self._encoding)), self._control.codes)
         if STOP_PLACE not in self._control.templates:
-            return self._family.stop(replace(event, text=spelled(event.text, self._encoding)), self._control.codes)
+            self._blocks.write_lines(usual)
+            return
         code = self._control.codes["optional_stop" if event.optional else "stop"]
-        values = {**self._values, "text": plain_text(self._program, event.text), "number": code}
-        lines = self._templates.lines(STOP_PLACE, values, self._motion)
+        own: dict[str, Value] = {"text": plain_text(self._program, event.text), "number": code}
+        given = {**own, "lines": tuple(usual)}
+        answer = self._templates.answer(STOP_PLACE, {**self._values, **own}, self._motion, given)
         word = re.compile(rf"(?<![A-Za-z0-9.])M0*{code}(?![0-9.])")
-        if not any(word.search(without_comments(self._control, line)) for line in lines):
-            file, at = self._control.templates[STOP_PLACE].place_of(0)
+        stops = any(word.search(without_comments(self._control, line)) for line in answer.lines)
+        if answer.source is not None and not stops:
+            file, at = answer.source.place_of(0)
             raise InputError(
                 Problem(
                     file,
                     at,
-                    Wording("DEF560", "template_does_not", stop_place=STOP_PLACE, code=code, event_line=event.line),
+                    Wording(
+                        "DEF560", "template_does_not", source=answer.source.title, code=code, event_line=event.line
+                    ),
                 )
             )
-        return lines
+        self._templates.write_answer(answer)
 
     def _turn_again_after_thread(self, cycle: CycleOn, event: CycleOn | CycleOff) -> None:
         """Start the spindle after a thread at which the control stops it, unless no cut follows, or it is switched."""
@@ -278,13 +287,13 @@ class EventWriter:
     def _start_spindle(self, event: SpindleOn) -> None:
         self._blocks.spindle = event
         program, values = self._program, spindle_values(self._program, event)
-        with_tcp = self._motion.mode is MachiningMode.TCP and NEW_SPEED_WITH_TCP in self._control.templates
+        with_tcp = self._control.new_speed_template(self._motion.mode)
         if not (with_tcp and self._templates.speed_changes(event.rpm)):
             self._templates.write(SPINDLE_ON, values, self._motion)
             return
         settings = {**self._control.settings, **program.settings_of(self._motion.operation)}
         words = {**self._family.template_values(settings, None), **values}
-        self._templates.write(NEW_SPEED_WITH_TCP, words, self._motion)
+        self._templates.write(with_tcp, words, self._motion)
         writer = self._blocks.writer
         active = writer.modal_state()
         writer.forget()  # what X, Y and Z mean has changed between, and not how feeds count
@@ -308,7 +317,7 @@ class EventWriter:
         for event in self._joining_events:
             if event.row > row or (event.row == row and self._blocks.needs_motion(event)):
                 waiting.append(event)
-            elif event.row == row:
+            elif event.row == row and not isinstance(event, ChangedWords):
                 self._blocks.write_event(event)
         self._joining_events = waiting
 
@@ -319,7 +328,8 @@ class EventWriter:
             joining = self._joining_events
             self._phase = write_rows_and_splines(self._blocks, self._motion, first, last, joining, self._phase)
         else:
-            rows = HoleRows(self._motion, first, last, self._joining_events)
+            joined = [event for event in self._joining_events if not isinstance(event, ChangedWords)]
+            rows = HoleRows(self._motion, first, last, joined)
             self._phase = write_holes(self._blocks, rows, self._phase, self._cycle)
         self._next_row = max(first, last)
 

@@ -17,7 +17,7 @@ from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import DRAW_BACK, FOLLOWING, LEAVING
 from trunnion.machines import Machine, slide_positions
 from trunnion.messages import Wording, phrase
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CutterComp, CycleOff, CycleOn, Kind
 from trunnion.output.coordinates.approach_leg import height_at_home
 from trunnion.output.coordinates.extents import highest_point
@@ -123,7 +123,7 @@ class Passages:
 
         None where they need not, or cannot: so high the linear axes do not reach.
         """
-        if motion.mode is not MachiningMode.TCP or not self.in_turn(motion):
+        if not motion.mode.holds_tips or not self.in_turn(motion):
             return None
         machine, tip, axis = (
             self._program.machine_of(motion),
@@ -182,7 +182,7 @@ class Passages:
         program, ends, begins = self._program, before.operation, motion.operation
         if program.effective_setting("stop_between") == "on":
             return phrase("way_stop")
-        if before.mode is MachiningMode.WITHOUT_TCP or motion.mode is MachiningMode.WITHOUT_TCP:
+        if before.mode.goes_straight or motion.mode.goes_straight:
             return phrase("way_without_tcp")
         if program.template_suffix(before) != program.template_suffix(motion):
             return phrase("way_other_mode")

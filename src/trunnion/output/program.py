@@ -83,6 +83,12 @@ class Program:
         return self.effective_settings(operation).get(name, "")
 
     @property
+    def planes_are_of_pose(self) -> bool:
+        """Whether tilted planes are taken from the rotary positions that are printed, and not from angles."""
+        by_command = self.effective_setting("plane") in self.control.family.PLANES_OF_POSE
+        return self.control.plane_from_pose or by_command
+
+    @property
     def text_form(self) -> TextForm:
         """How its characters become bytes."""
         line_end = b"\r\n" if self.effective_setting("line_ends") == "crlf" else b"\n"

@@ -15,17 +15,18 @@ from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import DRAW_BACK, FOLLOWING
 from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn, Stop
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.compensation_entries import entries_at_control
-from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
+from trunnion.output.coordinates.plane_from_pose import tip_after_turn
 from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
 from trunnion.output.operation_list import operation_texts
 from trunnion.output.passages import Passage, Passages, Way
+from trunnion.output.printed_planes import with_printed_planes
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
 from trunnion.output.template_printing import TemplatePrinting
@@ -63,26 +64,13 @@ def write_program(
     return starts
 
 
-def _with_printed_planes(program: Program) -> Program:
-    """Return the program with its tilted planes as they are for the digits that are printed."""
-    if all(motion.plane is None for motion in program.motions):
-        return program
-    if program.control.plane_from_pose:
-        adapt, number_format = with_plane_of_pose, "angle"
-    else:
-        adapt, number_format = with_plane_inside_limits, "plane_angle"
-    decimals = program.control.number_formats(three_axis=False)[number_format].decimals
-    motions = [m if m.plane is None else adapt(program.machine_of(m), m, decimals) for m in program.motions]
-    return replace(program, motions=motions)
-
-
 class _ProgramWriter:
     """Writes one program, operation by operation."""
 
     def __init__(
         self, program: Program, sink: BinaryIO, progress: Callable[[int], None], subprograms: SubprogramOutput | None
     ) -> None:
-        self._program = program = _with_printed_planes(program)
+        self._program = program = with_printed_planes(program)
         self._control = program.control
         self._blocks = MotionBlockWriter(program, sink, progress)
         self._template_values = TemplateValues(program)
@@ -140,8 +128,8 @@ class _ProgramWriter:
         """Where texts of the user's templates stand, once all is written."""
         names = {} if self._files is None else self._files.names
         return [
-            TemplatePassage(names.get(sink, ""), line, texts, template)
-            for sink, line, texts, template in self._blocks.passages
+            TemplatePassage(names.get(sink, ""), line, texts, each.name, each.title, each.place_of(0))
+            for sink, line, texts, each in self._blocks.passages
         ]
 
     def _values(self, motion: Motion, number: int) -> dict[str, Value]:
@@ -198,7 +186,11 @@ class _ProgramWriter:
         if self._program.effective_setting("tool_list") != "on":
             return []
         if "tool_list" in self._control.templates:
-            return self._templates.lines("tool_list", values, self._program.motions[0])
+            return self._templates.lines("tool_list", values, self._program.motions[0], {"lines": self._tools()})
+        return self._tools()
+
+    def _tools(self) -> list[str]:
+        """Comment lines with the tools."""
         texts = dict.fromkeys(
             tool_text(call, operation.tool, self._control.unit) for call, _, operation in self._tool_calls
         )
@@ -220,8 +212,9 @@ class _ProgramWriter:
         following = self._template_values.tools.next_call(self._operation + 1)
         if self._program.effective_setting("preselect") != "on" or following is None:
             return
-        if not self._templates.write_place("preselect", values, motion):
-            self._blocks.write_lines(self._control.family.tool_preselection(following))
+        usual = self._control.family.tool_preselection(following)
+        if not self._templates.write_place("preselect", values, motion, {"lines": usual}):
+            self._blocks.write_lines(usual)
 
     # Operations
 
@@ -278,7 +271,7 @@ class _ProgramWriter:
 
         planned  the motion in coordinates of the workpiece: an operation, or what follows behind a turn within one
         """
-        if self._passages.in_turn(motion) and motion.mode is not MachiningMode.TCP:
+        if self._passages.in_turn(motion) and not motion.mode.holds_tips:
             self._blocks.xy_before_z = True
         leg = self._passages.above(planned) if continues else self._passages.first_leg(planned)
         if leg is None or motion.plane is None:

@@ -23,16 +23,22 @@ class TemplatePrinting:
         self._budget = Budget()
         self._has_texts = any(template.is_text for template in self._control.templates.values())
 
-    def of(self, motion: Motion, values: Mapping[str, Value], lists: Mapping[str, object] | None = None) -> Printing:
+    def of(
+        self,
+        motion: Motion,
+        values: Mapping[str, Value],
+        lists: Mapping[str, object] | None = None,
+        own: Mapping[str, object] | None = None,
+    ) -> Printing:
         """Return what a template prints with at a motion.
 
-        ``values`` are those of ``TemplateValues``, ``lists`` others for expressions alone.
+        ``values`` are those of ``TemplateValues``, ``lists`` others for expressions alone, ``own`` those of the place.
         """
         formats = self._control.number_formats(motion.three_axis)
         if not self._has_texts:
             return Printing(formats, self._lengths, self._control.unit)
         found = {**self._records_at(values), **(lists or {})}
-        return Printing(formats, self._lengths, self._control.unit, self._numbers, found, self._budget)
+        return Printing(formats, self._lengths, self._control.unit, self._numbers, found, self._budget, own or {})
 
     def _records_at(self, values: Mapping[str, Value]) -> dict[str, object]:
         number, records = values.get("operation_number"), self._records

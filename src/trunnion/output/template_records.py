@@ -24,6 +24,7 @@ _MODES: Final = {
     MachiningMode.TILTED: "tilted",
     MachiningMode.TCP: "tcp",
     MachiningMode.WITHOUT_TCP: "without_tcp",
+    MachiningMode.M114: "m114",
 }
 
 _FEEDS: Final = ("least_feed", "greatest_feed")

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.template import PrintedText, Value
-from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
+from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, PROJECTED_ANGLES, TCP_USED
 from trunnion.machines import Axis, inverse
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.motion import MachiningMode, Motion
@@ -60,6 +60,7 @@ class TemplateValues:
             PLANES_USED: "on" if MachiningMode.TILTED in modes else None,
             TCP_USED: "on" if MachiningMode.TCP in modes else None,
             OFFSETS_DIFFER: "on" if len(offsets) > 1 else None,
+            PROJECTED_ANGLES: program.control.projected_angles,
         }
 
     def values(self, motion: Motion, number: int, loaded: LoadedTool, spindle: SpindleOn | None) -> dict[str, Value]:
@@ -155,8 +156,10 @@ class TemplateValues:
         return values
 
     def time_of(self, operation: int) -> Value:
-        """Return the machining time of an operation, by its number; None where no template prints any."""
-        return self._time_values(operation)["time"]
+        """Return the machining time of an operation, by its number, with what it leaves out; None where no template
+        prints any.
+        """
+        return self._time_text(operation) if self._prints_times else None
 
     def _time_values(self, operation: int) -> dict[str, Value]:
         """Machining times of the operation and of the program; computed only if a template prints them."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from trunnion.controls.template import Value
+from trunnion.controls.template import Answer, Value
 from trunnion.model.motion import Motion
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.said_words import said_words
@@ -23,35 +23,55 @@ class TemplateWriter:
 
         ``notices`` are comment lines that come as near to the first line as the control allows.
         """
-        lines = self.lines(name, values, motion)
-        first = self._control.first_lines if notices else 0
-        self._blocks.write_lines(lines[:first], template=name)
-        self._blocks.write_lines(notices)
-        self._blocks.write_lines(lines[first:], template=name)
-        if any(field in ("spindle_speed", "new_speed") for field, _ in self._control.templates[name].fields()):
+        answer = self.answer(name, values, motion)
+        self.write_answer(answer, notices, self._control.first_lines if notices else 0)
+        if answer.base is not None and not set(answer.base) <= set(answer.lines):
+            self.forget_speed()  # a function may have left it out
+        elif any(field in ("spindle_speed", "new_speed") for field, _ in self._control.templates[name].fields()):
             self._speed = values["spindle_speed"]
 
-    def lines(self, name: str, values: Mapping[str, Value], motion: Motion) -> list[str]:
-        """Return the lines that a template prints."""
+    def write_answer(self, answer: Answer, notices: Sequence[str] = (), first: int = 0) -> None:
+        """Write the lines of a place, with ``notices`` behind the ``first`` of them.
+
+        What those of a function leave in force is not known afterwards, unless they are understood.
+        """
+        self._blocks.write_lines(answer.lines[:first], source=answer.source)
+        self._blocks.write_lines(notices)
+        self._blocks.write_lines(answer.lines[first:], source=answer.source)
+        if answer.base is not None:
+            self.forget_words([line for line in answer.lines if line not in answer.base])
+
+    def answer(
+        self, name: str, values: Mapping[str, Value], motion: Motion, own: Mapping[str, object] | None = None
+    ) -> Answer:
+        """Return what stands at the place of a template; ``own`` is what only that place has."""
         speed = values["spindle_speed"]
         values = {**values, "new_speed": None if speed == self._speed else speed}
-        return self._control.templates[name].expand(values, self._printing.of(motion, values))
+        return self._control.templates[name].answer(values, self._printing.of(motion, values, own=own))
+
+    def lines(
+        self, name: str, values: Mapping[str, Value], motion: Motion, own: Mapping[str, object] | None = None
+    ) -> list[str]:
+        """Return the lines that a template prints."""
+        return list(self.answer(name, values, motion, own).lines)
 
     def switching_lines(self, name: str, values: Mapping[str, Value], motion: Motion) -> Sequence[str]:
         """Return the lines of a template that switch something: as they are written, or will be where that depends."""
         template = self._control.templates[name]
         return self.lines(name, values, motion) if template.is_text else template.lines
 
-    def write_place(self, name: str, values: Mapping[str, Value], motion: Motion) -> bool:
+    def write_place(
+        self, name: str, values: Mapping[str, Value], motion: Motion, own: Mapping[str, object] | None = None
+    ) -> bool:
         """Write the text of a shop at a place, if the definition has one; returns whether it has.
 
         What its words leave in force is not known afterwards, unless they are understood.
         """
         if name not in self._control.templates:
             return False
-        lines = self.lines(name, values, motion)
-        self._blocks.write_lines(lines, template=name)
-        self.forget_words(lines)
+        answer = self.answer(name, values, motion, own)
+        self._blocks.write_lines(answer.lines, source=answer.source)
+        self.forget_words(answer.lines)
         return True
 
     def forget_words(self, lines: Sequence[str]) -> None:

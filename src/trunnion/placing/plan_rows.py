@@ -8,7 +8,7 @@ import numpy as np
 from trunnion.arrays import Codes, Floats, Ints
 from trunnion.machines import Machine, inverse
 from trunnion.model.arc_extremes import operation_arcs
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Kind, LoadTool
 from trunnion.placing.path_rows import PathRows, Stretch, joined_rows, no_arcs
 from trunnion.planning.holes.hole_ends import hole_ends
@@ -42,7 +42,7 @@ def _rows_of_motion(machine: Machine, motion: Motion, tool: str) -> PathRows:
     way = np.linalg.norm(np.diff(moves.tip, axis=0), axis=1)
     timed = (moves.kind[1:] != Kind.RAPID) & (moves.feed[1:] > 0.0) & ~moves.per_rev[1:]
     seconds[1:][timed] = 60.0 * way[timed] / moves.feed[1:][timed]
-    tcp = motion.mode is not MachiningMode.WITHOUT_TCP
+    tcp = not motion.mode.goes_straight
     rows = PathRows(
         moves.tip, moves.axis, branches(machine, moves.tip, moves.axis, motion.rotary), moves.line.astype(np.int64),
         np.full(len(moves), tcp), seconds, (Stretch(0, operation.file, operation.name, tool),), motion.rotary[:1],

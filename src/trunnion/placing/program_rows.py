@@ -58,7 +58,7 @@ def _rows_at_workpiece(run: Run) -> Flags:
     """Which rows move slides, and not to positions of the machine; first legs of approaches are among those."""
     programmed = run.programmed.astype(np.int64)
     names_slides = ((programmed & _SLIDE_WORDS) != 0) | ((programmed & (_SLIDE_WORDS | _ROTARY_WORDS)) == 0)
-    moves = run.tcp | names_slides
+    moves = run.state.follows(0, len(run)) | names_slides
     moves &= ~run.machine_frame
     moves[approach_rows(run)] = False
     return np.asarray(moves)

@@ -30,7 +30,8 @@ class PlanOptions:
     mode                 machining mode of every operation; None: by the rule of ``trunnion.planning.machining_mode``
     mode_by_operation    the same for single operations, by name; takes precedence over ``mode``
     absolute_frame       the program's coordinate system is the CAM's absolute one, not that of the first operation
-    tcp                  simultaneous operations are made with TCP; False: slide positions are written
+    tcp                  simultaneous operations are made with TCP; False: slide positions are written, or
+    m114                 tips, which the control reaches at the ends of blocks alone
     holes_as_motion      holes are made as motion even if the control has a cycle for them
     allow_rewinds        insert a retract where a rotary axis must rewind in the cut; False: refuse the program
     clearance            how far the tool retracts along its axis for a rewind
@@ -53,6 +54,7 @@ class PlanOptions:
     mode_by_operation: Mapping[str, MachiningMode | None] = field(default_factory=dict)
     absolute_frame: bool = False
     tcp: bool = True
+    m114: bool = False
     holes_as_motion: bool = False
     allow_rewinds: bool = True
     clearance: Clearance = field(default_factory=partial(Clearance, 50.0))
@@ -74,7 +76,9 @@ class PlanOptions:
     @property
     def simultaneous_mode(self) -> MachiningMode:
         """How an operation with a changing tool axis is made."""
-        return MachiningMode.TCP if self.tcp else MachiningMode.WITHOUT_TCP
+        if self.tcp:
+            return MachiningMode.TCP
+        return MachiningMode.M114 if self.m114 else MachiningMode.WITHOUT_TCP
 
     @property
     def axis_tolerance_between_points(self) -> float:

@@ -8,7 +8,7 @@ from typing import Final
 from trunnion.errors import InputError, Problem, RefusedError, setting_problem
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
-from trunnion.model.motion import MachiningMode, Plan
+from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Frame, Operation, Toolpath
 from trunnion.planning.linearization.point_insertion import LinearizedMotion, linearize
 from trunnion.planning.linearization.slide_requirements import check_slides_are_known
@@ -110,7 +110,7 @@ def _frame_remedy(first: Frame, options: PlanOptions) -> Wording | str:
 def _linearize(planned: Sequence[PlannedOperation]) -> list[tuple[PlannedOperation, LinearizedMotion]]:
     """Return the motions of all operations with the points that they need between CL points."""
     motions = [(operation, motion) for operation in planned for motion in operation.motions()]
-    without_tcp = [(one, motion) for one, motion in motions if motion.mode is MachiningMode.WITHOUT_TCP]
+    without_tcp = [(one, motion) for one, motion in motions if motion.mode.goes_straight]
     for machine in dict.fromkeys(one.prepared.request.machine for one, _ in without_tcp):
         operations = [motion.operation for one, motion in without_tcp if one.prepared.request.machine is machine]
         check_slides_are_known(planned[0].prepared.file, operations, machine)

@@ -47,9 +47,6 @@ _OPPOSITE: Final = 1.0 - 1e-12
 #: The product of a component of one direction with that of the opposite one is less, whatever is rounded.
 _SAME_SIGN: Final = 1e-9
 
-#: Modes in which the tool axis may change.
-_SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
-
 
 def prepare_operations(
     sources: Sequence[tuple[str, Operation]], requests: Sequence[PlanRequest]
@@ -158,7 +155,7 @@ def _with_lines_for_arcs(prepared: PreparedOperation) -> PreparedOperation:
     keep = arcs_a_control_takes(written, capabilities.only_arcs_about_z, capabilities.helices_by_angle)
     if not capabilities.helices:
         keep &= flat_arcs(replace(operation, arcs=replace(operation.arcs, full_turns=0 * operation.arcs.full_turns)))
-    if prepared.mode is MachiningMode.TCP and not capabilities.arcs_with_tcp:
+    if prepared.mode is MachiningMode.M114 or (prepared.mode is MachiningMode.TCP and not capabilities.arcs_with_tcp):
         keep[:] = False
     if is_tilted and capabilities.planes_from_pose:
         keep &= arcs_about_tool(operation)
@@ -190,7 +187,7 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
     ranges = _ranges_in_planes(prepared)
     mode = prepared.mode if ranges is None else MachiningMode.TILTED
     objection = ""
-    if mode in _SIMULTANEOUS and not _drills_along_tool(prepared):
+    if mode.is_simultaneous and not _drills_along_tool(prepared):
         objection = f"no cycle along a tilted tool axis {'with' if mode is MachiningMode.TCP else 'without'} TCP"
         turns = axis_change_rows(operation)
         ranges = row_ranges(turns[operation.moves.kind[turns] == Kind.RAPID], len(operation.moves))
@@ -227,7 +224,7 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
 def _ranges_in_planes(prepared: PreparedOperation) -> list[tuple[int, int]] | None:
     """Rows of the planes in which holes along several axes are made; None: they are not made in planes."""
     options, capabilities = prepared.request.options, prepared.request.capabilities
-    if prepared.mode not in _SIMULTANEOUS or MachiningMode.TILTED not in capabilities.modes:
+    if not prepared.mode.is_simultaneous or MachiningMode.TILTED not in capabilities.modes:
         return None
     if options.mode_for(prepared.operation.name) is not None:
         return None

@@ -151,7 +151,9 @@ def travel_rows(run: Run, axis: Axis) -> Ints:
     if axis.is_rotary:
         return np.arange(len(run))
     linear = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
-    counts = ~run.machine_frame & (run.tcp | ((run.programmed & linear) != 0) | names_no_axis(run.programmed))
+    counts = ~run.machine_frame & (
+        run.state.follows(0, len(run)) | ((run.programmed & linear) != 0) | names_no_axis(run.programmed)
+    )
     counts[unknown_approaches(run).rows] = False
     return np.flatnonzero(counts)
 

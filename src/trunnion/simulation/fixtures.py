@@ -60,7 +60,7 @@ _SIZES: Final[Mapping[str, Mapping[str, _Size]]] = {
 }  # fmt: skip
 
 
-class _TextError(Exception):
+class _SizeError(Exception):
     """What is wrong with a text."""
 
     def __init__(self, variant: str, **parameters: object) -> None:
@@ -89,11 +89,11 @@ def stated_fixture(text: str) -> list[TriangleMesh]:
     kind, _, rest = text.partition(":")
     try:
         if len(text) > _LONGEST:
-            raise _TextError("too_long", count=len(text))
+            raise _SizeError("too_long", count=len(text))
         if kind not in _SIZES:
             return [stock_shape(text).as_mesh().named(kind)]
         sizes = _read(kind, rest)
-    except _TextError as error:
+    except _SizeError as error:
         shown = text if len(text) <= 60 else text[:57] + "..."
         raise InputError(argument_problem("fixtures", error.wording.within("of_quoted", text=shown))) from None
     except InputError as error:  # of the stock's grammar
@@ -111,34 +111,34 @@ def _read(kind: str, text: str) -> dict[str, tuple[float, ...]]:
         if not equals and place == 0:
             name, value = next(iter(known)), name
         elif not equals:
-            raise _TextError("no_name", kind=kind, value=name, known=tuple(known)[1:])
+            raise _SizeError("no_name", kind=kind, value=name, known=tuple(known)[1:])
         if name not in known:
             near = meant_word(name, tuple(known))
             if near:
-                raise _TextError("no_size_but_near", kind=kind, name=name, near=near)
-            raise _TextError("no_size", kind=kind, name=name, known=tuple(known))
+                raise _SizeError("no_size_but_near", kind=kind, name=name, near=near)
+            raise _SizeError("no_size", kind=kind, name=name, known=tuple(known))
         if name in found:
-            raise _TextError("size_twice", name=name)
+            raise _SizeError("size_twice", name=name)
         found[name] = _numbers(name, known[name], value)
     missing = tuple(f"{name}={size.example}" for name, size in known.items() if name not in found and not size.default)
     if missing:
-        raise _TextError("missing", kind=kind, missing=missing)
+        raise _SizeError("missing", kind=kind, missing=missing)
     if kind == "chuck" and not (
         found.get("jaws", (3.0,))[0].is_integer() and _FEWEST_JAWS <= found.get("jaws", (3.0,))[0] <= _MOST_JAWS
     ):
-        raise _TextError("no_jaws", fewest=_FEWEST_JAWS, most=_MOST_JAWS)
+        raise _SizeError("no_jaws", fewest=_FEWEST_JAWS, most=_MOST_JAWS)
     return {name: size.default for name, size in known.items()} | found
 
 
 def _numbers(name: str, size: _Size, text: str) -> tuple[float, ...]:
     words = [word.strip() for word in text.split(size.sign)] if size.count > 1 else [text]
     if len(words) != size.count or not all(_NUMBER.fullmatch(word) for word in words):
-        raise _TextError("no_numbers", name=name, value=text, example=size.example)
+        raise _SizeError("no_numbers", name=name, value=text, example=size.example)
     numbers = tuple(float(word) for word in words)
     if any(abs(number) > _LARGEST for number in numbers):
-        raise _TextError("number_beyond", name=name, value=text, largest=_LARGEST)
+        raise _SizeError("number_beyond", name=name, value=text, largest=_LARGEST)
     if not size.is_signed and min(numbers) <= 0.0:
-        raise _TextError("not_above_zero", name=name, value=text, example=size.example)
+        raise _SizeError("not_above_zero", name=name, value=text, example=size.example)
     return numbers
 
 

@@ -12,7 +12,7 @@ from trunnion.arrays import Flags, Floats, Lines
 from trunnion.compensation.centre_runs import CentreRun
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
-from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
@@ -174,7 +174,7 @@ class Check:
         """Return ``told`` in the words of who asks."""
         covered = () if self.coverage is None else tuple(self.coverage.wordings())
         wordings = (*self.missing, *filter(None, (self.answer,)), *covered)
-        return "; ".join(filter(None, (wording.text("what", words) for wording in wordings)))
+        return joined(wordings, words)
 
     def line(self, words: Words = LIBRARY) -> str:
         """Return the line that the command prints: key, state, summary."""

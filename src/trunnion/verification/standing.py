@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
-from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.results import NOT_DATA, Figure
 
 
@@ -98,7 +98,7 @@ class Standing:
 
     def said(self, words: Words = LIBRARY) -> str:
         """Return what is said behind the verdict."""
-        return "; ".join(wording.text("what", words) for wording in self.wordings())
+        return joined(self.wordings(), words)
 
     def line(self, words: Words = LIBRARY) -> str:
         """Return the line that is said of the program."""

@@ -6,12 +6,12 @@ from typing import Final
 
 from trunnion.controls import Control, load_control, shipped_controls
 from trunnion.controls.definition_files import is_control_file, load_control_table
+from trunnion.controls.places import TEMPLATE_ORDER
 from trunnion.controls.setting_rules import SettingKind
 from trunnion.controls.vocabulary import (
     PROGRAM_MEANINGS,
     SUBPROGRAM_TEMPLATES,
     SURFACE_NORMAL_WORDS,
-    TEMPLATE_ORDER,
     TOOL_VECTOR_WORDS,
     UNKNOWN_FEED,
 )
@@ -277,6 +277,7 @@ def _abilities(control: Control) -> list[str]:
         f"three-axis: {has[MachiningMode.THREE_AXIS]}",
         f"tilted planes: {', '.join(planes) if planes else has[MachiningMode.TILTED]}",
         f"TCP: {has[MachiningMode.TCP]}",
+        *(["M114: yes"] if MachiningMode.M114 in modes else []),
         f"five axes without TCP: {without}",
         f"tool axis as a vector: {_yes(set(TOOL_VECTOR_WORDS) <= word_names)}",
         f"surface normals: {_yes(set(SURFACE_NORMAL_WORDS) <= word_names)}",

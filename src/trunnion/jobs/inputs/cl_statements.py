@@ -21,7 +21,7 @@ from trunnion.cl import (
 )
 from trunnion.controls.definition import Control
 from trunnion.controls.loading import control_library
-from trunnion.controls.vocabulary import EVENT_PLACE
+from trunnion.controls.places import EVENT_PLACE
 from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine

@@ -149,9 +149,11 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         example="0,0,120.5",
     ),
     "tcp": _choice(
-        "With off the program holds positions of linear and rotary axes instead of the tip, with points inserted.",
+        "With off the program holds positions of linear and rotary axes instead of the tip, with points inserted. With "
+        "m114 (iTNC 530) it holds the tip, which the control places at the ends of blocks alone, with points inserted.",
         "on",
         "off",
+        "m114",
         default="on where the control has TCP",
     ),
     "tool_length": RunSetting(

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 from trunnion.jobs.post.tolerances import program_tolerances
 from trunnion.jobs.verify.expected_values import expected_values
-from trunnion.model.motion import MachiningMode
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
 from trunnion.verification import ExpectedValues, Tolerances
@@ -41,7 +40,7 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
     operations = {motion.operation.name: motion.operation for motion in program.motions}
     by_operation = {name: program.effective_settings(operation) for name, operation in operations.items()}
     own = {name: values for name, values in by_operation.items() if name in program.own_settings}
-    without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
+    without_tcp = any(motion.mode.goes_straight for motion in program.motions)
     axis_tolerance = options.axis_tolerance_between_points
     return replace(
         expected_values(control, program.machine, settings, own),

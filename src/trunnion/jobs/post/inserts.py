@@ -7,7 +7,7 @@ Out:    problems at the lines of the INSERT statements, before the program is wr
 import math
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -24,6 +24,7 @@ from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Motion
 from trunnion.model.run import Run
 from trunnion.model.splines import Splines
+from trunnion.model.template_passage import TemplatePassage
 from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, SpindleOff, SpindleOn
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
@@ -115,16 +116,34 @@ def _modes_at(name: str, program: Program) -> list[Problem]:
     The path does not show them, so that no proof does.
     """
     template = program.control.templates.get(name)
-    reader, problems = readers.reader_of(program.machine), list[Problem]()
-    for k, line in enumerate(template.plain_lines() if template else ()):
-        words = without_comments(program.control, line.replace("\0", "1")).upper()
-        word = _mode_in(words, reader) if reader.raw_words.not_known(words, program.machine) else ""
-        if word:
-            assert template is not None
-            problems.append(
-                Problem(*template.place_of(k), Wording("CTL457", "mode_not_stated_again", template=name, word=word))
-            )
-    return problems
+    if template is None:
+        return []
+    words = [(template.place_of(k), _mode_of(line, program)) for k, line in enumerate(template.plain_lines())]
+    return [_mode_problem(place, template.title, word) for place, word in words if word]
+
+
+def mode_problems(program: Program, passages: Iterable[TemplatePassage]) -> list[Problem]:
+    """Return the same of the lines that functions have written, which nobody knows before."""
+    if not readers.can_read(program.machine):
+        return []
+    return [
+        _mode_problem(each.source, each.title, word)
+        for each in passages
+        if each.template in _BEHIND_MODES
+        for line in each.texts
+        if (word := _mode_of(line, program))
+    ]
+
+
+def _mode_problem(place: tuple[str, int], source: Wording, word: str) -> Problem:
+    return Problem(*place, Wording("CTL457", "mode_not_stated_again", source=source, word=word))
+
+
+def _mode_of(line: str, program: Program) -> str:
+    """Return the word of a line that changes a mode which the path does not show; empty if there is none."""
+    reader = readers.reader_of(program.machine)
+    words = without_comments(program.control, line.replace("\0", "1")).upper()
+    return _mode_in(words, reader) if reader.raw_words.not_known(words, program.machine) else ""
 
 
 def _mode_in(words: str, reader: FamilyReader) -> str:
@@ -153,17 +172,17 @@ def _problem(program: Program, motion: Motion, event: Insert, effect: Wording) -
     if not event.template:
         variant = "calls_subprogram" if effect.variant == _NOT_RUN else "changes_something"
         return Problem(file, event.line, Wording("CTL455", variant, text=text, effect=effect))
-    place = program.control.templates[event.template].place_of(0)
+    template = program.control.templates[event.template]
     wording = Wording(
         "CTL457",
         "template_changes_something",
-        template=event.template,
+        source=template.title,
         text=text,
         file=file,
         line=event.line,
         effect=effect,
     )
-    return Problem(*place, wording)
+    return Problem(*template.place_of(0), wording)
 
 
 def _not_known(text: str, program: Program) -> Wording | None:
@@ -177,7 +196,7 @@ class _Trial:
     """Writes and runs some moves of one motion, with and without texts between them."""
 
     def __init__(self, program: Program, motion: Motion, folder: Path) -> None:
-        self._program, self._motion = program, motion
+        self._program, self._motion = replace(program, control=program.control.without_functions()), motion
         self._file = folder / "trial"
         self._quiet = program.control.family.comment("text")[0]
 

@@ -24,7 +24,7 @@ from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.settings_to_fill import settings_to_fill, with_operations
 from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.messages import Wording
-from trunnion.model.motion import Plan
+from trunnion.model.motion import MachiningMode, Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.compensation_entries import unknown_radii, with_radius_taken_off
 from trunnion.output.place_texts import with_place_texts
@@ -173,7 +173,8 @@ def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
     """Return the plan, with the margin to limits and the retracts that the job asks for."""
     machine, chord_tolerance = job.planned_machine, job.control.arcs.chord_tolerance
     # Without TCP the positions of slides are those of the tool itself: the control adds the rest.
-    machine_of = planned_machines(job, with_delta=job.options.tcp or not machine.has_rotary_head)
+    slides = job.options.simultaneous_mode is MachiningMode.WITHOUT_TCP
+    machine_of = planned_machines(job, with_delta=not (slides and machine.has_rotary_head))
     found = planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities, machine_of)
     distance = number_setting(job.settings, "tool_retract")
     if not distance:

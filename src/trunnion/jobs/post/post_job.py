@@ -243,9 +243,13 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
 
     Raises ``InputError`` if a number is none or out of range, or the settings contradict the control or each other.
     """
-    tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
+    asked = settings.get("tcp", "on" if control.tcp else "off")
+    tcp, m114 = asked == "on", asked == "m114"
     if tcp and not control.tcp:
         raise InputError(setting_problem("tcp", Wording("ARG250", "no_tcp")))
+    if m114 and MachiningMode.M114 not in control.modes(settings):
+        instead = ("on", "off") if control.tcp else ("off",)
+        raise InputError(setting_problem("tcp", Wording("ARG250", "no_m114", control=control.name, instead=instead)))
     mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
     numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
     fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
@@ -268,6 +272,7 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         fastest_feed=fastest,
         feed_limit=limit,
         tcp=tcp,
+        m114=m114,
         holes_as_motion=settings.get("cycles", "on") == "off",
         default_axis_tolerance=control.axis_tolerance,
         **known,

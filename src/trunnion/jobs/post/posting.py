@@ -206,6 +206,8 @@ def post_beside(
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         hooks = loaded_hooks(hook_files, job.machine.name, job.control.name, job.settings)
+        if hooks is not None:
+            job = replace(job, control=hooks.at_places(job.control, job.encoding))
         toolpaths = load_toolpaths(cl, job, found["strict"], observer, hooks.change if hooks else list)
         toolpaths, job = as_clamped(toolpaths, job, hooks, angles, is_placed=work.is_placed)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)

@@ -28,13 +28,13 @@ def refused(posting: Posting, proof: Proof, result: PostResult) -> ProofFailedEr
     """Return the error for a program that fails its proof, once its report is written."""
     job, places = posting.job, posting.places
     assert proof.verification is not None
-    result = replace(result, verification=places.explained(proof.verification, job.control))
+    result = replace(result, verification=places.explained(proof.verification))
     if job.papers.report is not None:
         result.write_report(job.papers.report)
         posting.target.files.remember_alone(job.papers.report)
     failed = tuple(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
     wording = Wording("CTL910", "can_be_forced" if job.can_force else "nothing_written", failed=failed)
-    cause = places.cause(proof.failed, job.control)  # the template that is likely to be why
+    cause = places.cause(proof.failed)  # the template that is likely to be why
     if cause is not None:
         wording = wording.within("because", cause=cause)
     return ProofFailedError(Problem(result.toolpaths[0].file, 0, wording), result)

@@ -94,7 +94,7 @@ def _in_program_frame(program: Program, motion: Motion, half: Mapping[str, float
     angle += _ANGLE_SLACK + angle * math.radians(angle) / _LEAST_POLE_SINE
     if motion.plane is None:
         return tip, angle, normal
-    if control.plane_from_pose:
+    if program.planes_are_of_pose:
         # Coordinates are those of the plane as it is printed; circles that are not quite in it are put into it.
         widest = float(motion.operation.arcs.radius.max(initial=0.0))
         return _plane_error(motion, tip, 0.0) + 2.0 * widest * math.radians(2.0 * angle), angle, normal

@@ -12,13 +12,16 @@ from pathlib import Path
 from typing import BinaryIO
 
 from trunnion import readers
+from trunnion.errors import InputError
 from trunnion.files import OutputFiles, WriteProgress
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.post.inserts import mode_problems
 from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.machines import Machine
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.model.template_passage import TemplatePassage
+from trunnion.output.changed_words import changers
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput
@@ -34,9 +37,12 @@ def write_and_read_back(posting: Posting, plan: Callable[[], PlannedProgram]) ->
     reading = read_back_while_writing(files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside)
     with reading as (progress, running):
         planned = plan()
+        posting.places.changers.update(changers(planned.program.motions))
         passages = posting.places.passages
         starts = write(planned.program, files.main, progress, posting.subprograms, posting.observer, passages)
-    with posting.places.told(job.control):
+        if problems := mode_problems(planned.program, passages):
+            raise InputError(problems)
+    with posting.places.told():
         return WrittenProgram(planned, starts, running.result())
 
 

@@ -21,12 +21,14 @@ class LineTexts:
         self._encoding = program.text_form.encoding
         self._capitals = program.effective_setting("comments") == "capitals"
 
-    def whole(self, lines: Sequence[str], file: str, *, as_they_are: bool) -> list[str]:
+    def whole(self, lines: Sequence[str], file: str, at: int = 0, *, as_they_are: bool) -> list[str]:
         """Return lines that the control can read; long comments continue in the next one.
+
+        They come from a file, at its line ``at`` if that is known.
 
         Raises ``InputError`` if another line is too long, or has a character that the program's encoding lacks.
         """
-        lines = lines if as_they_are else self.spelled(lines, file)
+        lines = lines if as_they_are else self.spelled(lines, file, at)
         room = self._control.longest_line - BLOCK_NUMBER_BYTES
         family = self._family
         lines = [
@@ -40,7 +42,7 @@ class LineTexts:
                 raise InputError(
                     Problem(
                         file,
-                        0,
+                        at,
                         Wording(
                             "CTL120",
                             "line_more_bytes",
@@ -61,14 +63,14 @@ class LineTexts:
             return line
         return f"{line}." if line.encode(self._encoding).endswith(sign.encode(self._encoding)) else line
 
-    def spelled(self, lines: Sequence[str], file: str) -> list[str]:
+    def spelled(self, lines: Sequence[str], file: str, at: int = 0) -> list[str]:
         """Lines of a definition, with values that are spelled already, as the program has them."""
         for line in lines:
             if letter := lacking(line, self._encoding):
                 raise InputError(
                     Problem(
                         file,
-                        0,
+                        at,
                         Wording(
                             "CTL810",
                             "definition_writes_no",

@@ -12,33 +12,24 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
+from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, WordRangeError
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, Phase, SpindleOn
+from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, SpindleOn
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import CHUNK, BlockWriter
 from trunnion.output.blocks.feeds import FEED_WORDS, FeedWords
 from trunnion.output.blocks.first_leg import FirstLegs
 from trunnion.output.blocks.line_texts import LineTexts
 from trunnion.output.blocks.orientation import OrientationWords
+from trunnion.output.blocks.phase_comments import phase_comments
 from trunnion.output.blocks.surface_normals import add_vector_lines, contact_rows
+from trunnion.output.changed_words import ChangedCoolant, ChangedWords
 from trunnion.output.coordinates.approach_leg import ApproachLegs
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import edge_setting
-
-#: The keys of phase comments in a definition.
-_PHASE_KEYS: Final = {
-    Phase.RAPID: "rapid",
-    Phase.APPROACH: "approach",
-    Phase.ENGAGE: "engage",
-    Phase.CUT: "cut",
-    Phase.STEPOVER: "stepover",
-    Phase.RETRACT: "retract",
-    Phase.DEPARTURE: "departure",
-    Phase.TRAVERSE: "traverse",
-}
 
 #: Words that are repeated where an operation continues in another file, besides those that every row has.
 _REPEATED_WORDS: Final = ("plane", "feed_mode", "cutter_comp", "speed", "edge", "spindle", "coolant")
@@ -76,8 +67,7 @@ class MotionBlockWriter:
         self.progress = progress
         self._words = program.block_words(program.motions[0])
         self.writer = BlockWriter(sink, self._words, self.control.block_numbers, program.text_form)
-        self.passages: list[tuple[BinaryIO, int, tuple[str, ...], str]] = []  # sink, line, texts, template
-        self._own_templates = self.control.own_templates()
+        self.passages: list[tuple[BinaryIO, int, tuple[str, ...], Template]] = []  # sink, line, texts, template
         self.feeds = FeedWords(program, self.writer)
         self._orientation = OrientationWords(program, self.writer, self._words)
         self._axis_coordinates: AxisCoordinates | None = None
@@ -160,10 +150,10 @@ class MotionBlockWriter:
 
     # Lines and single blocks
 
-    def write_lines(self, lines: Sequence[str], *, as_they_are: bool = False, template: str = "") -> None:
+    def write_lines(self, lines: Sequence[str], *, as_they_are: bool = False, source: Template | None = None) -> None:
         """Write lines of text, each a block; a line that ends with the continuation sign shares that of the next.
 
-        What a ``template`` of the user's has printed is noted with its place.
+        What a template of the user's has printed, the ``source``, is noted with its place.
 
         Comments that are longer than the control can read continue in the next line; they get capitals where these are
         asked for, unless lines are to stay ``as_they_are``.
@@ -171,11 +161,13 @@ class MotionBlockWriter:
         Raises ``InputError`` if another line is, or has a character that the program's encoding lacks.
         """
         sign, blocks, continues = self.control.continued, list[str](), False
-        for line in self._texts.whole(lines, self._file, as_they_are=as_they_are):
+        own = source if source is not None and source.is_of_user else None
+        file, at = own.place_of(0) if own is not None else (self._file, 0)
+        for line in self._texts.whole(lines, file, at, as_they_are=as_they_are):
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
             continues = bool(sign) and line.endswith(sign)
-        if template in self._own_templates:
-            self.passages.append((*self.writer.place, tuple("\n".join(blocks).split("\n")), template))
+        if own is not None:
+            self.passages.append((*self.writer.place, tuple("\n".join(blocks).split("\n")), own))
         self.writer.write_lines(blocks)
 
     def write_block(self, words: Mapping[str, int]) -> None:
@@ -199,15 +191,17 @@ class MotionBlockWriter:
         arcs = [self.control.codes[f"arc_{way}"] for way in ("clockwise", "counterclockwise")]
         return self.writer.modal_state().get("motion") in [self.writer.to_count("motion", code) for code in arcs]
 
-    def needs_motion(self, event: WordEvent) -> bool:
+    def needs_motion(self, event: WordEvent | ChangedWords) -> bool:
         """Whether the words of an event make no block alone, as ``RL`` does not."""
         if not isinstance(event, CutterComp):
-            return False
+            return isinstance(event, ChangedWords)
         words = self.family.event_words(event, self.control.codes, self.control.coolant)
         return bool(words) and all(self.writer.word(key).bare for key in words)
 
-    def event_words(self, event: WordEvent) -> dict[str, int]:
+    def event_words(self, event: WordEvent | ChangedWords) -> dict[str, int]:
         """Return the words of an event that joins a motion block, as counts."""
+        if isinstance(event, ChangedWords):
+            return dict(event.words)
         if isinstance(event, SpindleOn):
             self.spindle = event
         elif isinstance(event, Coolant):
@@ -218,7 +212,8 @@ class MotionBlockWriter:
             if event.side != "OFF" and not event.register and self._names_radius:
                 event = replace(event, register=int(self._tool) + self._radius_offset)
         words = self.family.event_words(event, self.control.codes, self.control.coolant)
-        return {word: self.writer.to_count(word, value) for word, value in words.items()}
+        changed = dict(event.changed) if isinstance(event, ChangedCoolant) else {}
+        return {word: self.writer.to_count(word, value) for word, value in words.items()} | changed
 
     @property
     def _names_radius(self) -> bool:
@@ -227,14 +222,14 @@ class MotionBlockWriter:
 
     def phase_texts(self) -> tuple[Ints, list[str]]:
         """Return an index of each ``Phase`` into the phase comments, -1 for none, (9,) int64; and the comments."""
-        texts = [self.control.phases.get(_PHASE_KEYS.get(phase, ""), "") for phase in Phase]
-        lines = list(dict.fromkeys(text for text in texts if text))
-        numbers = np.array([lines.index(text) if text else -1 for text in texts], np.int64)
+        numbers, lines = phase_comments(self.control.phases)
         return numbers, self._texts.spelled(lines, self._file)
 
     # Rows
 
-    def write_rows(self, motion: Motion, first: int, last: int, joining_events: Sequence[WordEvent], phase: int) -> int:
+    def write_rows(
+        self, motion: Motion, first: int, last: int, joining_events: Sequence[WordEvent | ChangedWords], phase: int
+    ) -> int:
         """Write rows ``first`` to ``last`` (excluded), in as many files as they need.
 
         ``phase`` is the index of the phase comment that was written last; returns the new one.
@@ -257,7 +252,7 @@ class MotionBlockWriter:
         motion: Motion,
         start: int,
         stop: int,
-        joining_events: Sequence[WordEvent],
+        joining_events: Sequence[WordEvent | ChangedWords],
         phase: int,
         *,
         repeat_point: bool = False,
@@ -269,10 +264,9 @@ class MotionBlockWriter:
         moves, rows = motion.operation.moves, slice(start, stop)
         self.tool_height, self.height_bound = float(moves.tip[stop - 1, 2]), None
         rapid = np.asarray(moves.kind[rows] == Kind.RAPID)
-        table = self._table_of_rows(motion, rows, rapid)
+        table, other_end = self.words_of_rows(motion, rows, rapid)
         if repeat_point:
             table.force("X", np.ones(stop - start, np.bool_))
-        other_end = self._add_arcs(table, motion, rows)
         if start == 0:
             first_words = self.first_block_words(motion)
             if rapid[0] and (self.xy_before_z or self.first_leg is not None):
@@ -295,6 +289,11 @@ class MotionBlockWriter:
             self.writer.forget("X", "Y", "Z")
         self._orientation.remember_state()
         return int(phases[-1])
+
+    def words_of_rows(self, motion: Motion, rows: slice, rapid: Flags) -> tuple[BlockTable, bool]:
+        """Return the words of rows, events aside; and whether the last row's end is not in X Y Z (but in an angle)."""
+        table = self._table_of_rows(motion, rows, rapid)
+        return table, self._add_arcs(table, motion, rows)
 
     def _table_of_rows(self, motion: Motion, rows: slice, rapid: Flags) -> BlockTable:
         """Return the words of rows as if none were an arc."""

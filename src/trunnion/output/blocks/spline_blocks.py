@@ -10,10 +10,16 @@ from trunnion.model.motion import Motion
 from trunnion.model.splines import SplineRows
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.changed_words import ChangedWords
 
 
 def write_rows_and_splines(
-    blocks: MotionBlockWriter, motion: Motion, first: int, last: int, joining_events: Sequence[WordEvent], phase: int
+    blocks: MotionBlockWriter,
+    motion: Motion,
+    first: int,
+    last: int,
+    joining_events: Sequence[WordEvent | ChangedWords],
+    phase: int,
 ) -> int:
     """Write rows ``first`` to ``last`` (excluded), as ``MotionBlockWriter.write_rows`` does."""
     splines, start = motion.operation.splines, first
@@ -26,7 +32,11 @@ def write_rows_and_splines(
 
 
 def _write_spline(
-    blocks: MotionBlockWriter, motion: Motion, rows: SplineRows, joining_events: Sequence[WordEvent], phase: int
+    blocks: MotionBlockWriter,
+    motion: Motion,
+    rows: SplineRows,
+    joining_events: Sequence[WordEvent | ChangedWords],
+    phase: int,
 ) -> int:
     """Write a spline, after a block with what is new at its start: the feed, and the events there."""
     moves, first, writer = motion.operation.moves, rows.first, blocks.writer

@@ -5,7 +5,7 @@ import numpy as np
 from trunnion.arrays import Flags
 from trunnion.controls.vocabulary import SURFACE_NORMAL_WORDS, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, round_to_counts
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.output.blocks.block_table import BlockTable
 from trunnion.output.blocks.block_writer import BlockWriter
@@ -14,7 +14,7 @@ from trunnion.output.blocks.block_writer import BlockWriter
 def contact_rows(motion: Motion, rows: slice) -> Flags:
     """(n,) bool: rows of lines along which the tool touches a surface whose normal is to be written."""
     moves = motion.operation.moves
-    if moves.normal is None or motion.mode is MachiningMode.WITHOUT_TCP:
+    if moves.normal is None or motion.mode.goes_straight:
         return np.zeros(len(moves.kind[rows]), np.bool_)
     return np.asarray((moves.kind[rows] == Kind.LINEAR) & np.isfinite(moves.normal[rows, 0]))
 

@@ -29,10 +29,16 @@ _LIMIT_TOLERANCE: Final = 5e-7
 _SOLUTION_TOLERANCE: Final = 0.1
 
 
-def with_plane_of_pose(machine: Machine, motion: Motion, decimals: int) -> Motion:
-    """Return a motion in the tilted plane of its rotary position, as printed with ``decimals``."""
+def with_plane_of_pose(machine: Machine, motion: Motion, decimals: int, *, keeps_origin: bool = False) -> Motion:
+    """Return a motion in the tilted plane of its rotary position, as printed with ``decimals``.
+
+    ``keeps_origin``: the program states the origin of the plane; else it is that of the work offset.
+    """
     rotary = round_to_counts(np.ascontiguousarray(motion.rotary[0]), decimals) / 10.0**decimals
-    return replace(motion, plane=plane_of_pose(machine, rotary), rotary=np.tile(rotary, (len(motion.rotary), 1)))
+    plane = plane_of_pose(machine, rotary)
+    if keeps_origin and motion.plane is not None:
+        plane = replace(plane, origin=motion.plane.origin)
+    return replace(motion, plane=plane, rotary=np.tile(rotary, (len(motion.rotary), 1)))
 
 
 def with_plane_inside_limits(machine: Machine, motion: Motion, decimals: int) -> Motion:

@@ -24,7 +24,7 @@ _ASKEW: Final = 1e-4
 def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
     """Refuse CUTCOM that would offset along the tool, not by the tool's radius, or the points of holes."""
     by_deltas = motion.mode is MachiningMode.TCP and not program.control.family.COMPENSATES_WITH_TCP
-    if motion.mode is MachiningMode.WITHOUT_TCP:
+    if motion.mode.goes_straight:
         return []  # refused altogether
     operation = motion.as_written()
     events = [event for event in operation.events if isinstance(event, CutterComp)]

@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.errors import Problem
 from trunnion.messages import Wording
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (
     Coolant,
     CutterComp,
@@ -34,7 +34,7 @@ _COMMENT_SIGNS: Final = ("(", ";")
 def corner_problems(program: Program, motion: Motion) -> list[Problem]:
     """Refuse stops, and more blocks without motion than the control reads ahead, within CUTCOM."""
     events = motion.operation.events
-    if motion.mode is MachiningMode.WITHOUT_TCP or not any(isinstance(event, CutterComp) for event in events):
+    if motion.mode.goes_straight or not any(isinstance(event, CutterComp) for event in events):
         return []
     operation = motion.as_written()
     across, rows = _moves_across(operation), len(operation.moves)

@@ -85,7 +85,7 @@ def _check_cycle(
     along_tool  the tool turns from hole to hole under TCP
     """
     moves, row, cycle = operation.moves, event.row, cycle_from_event(event)
-    if motion.mode in (MachiningMode.TCP, MachiningMode.WITHOUT_TCP) and not along_tool:
+    if motion.mode.is_simultaneous and not along_tool:
         raise _no_tilted_cycle(program, motion, cycle)
     spindle_here = spindles[0]
     formats = program.control.number_formats(motion.three_axis)

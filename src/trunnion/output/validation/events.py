@@ -7,10 +7,10 @@ from typing import TypeGuard
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.controls.inches import literal_length
-from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, RADIUS_NUMBER_WORD
+from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
-from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -87,7 +87,7 @@ def event_problems(
 
 def _stops_in_cut(program: Program, motion: Motion, event: SpindleOn, rpm: float | None) -> bool:
     """Whether TCP is switched off and on for a new speed right behind a cut, with the tool where the cut ends."""
-    with_tcp = motion.mode is MachiningMode.TCP and NEW_SPEED_WITH_TCP in program.control.templates
+    with_tcp = bool(program.control.new_speed_template(motion.mode))
     moves = motion.operation.moves
     behind_cut = 0 < event.row < len(moves) and int(moves.kind[event.row - 1]) != Kind.RAPID
     return with_tcp and behind_cut and rpm not in (None, event.rpm)

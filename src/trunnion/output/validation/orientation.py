@@ -33,7 +33,7 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
     if moves.normal is None or not np.isfinite(moves.normal).any():
         return []
     location, name = (program.file_of(operation), operation.line), operation.name
-    if motion.mode is MachiningMode.WITHOUT_TCP:
+    if motion.mode.goes_straight:
         problems.append(Problem(*location, Wording("CTL610", "operation_surface_normals", name=name)))
     if motion.mode is MachiningMode.TCP and program.effective_setting("orientation") != "vector":
         problems.append(Problem(*location, Wording("CTL610", "operation_tcp_control", name=name)))

@@ -17,6 +17,7 @@ from trunnion.output.validation.operations import (
     tool_problems,
 )
 from trunnion.output.validation.orientation import normal_problems, tool_vector_problems
+from trunnion.output.validation.planes import plane_problems
 from trunnion.output.validation.spindle import SpindleSpeeds
 from trunnion.output.validation.texts import text_problems
 from trunnion.output.validation.without_tcp import problems_without_tcp
@@ -66,10 +67,11 @@ def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
     problems = []
     if motion.mode is MachiningMode.TCP and program.control.vectors_exclude_angles:
         problems += tool_vector_problems(program, motion)
+    problems += plane_problems(program, motion)
     problems += [*plane_entry_problems(program, motion), *normal_problems(program, motion)]
     problems += [*compensation_problems(program, motion), *corner_problems(program, motion)]
     problems += skipped_side_problems(program, motion)
-    if motion.mode is MachiningMode.WITHOUT_TCP and program.template_suffix(motion):
+    if motion.mode.goes_straight and program.template_suffix(motion):
         problems += problems_without_tcp(program, motion)
     problems += [*missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]
     return [*problems, *rapid_feed_problems(program, motion)]

@@ -9,7 +9,7 @@ from trunnion.controls.words import NumberFormat
 from trunnion.errors import Problem, Severity, warning
 from trunnion.machines import Mount
 from trunnion.messages import Wording
-from trunnion.model.motion import Motion
+from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CutterComp, Kind
 from trunnion.output.coordinates.axis_coordinates import (
     FEED_AT_TIP,
@@ -27,13 +27,15 @@ _NOISE: Final = 1e-6
 
 
 def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
-    """Return what is wrong with a motion without TCP."""
+    """Return what is wrong with a motion without TCP, or with M114, where blocks hold tips and F is that of the tip."""
     operation, problems = motion.operation, list[Problem]()
     moves, control = operation.moves, program.control
     if any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events):
         problems.append(
             Problem(program.file_of(operation), operation.line, Wording("CTL220", "cutter_radius_compensation_without"))
         )
+    if motion.mode is MachiningMode.M114:
+        return problems
     decimals = control.number_formats(motion.three_axis)["angle"].decimals
     coordinates = to_axis_coordinates(program.machine_of(motion), motion, decimals)
     cuts = np.flatnonzero(coordinates.rotary_moves & (moves.kind != Kind.RAPID) & (moves.feed > 0))

@@ -62,7 +62,7 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
     request  without TCP its machine must have a workpiece zero and, if a head turns the tool, the tool's length
     """
     options, machine = request.options, request.machine
-    without_tcp = motion.mode is MachiningMode.WITHOUT_TCP
+    without_tcp = motion.mode.goes_straight
     tolerance = options.axis_tolerance_between_points
     if not without_tcp and motion.mode is not MachiningMode.TCP:
         return LinearizedMotion(motion)

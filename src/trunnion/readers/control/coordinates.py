@@ -1,8 +1,8 @@
 """What programmed positions mean: units, work offsets, TCP, tilted planes and programmable frames.
 
-X, Y and Z have two meanings. With TCP, or in a tilted plane, they are the tool tip in the active frame. Otherwise they
-are the positions of the slides, counted from the work offset: with the rotary axes at zero the tip is at the
-programmed position, with the axes turned the kinematics of the machine determine where it is.
+X, Y and Z have two meanings. With TCP or M114, or in a tilted plane, they are the tool tip in the active frame.
+Otherwise they are the positions of the slides, counted from the work offset: with the rotary axes at zero the tip is at
+the programmed position, with the axes turned the kinematics of the machine determine where it is.
 """
 
 from collections.abc import Hashable
@@ -44,6 +44,7 @@ class CoordinateControl(RowRecorder):
     length_unit  millimetres of a programmed length
     feed_unit    millimetres of the length in a programmed feed
     tcp          tool centre point control is on
+    at_ends      M114: the tip is placed at the ends of blocks
     tilted       the working plane is tilted
     """
 
@@ -65,10 +66,8 @@ class CoordinateControl(RowRecorder):
         self._zero_slides, self._zero_tip = self._zero_positions()
         self.absolute, self.plane_axis = True, 2
         self.usual_modes = dict(USUAL_MODES)
-        self.length_unit = 1.0
-        self.feed_unit = 1.0
-        self.tcp = False
-        self.tilted = False
+        self.length_unit = self.feed_unit = 1.0
+        self.tcp = self.at_ends = self.tilted = False
         self._tilted_from = self._shifted_from = -1
         self._rows_in_use = RowsInUse()
         # Work offsets that were written since the last motion at the part: row, line, file and word; the first row of
@@ -132,7 +131,7 @@ class CoordinateControl(RowRecorder):
 
     def _update_maps(self) -> None:
         self._arc_map = None
-        self.tip_programmed = self.tcp or self.tilted
+        self.tip_programmed = self.tcp or self.at_ends or self.tilted
         frame = self.frame
         suppressed = self.modal.work_offset.current == self.no_offset
         if self.tip_programmed:

@@ -28,6 +28,7 @@ class ModalBuilder:
         self.stated_radius = StepColumnBuilder(math.nan)
         self.work_offset = StepColumnBuilder(0)
         self.tcp = StepColumnBuilder(False)
+        self.at_ends = StepColumnBuilder(False)
         self.machine_frame = StepColumnBuilder(False)
         self.machine_steps = StepColumnBuilder(0)
         self.inches = StepColumnBuilder(False)
@@ -54,6 +55,7 @@ class ModalBuilder:
             stated_radius=self.stated_radius.steps(n, np.float64),
             work_offset=self.work_offset.steps(n, np.uint16),
             tcp=self.tcp.steps(n, np.bool_),
+            at_ends=self.at_ends.steps(n, np.bool_),
             machine_frame=self.machine_frame.steps(n, np.bool_),
             machine_steps=self.machine_steps.steps(n, np.uint8),
             inches=self.inches.steps(n, np.bool_),

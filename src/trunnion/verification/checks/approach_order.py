@@ -63,7 +63,14 @@ def _row_of_fault(context: ComparedContext, first: int, arrival: int, *, by_cycl
             return row
     if by_cycle:
         both = (row for row in range(first, arrival) if _goes_across_and_along(run, row))
-        return next((row for row in both if not (row == first and run.state.tcp[row] and row + 1 < arrival)), None)
+        return next(
+            (
+                row
+                for row in both
+                if not (row == first and run.state.follows_at(np.array([row]))[0] and row + 1 < arrival)
+            ),
+            None,
+        )
     k, points = context.matching.nc.count_before(arrival), context.matching
     if k < len(points.nc) and points.nc[k] == arrival and context.expected.section_at(points.cl[k]).kept is not None:
         return None

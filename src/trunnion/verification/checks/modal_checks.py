@@ -138,17 +138,19 @@ def _tcp_left_on(context: Context) -> Iterator[Place]:
 
 
 def _turned_under_tcp(context: Context) -> Iterator[Place]:
-    """Rapids that swing rotary axes right after TCP was switched on: they were not positioned before it."""
+    """Rapids that swing rotary axes right after TCP, or M114, was switched on: they were not positioned before it."""
     run = context.run
-    for first in run.state.tcp.rows_changing_to(True):
+    for first in sorted({*run.state.tcp.rows_changing_to(True), *run.state.at_ends.rows_changing_to(True)}):
         end = min(first + _ROWS_AFTER_TCP, len(run))
         joints = run.chunk(first, end).joints[:, list(run.machine.rotary)]
         turns = np.abs(np.diff(joints, axis=0)).max(axis=1)
         for row in range(first, end):
-            if run.kind[row] != Kind.RAPID or not run.state.tcp[row]:
+            if run.kind[row] != Kind.RAPID or not (run.state.tcp[row] or run.state.at_ends[row]):
                 break
             turned = float(turns[row - first])
             if turned > _STILL and not run.state.machine_frame[row]:
-                yield context.place(row, turned, Wording("modal", "swings", angle=turned))
+                yield context.place(
+                    row, turned, Wording("modal", "swings", angle=turned, word="TCP" if run.state.tcp[row] else "M114")
+                )
             if run.programmed[row] & int(POSITION_WORDS):
                 break

@@ -79,7 +79,7 @@ def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]
         way = _Way(context, legs[0], down)
         if len(legs) == 1 and _comes_from_home(run, legs[0]):
             # Whatever the settings: above all points the leg is harmless. A plane has first legs of its own.
-            if run.state.tcp[legs[0]] and way.comes_down_from(context.highest_point(way.axis)):
+            if run.state.follows_at(np.array(legs))[0] and way.comes_down_from(context.highest_point(way.axis)):
                 yield unbroken.tolist(), math.inf
         elif _begins_operation(context, arrives) and (height := way.height) is not None:
             yield unbroken.tolist(), height - context.highest_point(way.axis)

@@ -48,7 +48,7 @@ def _check_selected(context: Context) -> Check:
     stretches = list(_stretches(context))
     if not stretches:
         return Check("offset", True, Wording("offset", "nothing_moves"))
-    used, tcp = context.run.state.work_offset, context.run.state.tcp
+    used = context.run.state.work_offset
     compared = isinstance(context, ComparedContext)
     found = Faults()
     for rows, wanted in stretches:
@@ -57,7 +57,9 @@ def _check_selected(context: Context) -> Check:
             here = used.at(part)
             if (here == wanted).all():
                 continue
-            wrong = here != wanted if compared else (here != wanted) & ~((here == 0) & ~tcp.at(part))
+            wrong = (
+                here != wanted if compared else (here != wanted) & ~((here == 0) & ~context.run.state.follows_at(part))
+            )
             at = (
                 (int(row), {"has": _name(context, used[int(row)]), "wanted": _name(context, wanted)})
                 for row in part[wrong]
@@ -118,7 +120,7 @@ def _check_changes(context: Context, rows: RowRanges) -> Check:
             if codes and codes[-1] and run.kind[row] != Kind.RAPID:
                 offsets = {"before": _name(context, codes[-1]), "offset": _name(context, code)}
                 places.append(context.place(row, 0.0, Wording("offset", "changes_in_cut", **offsets)))
-            elif code == 0 and run.state.tcp[row] and used.distinct().any():
+            elif code == 0 and run.state.follows_at(np.array([row]))[0] and used.distinct().any():
                 places.append(context.place(row, 0.0, Wording("offset", "works_in_none")))
             codes.append(code)
         last = int(here[-1])

@@ -65,7 +65,8 @@ class Comparer:
         self._one = MovingRows(one, same_frame, coolants, tools, left_out=left_out[0])
         self._two = MovingRows(two, same_frame, coolants, tools, left_out=left_out[1])
         most = rules[0].most_feed, rules[1].most_feed
-        self._states = StateComparison(compared_states(self._one, self._two, path=path, most_feeds=most))
+        states = compared_states(self._one, self._two, path=path, most_feeds=most, tolerance=tolerances.tip)
+        self._states = StateComparison(states)
         programs = () if path else (self._one, self._two)
         self._events = [
             PathEvents(each.run, each.rows, of_control.blocks, same_machine=same_machine)

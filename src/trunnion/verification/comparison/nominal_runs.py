@@ -20,6 +20,7 @@ from trunnion.messages import Wording
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Run
 from trunnion.model.run_columns import BY_PARAMETER
+from trunnion.model.stated_tips import turns_without_tcp
 from trunnion.model.toolpath import Kind
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 
@@ -40,12 +41,25 @@ def missing_values(machine: Machine) -> list[Wording]:
 
 
 def cuts_by_place(run: Run) -> bool:
-    """Whether the tip of a cut depends on where the workpiece stands and how long the tool is, which nobody stated."""
+    """Whether the tip of a cut depends on where the workpiece stands and how long the tool is, which nobody stated:
+    at its end, or on the way to it where the axes go straight between tips that blocks state (M114).
+    """
+    if _bends_by_place(run):
+        return True
     other = with_nominal_values(run)
     if other is run:
         return False
     rows = np.flatnonzero((run.kind != Kind.RAPID) & ~run.state.machine_frame.column())
     return bool((np.abs(other.tip[rows] - run.tip[rows]) > _STILL).any())
+
+
+def _bends_by_place(run: Run) -> bool:
+    machine = run.machine
+    no_zero, no_length = _missing(machine)
+    if not (no_zero or (no_length and machine.has_rotary_head)):
+        return False
+    rows = np.flatnonzero((run.kind == Kind.LINEAR) & run.state.xyz_is_tip.column())
+    return bool(turns_without_tcp(run, rows).any())
 
 
 def with_nominal_values(run: Run) -> Run:

@@ -1,5 +1,6 @@
 """The states of two programs that are compared besides their paths."""
 
+import math
 from collections.abc import Iterator
 from typing import Final
 
@@ -20,11 +21,19 @@ from trunnion.verification.comparison.states import ComparedState
 _FEED: Final = 0.005
 _RPM: Final = 0.5
 
-#: The last digit of most positions, mm.
+#: The last digit of most positions, mm; and how far one distance may be off whose ends are printed so.
 _DIGIT: Final = 1e-4
+_ROUNDED: Final = math.sqrt(3.0) * _DIGIT
 
 #: Tool axes that are no farther apart, as the length of a vector, are the same: 0.001 degrees.
 _BENT: Final = 1.75e-5
+
+#: How many times farther apart tips may be between the ends of motions than at them: without TCP points are set so
+#: densely that the tip leaves its line by some micrometres.
+_BETWEEN: Final = 10.0
+
+#: Where in a motion the tip is looked at.
+_PARTS: Final = (0.25, 0.5, 0.75)
 
 _WAYS: Final = {
     int(Orientation.ANGLES): "by_angles",
@@ -33,14 +42,17 @@ _WAYS: Final = {
 
 
 def compared_states(
-    one: MovingRows, two: MovingRows, *, path: bool, most_feeds: tuple[float, float]
+    one: MovingRows, two: MovingRows, *, path: bool, most_feeds: tuple[float, float], tolerance: float
 ) -> list[ComparedState]:
     """Return what is compared in the rows of two programs.
 
     path        only what says where the tool is
     most_feeds  the largest F of either control, mm/min
+    tolerance   how far tips may be apart at the ends of motions, mm
     """
-    states = [_frames(one, two), *_orientations(one.run, two.run), *compared_registers(one.run, two.run, path=path)]
+    between = _tips_between(one.run, two.run, _BETWEEN * tolerance)
+    states = [_frames(one, two), between, *_orientations(one.run, two.run)]
+    states += compared_registers(one.run, two.run, path=path)
     if path:
         return states
     tools = ComparedState(
@@ -96,6 +108,40 @@ def _orientations(one: Run, two: Run) -> Iterator[ComparedState]:
     )
 
 
+def _tips_between(one: Run, two: Run, most: float) -> ComparedState:
+    """How far the tip leaves its line in cuts in which one program holds it there, and the other turns without TCP."""
+
+    def off(a: Ints, b: Ints) -> Floats:
+        tcp = one.state.tcp.at(a)
+        away = np.empty(len(a))
+        away[tcp], away[~tcp] = _off_line(two, b[tcp]), _off_line(one, a[~tcp])
+        return away
+
+    def counts(a: Ints, b: Ints) -> Flags:
+        cuts = (one.kind[a] == Kind.LINEAR) & (two.kind[b] == Kind.LINEAR)
+        return np.asarray(cuts & (one.state.tcp.at(a) != two.state.tcp.at(b)))
+
+    return ComparedState(
+        counts,
+        lambda a, b: np.asarray(off(a, b) <= most),
+        lambda a, b: (one.state.tcp.at(a), two.state.tcp.at(b)),
+        lambda a, b: Wording("comparison", "leaves_line", away=off(np.array([a]), np.array([b]))[0]),
+    )
+
+
+def _off_line(run: Run, rows: Ints) -> Floats:
+    """How far the tip is from the straight line between its ends, at most, (k,) mm, where all axes move evenly."""
+    before, after = run.positions(rows - 1), run.positions(rows)
+    away = np.zeros(len(rows))
+    for part in _PARTS:
+        tip, _ = run.forward_at(rows, (1.0 - part) * before.joints + part * after.joints)
+        line = after.tip - before.tip
+        way = tip - before.tip
+        along = np.einsum("ij,ij->i", way, line) / np.maximum(np.einsum("ij,ij->i", line, line), 1e-18)
+        away = np.maximum(away, np.linalg.norm(way - along[:, None] * line, axis=1))
+    return away
+
+
 def _bends(run: Run, rows: Ints) -> Flags:
     """In which rows the tool axis is elsewhere half-way where rotary axes move evenly under TCP, (k,) bool."""
     before, after = run.positions(rows - 1), run.positions(rows)
@@ -114,7 +160,7 @@ def _feeds(one: MovingRows, two: MovingRows, most: tuple[float, float]) -> Compa
         lengths = one.counted_lengths(a), two.counted_lengths(b)
         mixed = np.isnan(lengths[0]) != np.isnan(lengths[1])
         length = np.fmax(np.fmax(*lengths)[mixed], _DIGIT)
-        limits[mixed] = np.maximum(limits[mixed], feeds[mixed] * _DIGIT / length)
+        limits[mixed] = np.maximum(limits[mixed], feeds[mixed] * _ROUNDED / length)
         near = np.abs(feeds - others) <= limits
         # As fast as the control allows, and slower than the other: rotary axes turn far while the tip hardly moves.
         near |= mixed & (one.programmed(a) >= most[0] - _FEED) & (feeds < others)

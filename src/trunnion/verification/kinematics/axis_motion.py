@@ -22,6 +22,7 @@ from trunnion.machines import Machine, forward
 from trunnion.messages import Wording, phrase
 from trunnion.model.arc_extremes import run_reach
 from trunnion.model.feed_path import NO_ROTATION
+from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS
 from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
 from trunnion.model.turning_lines import LineSearch, TurningLines
@@ -107,6 +108,10 @@ class AxisMotionAnalyzer:
         """Add rows, in order; ``positions`` is the ``Run.chunk`` of them."""
         run, motion, count = self._run, self._motion, end - first
         state, kind = run.state, run.kind[first:end]
+        # With M114 words of rotary axes move the linear ones too, as if these were named.
+        programmed = run.programmed[first:end]
+        turns = state.at_ends.part(first, end) & ((programmed & int(ROTARY_WORDS)) != 0)
+        programmed = np.where(turns, programmed | np.uint8(POSITION_WORDS), programmed)
         tcp, machine_frame = state.tcp.part(first, end), state.machine_frame.part(first, end)
         # On the first leg of an approach the tool is still as high as before it, which may be known to nobody.
         here = self._unknown.rows[(self._unknown.rows >= first) & (self._unknown.rows < end)]
@@ -120,7 +125,7 @@ class AxisMotionAnalyzer:
             positions.axis,
             positions.midpoint_axis,
             kind,
-            run.programmed[first:end],
+            programmed,
             tcp,
             machine_frame,
             at_machine,

@@ -111,11 +111,11 @@ def _next_in_workpiece(run: Run, word: ProgrammedWord, first: int) -> int:
         programmed = run.programmed[first:end]
         in_workpiece = ~run.state.machine_frame.part(first, end)
         moves = _slide_moves(programmed, word)
-        # In a plane and under TCP slides follow from all three coordinates of the tip.
+        # In a plane, under TCP and with M114 slides follow from all three coordinates of the tip.
         named = np.bitwise_or.accumulate(np.append(stated, np.where(in_workpiece, programmed & _TIP_WORDS, 0)))[1:]
         stated = int(named[-1])
         tip = run.state.xyz_is_tip.part(first, end) & ((programmed & _TIP_WORDS) != 0)
-        tip |= run.state.tcp.part(first, end) & ((programmed & int(ROTARY_WORDS)) != 0)
+        tip |= run.state.follows(first, end) & ((programmed & int(ROTARY_WORDS)) != 0)
         moves |= tip & (named == _TIP_WORDS)
         moves &= in_workpiece
         if moves.any():
@@ -128,7 +128,7 @@ def _tip_rows(run: Run, first: int, end: int) -> Ints:
     """Rows from ``first`` to the one before ``end`` that move the tip in coordinates of the workpiece."""
     programmed = run.programmed[first:end]
     moves = run.state.xyz_is_tip.part(first, end) & ((programmed & int(POSITION_WORDS)) != 0)
-    moves |= run.state.tcp.part(first, end) & ((programmed & int(ROTARY_WORDS)) != 0)
+    moves |= run.state.follows(first, end) & ((programmed & int(ROTARY_WORDS)) != 0)
     moves &= ~run.state.machine_frame.part(first, end)
     return np.asarray(first + np.flatnonzero(moves))
 

@@ -44,17 +44,17 @@ def oriented_by_vector(run: Run) -> Flags:
 
 
 def rotary_positioning_flags(run: Run, start: int, end: int) -> Flags:
-    """Which of consecutive rows only position rotary axes, at rapid with TCP off, (end - start,) bool."""
+    """Which of consecutive rows only position rotary axes, at rapid with TCP and M114 off, (end - start,) bool."""
     turns = _turns_only(run.programmed[start:end])
     if not turns.any():
         return turns
-    return np.asarray(turns & ~run.state.tcp.part(start, end) & (run.kind[start:end] == Kind.RAPID))
+    return np.asarray(turns & ~run.state.follows(start, end) & (run.kind[start:end] == Kind.RAPID))
 
 
 def only_positions_rotary_axes(run: Run, rows: Ints) -> Flags:
     """As ``rotary_positioning_flags`` for rows in any order, (k,) bool."""
     turns = _turns_only(run.programmed[rows])
-    return np.asarray(turns & ~run.state.tcp.at(rows) & (run.kind[rows] == Kind.RAPID))
+    return np.asarray(turns & ~run.state.follows_at(rows) & (run.kind[rows] == Kind.RAPID))
 
 
 def _turns_only(programmed: Codes) -> Flags:
@@ -142,7 +142,7 @@ def approach_rows(run: Run) -> Ints:
         legs = np.array([row, after])
         if after >= len(run) or (run.kind[legs] != Kind.RAPID).any() or run.state.machine_frame[after]:
             continue
-        if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):
+        if run.state.follows_at(np.array([row]))[0] and int(run.programmed[row]) & int(ROTARY_WORDS):
             continue
         across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[legs])
         by_cycle = bool(names_no_axis(run.programmed[after : after + 1])[0])

@@ -144,7 +144,7 @@ WRONG = {
     "program": "A B",
     "blank": "0,0,0,1,1",
     "work_offset": "G54",
-    "plane": "euler",
+    "plane": "sideways",
     "tcpm": "m130",
     "retract_distance": "-5",
     "normals": "on",

@@ -286,6 +286,7 @@ def test_a_retract_before_a_plane_is_made_first(run: Runner) -> None:
     "text",
     [
         "PLANE PROJECTED PROPR+24 PROMIN+24 ROT+30 TURN FMAX",
+        "PLANE SIDEWAYS SPA+0 SPB+0 SPC+0 STAY",
         "PLANE SPATIAL SPA+0 SPB+0 TURN FMAX",
         "PLANE VECTOR BX1 BY0 BZ0 NX1 NY0 NZ0 STAY",
         "PLANE POINTS P1X0 P1Y0 P1Z0 P2X1 P2Y0 P2Z0 P3X2 P3Y0 P3Z0 STAY",

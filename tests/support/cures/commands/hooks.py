@@ -21,6 +21,15 @@ def _on(message: str, hook: str, given: str, old: str, new: str) -> Cure:
     return _file(message, f"def on_{hook}({hook}, context):\n    return {given}", old, new)
 
 
+def _at(message: str, place: str, given: str, old: str, new: str) -> Cure:
+    """A function at a place of output that returns something, and what it returns in place of it."""
+    return _file(message, f"def at_{place}(place):\n    return {given}", old, new)
+
+
+_KNIFE: Final = f"write shop.py 'def at_retract(place):\\n    return \";刀\"\\n'\n{_POST} --set encoding=latin-1"
+_CYCLE: Final = "CYCLE/DRILL,FEDTO,-9,RAPTO,3,MMPM,99\\nGOTO/50,0,0\\nCYCLE/OFF\\nEND-OF-PATH"
+
+
 CURES: Final = (
     script("HOK110 no_python_file",
            f"write shop.txt 'def on_block(block, context):\\n    return None\\n'\n{_POST[:-2]}txt",
@@ -53,5 +62,23 @@ CURES: Final = (
            f"write shop.py \"{_HEAD}def on_event(event, context):\\n    if isinstance(event, CycleOn):\\n"
            "        return replace(event, values=(*event.values[:2], ('STEP', (4.0, -1.0, 1.0)), *event.values[3:]))\\n"
            f"    return event\\n\"\n{_POST} --set cycles=off", "-1.0, 1.0", "1.0, 1.0"),
+    _at("HOK170 place_type", "retract", "5", "return 5", "return None"),
+    _at("HOK170 place_type", "retract", "5", "return 5", "return replace(place, lines=(';A',))"),
+    _at("HOK170 other_value", "retract", "replace(place, name='A')", "name='A'", "lines=(';A',)"),
+    _at("HOK170 many_lines", "retract", "[';A'] * 2000", "2000", "1000"),
+    _at("HOK170 long_line", "retract", "';' + 'A' * 2000", "2000", "20"),
+    _at("HOK170 control_character", "retract", "[';A' + chr(10) + ';B']", " + chr(10) + ", ", "),
+    _at("HOK170 no_words_here", "retract", "{'X': 1}", "{'X': 1}", "';A'"),
+    _at("HOK170 word_name", "linear", "{1: place.words['feed']}", "{1:", "{'feed':"),
+    _at("HOK170 word_value", "linear", "{'feed': 'A'}", "'A'", "place.words['feed']"),
+    _at("HOK170 unknown_word", "linear", "{'Q': place.words['feed']}", "'Q'", "'feed'"),
+    _at("HOK170 word_beyond", "linear", "{'feed': 999999999}", "999999999", "place.words['feed']"),
+    script("HOK170 letter_lacking",
+           _KNIFE, "刀", "A"),
+    script("HOK170 letter_lacking",
+           _KNIFE,
+           "encoding=latin-1", "encoding=utf-8"),
+    script("HOK170 no_cycle", f"edit part.cls END-OF-PATH '{_CYCLE}'\n"
+           f"write shop.py 'def at_cycle(place):\\n    return {{\"RAPTO\": -3.0}}\\n'\n{_POST}", "-3.0", "3.0"),
     _on("HOK160 hooks_leave_out", "operation", "[]", "[]", "None"),
 )  # fmt: skip

@@ -59,6 +59,7 @@ CURES: Final = (
     script("ARG230 two_values_of_all_operations", _SETTING_OF_SHOP + "note=A,B,OP1:C", "A,B,", "A,"),
     _set("ARG250 no_subprograms", "programs=operations", "", "hs664rt"),
     script("ARG250 no_tcp", _WITHOUT_TCP + "tcp=on", "tcp=on", "tcp=off"),
+    script("ARG250 no_m114", _WITHOUT_TCP + "tcp=m114", "tcp=m114", "tcp=off"),
     script("ARG250 file_without_number",
            "trunnion post part.cls --machine matsuura_mx330 --set program_from=file --output out.nc", "out.nc",
            "O1001.nc"),

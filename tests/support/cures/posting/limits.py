@@ -214,6 +214,32 @@ CURES: Final = (
         'M61 = "no effect"',
     ),
     by_settings(
+        "CTL640 projected_unknown",
+        {"plane": "spatial"},
+        _TILTED,
+        "mikron_600u",
+        plane="projected",
+    ),
+    Cure(
+        "CTL640",
+        "projected_too_steep",
+        on_machine('extends = "mikron_600u"\n[control]\nprojected_angles = "turning"\n'),
+        _TILTED.replace("0.0,0.6,0.8", "0.0,0.96,0.28") + FOOT,
+        ({"plane": "spatial"},),
+        {"plane": "projected"},
+    ),
+    Cure(
+        "CTL640",
+        "axial_other_x",
+        post("mikron_600u"),
+        HEAD
+        + FOOT
+        + _SECOND.replace("1.0000000,0.0000000,0.0000000,0.0000000,1.0000000,0.0", "0,0.8,-0.6,-1,0,0.0")
+        + FOOT,
+        ({"plane": "spatial"},),
+        {"plane": "axial"},
+    ),
+    by_settings(
         "CTL610 point_between_cl",
         {"axis_tolerance": None},
         _NORMALS,

@@ -11,6 +11,7 @@ from trunnion.errors import Problem, TrunnionError
 
 _HEADS: Final = {
     **HEADS,
+    "dmu65": HEADS["mikron_600u"],
     "haas_umc750": "%\nO00001\nG21 G90 G94\nT5 M6\nG54\nS500 M3\nG43 H5 G0 X0. Y0. Z50.\n{lines}\n"
     "G1 Z5. F100.\nM30\n%\n",
 }
@@ -151,6 +152,13 @@ CURES: Final = (
     _in("NC323 end_beside_start", "G1 X10 Y0 F90", "- G3 X10 Y0.001 Z-1 I-10 J0", "+ G3 X10 Y0 Z-1 I-10 J0",
         on=_LINUXCNC),
     _in("NC324", "- DEP LT LEN5", "L X+5 F100", on=_TNC),
+    _in("NC220 m114_position", "- M114 C+0", "+ M114", "L C+0 FMAX", "L X+10 F100", "M115", on=_TNC),
+    _in("NC220 m114_unknown", "- M114", "+ M128", "L X+10 F100", "- M115", "+ M129", on="dmu65"),
+    _in("NC340 m114_with", "M114", "L X+10 F100", "- M128", "+ M115", on=_TNC),
+    _in("NC340 m114_with_tcp", "M128", "L X+10 F100", "+ M129", "M114", "L X+20 F100", "M115", on=_TNC),
+    _in("NC340 m114_in_plane", "PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY", "+ PLANE RESET STAY", "M114", "L X+10 F100",
+        "M115", on=_TNC),
+    _in("NC340 compensation_with_m114", "M114", "- L X+5 RL F100", "+ L X+5 R0 F100", "L X+10", "M115", on=_TNC),
     _in("NC330", "- SCALE X0", "G1 X10 F100"),
     _in("NC331", "G1 X10. F100.", "G0 Z50.", "G55", "X0. Y0.", on=_FANUC),
     _in("NC340", "- TOROT", "G1 X10 F100"),
@@ -162,6 +170,11 @@ CURES: Final = (
         "+ G52 X0 Y0", on=_FANUC),
     _in("NC343 drills", "G1 Z0. F100.", "G41 D1 X10. Y0.", "X20.", "- G99 G81 X25. Z-5. R2.", "- G80", "- G1 X30.",
         "G40 X40. Y9.", "+ G99 G81 X25. Z-5. R2.", "+ G80", on=_FANUC),
+    _in("NC351 plane_axial_leaves_out", "L Z+450 R0 FMAX M91", "L B-30 C+20 FMAX",
+        "- PLANE AXIAL B-30 STAY", "+ PLANE AXIAL B-30 C+20 STAY",
+        "PLANE RESET STAY", "L B+0 C+0 FMAX", on="mikron_600u"),
+    _known("NC220 projected_angles_unknown", "PLANE PROJECTED PROPR+5 PROMIN+0 ROT+0 STAY", "[control]",
+           '+ projected_angles = "turning"', on="mikron_600u"),
     _in("NC210 radius_of_holes", "G98 G81 Z-5. R2. F100. L0", "- G70 I-5. J0. L2", "+ G70 I5. J180. L2", "G80",
         on="haas_umc750"),
     _in("NC210 holes_in_one_place", "G98 G81 Z-5. R2. F100. L0", "- G71 I5. J0. K0. L2", "+ G71 I5. J0. K90. L2",

@@ -39,6 +39,8 @@ WORDS: tuple[str, ...] = (
 )
 CODES: tuple[str, ...] = iso.CODES
 PLANE_COMMANDS: tuple[str, ...] = ("g68_2", "g254")
+PLANE_TEMPLATES_OF: Mapping[str, str] = {}
+PLANES_OF_POSE: frozenset[str] = frozenset()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "contour": ("none", "G05.1", "G05"),
     "orientation": ("angles", "vector"),
@@ -200,6 +202,11 @@ def _is_call(text: str) -> bool:
     match = _CALL_PATTERN.fullmatch(text)
     letters = [word[0] for word in match[2].split()] if match else []
     return bool(match) and len(set(letters)) == len(letters) and not (letters and text.startswith("M98"))
+
+
+def validate_plane(settings: Mapping[str, str], plane: Floats, of_pose: Floats) -> Wording | None:
+    """Return None: every plane can be said."""
+    return None
 
 
 def cycle_call(

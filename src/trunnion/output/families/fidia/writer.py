@@ -40,6 +40,8 @@ WORDS: tuple[str, ...] = (
 )  # fmt: skip
 CODES: tuple[str, ...] = tuple(code for code in iso.CODES if not code.startswith("feed_"))
 PLANE_COMMANDS: tuple[str, ...] = ("g154",)
+PLANE_TEMPLATES_OF: Mapping[str, str] = {}
+PLANES_OF_POSE: frozenset[str] = frozenset()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: SAFE_START_CHOICES}
 SETTING_MEANINGS: Mapping[str, str] = {
     SAFE_START_SETTING: "What an aborted run may have left on the start of every operation cancels: own cancels TCP "
@@ -147,6 +149,11 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     if pair in _TCP_PAIRS or pair[1] not in dict(_TCP_PAIRS).values():
         return []
     return [("tcp_on", phrase("pair_of_tcp_words"))]
+
+
+def validate_plane(settings: Mapping[str, str], plane: Floats, of_pose: Floats) -> Wording | None:
+    """Return None: every plane can be said."""
+    return None
 
 
 def cycle_call(

@@ -12,14 +12,15 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import RADIUS_ARC_WORDS
+from trunnion.controls.vocabulary import PROJECTED_ANGLES, RADIUS_ARC_WORDS
 from trunnion.controls.words import ABSENT
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
-from trunnion.output.coordinates.euler_angles import tait_bryan_angles
 from trunnion.output.families.heidenhain import arcs as heidenhain_arcs
 from trunnion.output.families.heidenhain.cycles import cycle_definition
+from trunnion.output.families.heidenhain.planes import PLANE_FIELDS, plane_values
+from trunnion.output.families.heidenhain.planes import validate_plane as validate_plane
 from trunnion.output.families.heidenhain.sides import sides_at_once
 from trunnion.output.shared.lines import program_stop, split_text
 from trunnion.output.shared.spindle import dwell_seconds, dwell_text
@@ -42,12 +43,19 @@ CODES: tuple[str, ...] = (
     "optional_stop", "call",
 )  # fmt: skip
 
-PLANE_COMMANDS: tuple[str, ...] = ("spatial", "vector", "cycle19")
+PLANE_COMMANDS: tuple[str, ...] = (
+    "spatial", "vector", "euler", "points", "relativ", "axial", "projected", "cycle19",
+)  # fmt: skip
+PLANE_TEMPLATES_OF: Mapping[str, str] = dict.fromkeys(
+    ("vector", "euler", "points", "relativ", "axial", "projected"), "spatial"
+)
+PLANES_OF_POSE: frozenset[str] = frozenset({"axial"})
 
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane": PLANE_COMMANDS,
     "plane_move": ("turn", "move", "stay"),
     "plane_solution": ("SEQ", "SYM"),
+    "plane_free_axis": ("unstated", "coord", "table"),
     "tcpm": ("m128", "function"),
     "rotary_feed": ("degrees", "tip"),
     "retract": ("home", "m140"),
@@ -55,11 +63,15 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "normals": ("off", "contact"),
 }
 SETTING_MEANINGS: Mapping[str, str] = {
-    "plane": "The command for a tilted plane: PLANE SPATIAL, PLANE VECTOR, or cycle 19.",
+    "plane": "The command for a tilted plane: PLANE SPATIAL, VECTOR, EULER, POINTS, RELATIV, AXIAL or PROJECTED, or "
+    "cycle 19. AXIAL has no X but that of the machine after the tilt; PROJECTED needs what its angles mean in the "
+    "definition.",
     "plane_move": "What the rotary axes do when a plane comes on: turn positions them, move does so while the linear "
     "axes hold the tip, stay leaves them where they are.",
     "plane_solution": "The word that selects one of a plane's two rotary positions: SEQ, or SYM on controls that have "
     "it (unconfirmed).",
+    "plane_free_axis": "What PLANE turns where it leaves the rotary axis next to the workpiece free: coord (COORD "
+    "ROT) the coordinates, table (TABLE ROT) that axis; with unstated the block has no word for it.",
     "tcpm": "The command for TCP: M128, or FUNCTION TCPM.",
     "rotary_feed": "What F counts without TCP while rotary axes turn: degrees as millimetres, or with M116 the path "
     "of the tip, which works for rotary tables only.",
@@ -70,14 +82,13 @@ SETTING_MEANINGS: Mapping[str, str] = {
     "normals": "With contact, LN blocks state the surface normal NX NY NZ, from the contact points of the CL file.",
 }
 
-_SPATIAL_FIELDS: Final = ("spatial_c", "spatial_b", "spatial_a")
-_PLANE_VECTOR_FIELDS: Final = ("base_x", "base_y", "base_z", "normal_x", "normal_y", "normal_z")
 
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
     "tcpm": ("tcp_on", "tcp_off"),
     "retract": ("retract_along",),
     "retract_distance": ("retract_along",),
     "plane_move": ("positioning",),
+    "plane_free_axis": ("free_axis",),
     "blank": ("blank_low", "blank_high"),
 }
 LINE_COMMENTS: tuple[str, ...] = ("; ", "* - ")
@@ -87,8 +98,8 @@ HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
-        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "blank_low",
-        "blank_high", *_SPATIAL_FIELDS, *_PLANE_VECTOR_FIELDS,
+        "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "free_axis", "blank_low",
+        "blank_high", *PLANE_FIELDS,
     }
 )  # fmt: skip
 
@@ -103,6 +114,9 @@ _TCP_SWITCHES: Final = {
 
 #: How PLANE positions the rotary axes, by the setting ``plane_move``.
 _POSITIONING: Final = {"turn": "TURN FMAX", "move": "MOVE ABST0 FMAX", "stay": "STAY"}
+
+#: What PLANE turns where an axis is free, by the setting ``plane_free_axis``.
+_FREE_AXIS: Final = {"unstated": None, "coord": "COORD ROT", "table": "TABLE ROT"}
 
 _COMP_WORDS: Final = {"LEFT": "comp_left", "RIGHT": "comp_right", "OFF": "comp_off"}
 
@@ -223,10 +237,7 @@ def arc_words(arcs: Arcs, tip: Floats, rows: Ints, codes: Codes, formats: Format
 
 
 def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict[str, Value]:
-    """Return the words for TCP and retracts, the angles and vectors of a plane, the corners of the block form.
-
-    SPA, SPB and SPC turn about the fixed axes X, then Y, then Z: as about Z, the new Y and the newest X.
-    """
+    """Return the words for TCP and retracts, the angles and vectors of a plane, the corners of the block form."""
     on, off = _TCP_SWITCHES[str(settings["tcpm"])]
     if settings["orientation"] == "vector":
         on = on.replace("PATHCTRL AXIS", "PATHCTRL VECTOR")
@@ -240,14 +251,11 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
         "feed_in_degrees": "M117" if at_tip else None,
         "retract_along": f"L M140 MB{distance}" if settings["retract"] == "m140" else None,
         "positioning": _POSITIONING[str(settings["plane_move"])],
+        "free_axis": _FREE_AXIS[str(settings["plane_free_axis"])],
         "blank_low": low,
         "blank_high": high,
     }
-    if plane is None:
-        return words | dict.fromkeys((*_SPATIAL_FIELDS, *_PLANE_VECTOR_FIELDS))
-    angles = [180.0 if angle < -179.99999999 else angle for angle in tait_bryan_angles(plane, (2, 1, 0))]
-    vectors = [*plane[:, 0].tolist(), *plane[:, 2].tolist()]
-    return words | dict(zip((*_SPATIAL_FIELDS, *_PLANE_VECTOR_FIELDS), (*angles, *vectors), strict=True))
+    return words | plane_values(plane, str(settings.get(PROJECTED_ANGLES) or ""))
 
 
 def _blank_corners(blank: str) -> tuple[str, str] | None:

@@ -32,6 +32,8 @@ COMPENSATES_WITH_TCP = True
 WORDS: tuple[str, ...] = iso.WORDS
 CODES: tuple[str, ...] = iso.CODES
 PLANE_COMMANDS: tuple[str, ...] = ()
+PLANE_TEMPLATES_OF: Mapping[str, str] = {}
+PLANES_OF_POSE: frozenset[str] = frozenset()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 SETTING_MEANINGS: Mapping[str, str] = {}
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
@@ -136,6 +138,11 @@ def _begun_twice(operation: Operation) -> list[tuple[int, UnsupportedFeatureErro
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     """Return nothing."""
     return []
+
+
+def validate_plane(settings: Mapping[str, str], plane: Floats, of_pose: Floats) -> Wording | None:
+    """Return None: every plane can be said."""
+    return None
 
 
 def cycle_call(

@@ -46,6 +46,8 @@ WORDS: tuple[str, ...] = (
 )  # fmt: skip
 CODES: tuple[str, ...] = iso.CODES
 PLANE_COMMANDS: tuple[str, ...] = ("cycle800", "frames")
+PLANE_TEMPLATES_OF: Mapping[str, str] = {}
+PLANES_OF_POSE: frozenset[str] = frozenset()
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "plane": PLANE_COMMANDS,
     "swivel_mode": ("57", "27", "39", "45", "30", "54"),
@@ -211,6 +213,11 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     if not _NEW_SWIVEL.fullmatch(settings.get("swivel_style", "0")):
         wrong.append(("swivel_style", phrase("style_of_swivelling")))
     return wrong
+
+
+def validate_plane(settings: Mapping[str, str], plane: Floats, of_pose: Floats) -> Wording | None:
+    """Return None: every plane can be said."""
+    return None
 
 
 def cycle_call(

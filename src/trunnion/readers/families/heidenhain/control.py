@@ -12,6 +12,8 @@ from trunnion.messages import Wording
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.mode_words import FOLLOWING, TOOL_AXIS
 from trunnion.model.run import ProgrammedWord
+from trunnion.readers.control.affine_map import AffineMap
+from trunnion.readers.control.arcs import Arc
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.row_recorder import MAX_POSITION
@@ -19,12 +21,13 @@ from trunnion.readers.control.virtual_control import Circle
 from trunnion.readers.families.heidenhain.leads import LeadControl
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.scan_kernel import letter_table
-from trunnion.readers.families.heidenhain.settings import START_MODES
+from trunnion.readers.families.heidenhain.settings import START_MODES, has_m114
 
 
 class HeidenhainControl(LeadControl):
     """A TNC on a machine.
 
+    has_m114               it has M114, which places the tip at the ends of blocks
     shortest_path          M126: endless rotary axes take the shorter way
     spatial_angles_active  TCPM with AXIS SPAT: rotary words are spatial angles
     angles                 the last spatial angles, degrees
@@ -46,6 +49,9 @@ class HeidenhainControl(LeadControl):
         self.spatial_angles_active = False
         self.angles = [0.0, 0.0, 0.0]
         self.pole: Floats | None = None
+        self.has_m114 = has_m114(machine)
+        # What F counts without M114, where the control counts the path of the tip.
+        self._feed_path = FeedPath.AXES
         # A tool has been called: its length counts where positions are those of the slides.
         self._length_active = False
         # Length L and radius R of TOOL DEF, mm, by the name of the tool.
@@ -65,9 +71,38 @@ class HeidenhainControl(LeadControl):
 
     def set_tcp(self, on: bool) -> None:
         """M128, M129 and the like."""
+        if on and self.at_ends:
+            self.note(Wording("NC340", "m114_with", word="M128"), Severity.ERROR)
         super().set_tcp(on)
         self.judge_compensation()
         self._judge_feed_path()
+
+    def set_at_ends(self, on: bool) -> None:
+        """M114, with which F is the feed of the tip, and M115."""
+        if on and (self.tcp or self.tilted):
+            self.note(Wording("NC340", "m114_in_plane" if self.tilted else "m114_with_tcp"), Severity.ERROR)
+        self.say_mode("TCP")
+        if on != self.at_ends:
+            with self.frame_change():
+                self.at_ends = on
+            self.modal.at_ends.set(self.row, on)
+        self.judge_compensation()
+        self._set_feed_path()
+
+    def set_plane(self, plane: AffineMap | None, program: AffineMap | None = None) -> None:
+        """Tilt the working plane, or end the tilt; with M114 on nobody knows what a tilt does."""
+        if plane is not None:
+            self._refuse_at_ends("a tilted plane")
+        super().set_plane(plane, program)
+
+    def _refuse_at_ends(self, word: str) -> None:
+        """Note what stands while M114 is on, of which no manual says what the control does then."""
+        if self.at_ends:
+            self.note(Wording("NC340", "m114_with", word=word), Severity.ERROR)
+
+    def _arc_in_workpiece(self, arc: Arc, axes_turn: bool) -> tuple[Floats, Floats, float] | None:
+        self._refuse_at_ends("a circle")
+        return super()._arc_in_workpiece(arc, axes_turn)
 
     def limit_compensating_feed(self, feed: float | None) -> None:
         """M128 F: how fast the linear axes may follow the rotary ones, as written; None: as the machine sets it."""
@@ -79,13 +114,15 @@ class HeidenhainControl(LeadControl):
 
     def _judge_feed_path(self) -> None:
         """Note M116 with TCP: the manuals say that they exclude each other."""
-        if self.tcp and self.modal.feed_path.current == int(FeedPath.TIP):
+        if self.tcp and self._feed_path == FeedPath.TIP:
             self.note(Wording("NC340", "m116_m128_exclude_each_other"), Severity.ERROR)
 
     def judge_compensation(self) -> None:
         """Note radius compensation with M128, which takes the delta values (DR) and not the radius (TNC 640 manual)."""
         if self.tcp and self.modal.compensation.current:
             self.note(Wording("NC340", "compensation_with_m128"), Severity.ERROR)
+        if self.at_ends and self.modal.compensation.current:
+            self.note(Wording("NC340", "compensation_with_m114"), Severity.ERROR)
 
     def note_preset(self, number: int) -> None:
         """Remember the preset of a cycle 247; going back to that of the head leaves nothing to the next program."""
@@ -135,8 +172,12 @@ class HeidenhainControl(LeadControl):
         heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
         if on and heads:
             self.note(Wording("NC241", "feed_of_head_unknown", axes=tuple(heads)), Severity.WARNING)
-        self.modal.feed_path.set(self.row, int(FeedPath.TIP if on else FeedPath.AXES))
+        self._feed_path = FeedPath.TIP if on else FeedPath.AXES
+        self._set_feed_path()
         self._judge_feed_path()
+
+    def _set_feed_path(self) -> None:
+        self.modal.feed_path.set(self.row, int(FeedPath.ENDS if self.at_ends else self._feed_path))
 
     # Tools
 
@@ -146,6 +187,7 @@ class HeidenhainControl(LeadControl):
 
     def call_tool(self, name: str | None, tool_axis: int | None) -> None:
         """TOOL CALL: another tool, or None; and another tool axis, which is normal to the working plane, or None."""
+        self._refuse_at_ends("TOOL CALL")
         if self.tcp and name is None:
             self.note(Wording("NC340", "tool_call_m128_switch_off"), Severity.ERROR)
         if name is not None:
@@ -202,6 +244,8 @@ class HeidenhainControl(LeadControl):
         if self.spatial_angles_active and vector is None and not machine_frame and axes.keys() & {"A", "B", "C"}:
             vector = self._vector_of_angles(axes)
             axes = {name: word for name, word in axes.items() if name not in ("A", "B", "C")}
+        if machine_frame:
+            self._refuse_at_ends("a position of the machine (M91, M92)")
         turns_in_plane = self.tilted and not self.tcp and bool(axes.keys() & set(self.rotary_names))
         if machine_frame or vector is not None or not turns_in_plane:
             super().move(axes, vector, circle=circle, machine_frame=machine_frame, feed_written=feed_written)

@@ -110,9 +110,8 @@ class HeidenhainInterpreter(PathInterpreter):
 
     def _read_blocks(self, source: SourceText, limit: int) -> tuple[int, int]:
         control = self.control
-        return read_blocks(
-            source.buffer, source.position, limit, control.letter_table, control.tip_programmed, control.words
-        )
+        vectors = control.tip_programmed and not control.at_ends
+        return read_blocks(source.buffer, source.position, limit, control.letter_table, vectors, control.words)
 
     # Lines and blocks
 

@@ -14,6 +14,8 @@ from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, Block, va
 from trunnion.readers.families.heidenhain.words import (
     M_AFTER_MOTION,
     M_ARGUMENTS,
+    M_AT_ENDS,
+    M_AT_ENDS_OFF,
     M_CALL,
     M_CALL_MODAL,
     M_EVENTS,
@@ -107,6 +109,8 @@ class MFunctions:
             if code == M_TCP:
                 control.limit_compensating_feed(arguments.get("F"))
                 control.say_tool_axis()
+        elif code in (M_AT_ENDS, M_AT_ENDS_OFF):
+            self._place_at_ends(code, arguments)
         elif code in (M_PER_TURN, M_PER_MINUTE):
             control.modal.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
             if code == M_PER_TURN and control.length_unit != 1.0:
@@ -156,6 +160,18 @@ class MFunctions:
         if code == M_TILTING_AXES and arguments and arguments.keys() != set(control.rotary_names):
             names = " and ".join(sorted(arguments))
             self._note(Wording("NC220", "m_tilting_alone_not_simulated", code=code, names=names), Severity.ERROR)
+
+    def _place_at_ends(self, code: int, arguments: dict[str, float | None]) -> None:
+        """M114 and M115; a position of axes that the control does not drive (M114 B+45) is not simulated."""
+        control = self._control
+        if not control.has_m114:
+            self._note(Wording("NC220", "m114_unknown", word=f"M{code}"), Severity.ERROR)
+            return
+        if arguments:
+            self._note(Wording("NC220", "m114_position", names=tuple(sorted(arguments))), Severity.ERROR)
+        if code == M_AT_ENDS or control.at_ends:
+            control.judge_within_compensation(f"M{code}")
+        control.set_at_ends(code == M_AT_ENDS)
 
     def _retract(self, arguments: dict[str, float | None]) -> None:
         control = self._control

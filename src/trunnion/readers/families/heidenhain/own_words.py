@@ -11,7 +11,7 @@ _M: Final = frozenset(
         words.M_MACHINE, words.M_SECOND_MACHINE, words.M_SHORTEST, words.M_NOT_SHORTEST, words.M_TCP, words.M_TCP_OFF,
         words.M_RETRACT, words.M_CALL, words.M_CALL_MODAL, words.M_PER_TURN, words.M_PER_MINUTE,
         words.M_FEED_AT_TIP, words.M_FEED_IN_DEGREES, words.M_TOOL_CHANGE, *words.M_PROGRAM_ENDS, *words.M_EVENTS,
-        *words.M_WITHOUT_PATH_EFFECT,
+        words.M_AT_ENDS, words.M_AT_ENDS_OFF, *words.M_WITHOUT_PATH_EFFECT,
         *(code for code, (_, changes_path) in words.M_NOT_SIMULATED.items() if changes_path),
     }
 )  # fmt: skip

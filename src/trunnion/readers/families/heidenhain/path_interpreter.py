@@ -87,7 +87,7 @@ class PathInterpreter(FlowInterpreter):
         control.motion = RAPID if block.rapid else LINEAR
         self._set_compensation(block)
         in_machine = self._moves_in_machine(block)
-        if vector is not None and not control.tip_programmed:
+        if vector is not None and (control.at_ends or not control.tip_programmed):
             self._note(Wording("NC340", "tx_ty_tz_need_m128"), Severity.ERROR)
         moves, row = bool(axes) or vector is not None or circle is not None, control.row
         if moves:

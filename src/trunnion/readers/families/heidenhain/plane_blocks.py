@@ -17,9 +17,10 @@ from trunnion.readers.families.heidenhain.parameters import KlartextError, Param
 from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, only, value_of
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import PLANE_WORDS, plane
+from trunnion.readers.families.heidenhain.settings import projected_angles
 
-#: Kinds of PLANE that are simulated, besides RELATIV, AXIAL and RESET.
-_KINDS: Final = ("SPATIAL", "EULER", "VECTOR", "POINTS")
+#: An axis within this of zero is at zero, degrees.
+_AT_ZERO: Final = 1e-4
 
 #: Words that follow on others.
 _PAIRS: Final = {"COORD": "ROT", "TABLE": "ROT", "MB": "MAX"}
@@ -42,7 +43,8 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
         raise KlartextError(Wording("NC210", "plane_needs_kind"))
     control.say_mode("tilted plane")
     kind = block_words[0].name
-    written = [word.name for word in block_words[1:]]
+    # ROT with a value is an angle of PROJECTED, without one the word behind COORD and TABLE.
+    written = [word.name for word in block_words[1:] if word.name != "ROT" or word.operand is None]
     positioning, values = _positioning(control, block_words[1:], parameters, note)
     if kind == "RESET":
         only(written, _OF_RESET | values.keys(), "PLANE RESET")
@@ -60,10 +62,10 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
         store_rotary_angles(
             parameters, control, control.tilt(rotation_matrix("ABC".index(name[2]), angle), positioning, relative=True)
         )
-    elif kind in _KINDS:
-        store_rotary_angles(parameters, control, control.tilt(plane(kind, values), positioning))
     else:
-        note(Wording("NC220", "plane_known_but_not_simulated", kind=kind), Severity.ERROR)
+        store_rotary_angles(
+            parameters, control, control.tilt(plane(kind, values, projected_angles(control.machine)), positioning)
+        )
 
 
 def _check_positioning(written: Sequence[str], positioning: Positioning) -> None:
@@ -87,7 +89,10 @@ def _axial(
         raise KlartextError(Wording("NC210", "plane_axial_takes", axes=tuple(control.rotary_names)))
     control.resolve_rows()
     current = [float(control.current_joints[column]) for column in control.machine.rotary]
-    first, second = (values.get(name, now) for name, now in zip(control.rotary_names, current, strict=True))
+    for name, now in zip(control.rotary_names, current, strict=True):
+        if name not in values and abs(now) > _AT_ZERO:
+            raise KlartextError(Wording("NC351", "plane_axial_leaves_out", axis=name, position=now))
+    first, second = (values.get(name, 0.0) for name in control.rotary_names)
     control.tilt_axial((first, second), positioning)
     store_rotary_angles(parameters, control, (first, second))
 

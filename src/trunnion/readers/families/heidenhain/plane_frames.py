@@ -3,6 +3,7 @@
 All angles are in degrees and right-handed. The matrix of a plane maps positions in it to those outside of it.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -70,6 +71,19 @@ def through_points(first: Floats, second: Floats, third: Floats) -> Floats:
     return from_vectors(x, np.cross(x, lateral / max(float(np.linalg.norm(lateral)), _FLAT)))
 
 
+def projected(main: float, minor: float, turn: float, *, rising: bool) -> Floats:
+    """Return the plane of projection angles, degrees: (3, 3), its axes as columns.
+
+    main    under which the plane is seen in Z/X: as a turn about Y, or ``rising`` with X
+    minor   under which it is seen in Y/Z: as a turn about X, so that it rises with Y
+    turn    of the plane about its Z, from its line in Z/X
+    """
+    seen, side = math.radians(-main if rising else main), math.radians(minor)
+    in_zx = np.array([math.cos(seen), 0.0, -math.sin(seen)])
+    in_yz = np.array([0.0, math.cos(side), math.sin(side)])
+    return from_vectors(in_zx, np.cross(in_zx, in_yz)) @ rotation_matrix(2, turn)
+
+
 def _unit(vector: Floats) -> Floats:
     length = float(np.linalg.norm(vector))
     if not _FLAT < length < np.inf:
@@ -84,11 +98,18 @@ PLANE_WORDS: Final = {
     "EULER": ("EULPR", "EULNU", "EULROT"),
     "VECTOR": ("BX", "BY", "BZ", "NX", "NY", "NZ"),
     "POINTS": tuple(f"P{k}{axis}" for k in (1, 2, 3) for axis in "XYZ"),
+    "PROJECTED": ("PROPR", "PROMIN", "ROT"),
 }
 
 
-def plane(kind: str, values: Mapping[str, float]) -> Floats:
+#: PROPR and PROMIN are less than this, degrees.
+_MOST_PROJECTED: Final = 89.9999
+
+
+def plane(kind: str, values: Mapping[str, float], projected_angles: str) -> Floats:
     """Return the matrix of a PLANE block, (3, 3); not of RELATIV and AXIAL, which depend on the axes.
+
+    projected_angles  what the angles of PROJECTED mean on the control, as its definition says
 
     Raises ``KlartextError`` if a word is missing, or if the values define no plane.
     """
@@ -109,5 +130,12 @@ def plane(kind: str, values: Mapping[str, float]) -> Floats:
         case "POINTS":
             points = [np.array(need(f"P{k}X", f"P{k}Y", f"P{k}Z")) for k in (1, 2, 3)]
             return through_points(*points)
+        case "PROJECTED":
+            main, minor, turn = need("PROPR", "PROMIN", "ROT")
+            if projected_angles not in ("turning", "rising"):
+                raise KlartextError(Wording("NC220", "projected_angles_unknown"))
+            if max(abs(main), abs(minor)) > _MOST_PROJECTED:
+                raise KlartextError(Wording("NC210", "projected_angle_beyond", most=_MOST_PROJECTED))
+            return projected(main, minor, turn, rising=projected_angles == "rising")
         case _:
-            raise KlartextError(Wording("NC220", "plane_not_simulated", kind=kind))
+            raise KlartextError(Wording("NC211", "unknown_word", word=kind))

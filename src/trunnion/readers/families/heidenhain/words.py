@@ -38,6 +38,8 @@ M_SHORTEST: Final = 126
 M_NOT_SHORTEST: Final = 127
 M_TCP: Final = 128
 M_TCP_OFF: Final = 129
+M_AT_ENDS: Final = 114
+M_AT_ENDS_OFF: Final = 115
 M_RETRACT: Final = 140
 M_CALL: Final = 99
 M_CALL_MODAL: Final = 89
@@ -64,7 +66,7 @@ M_EVENTS: Final = {
 
 #: M functions that act after the motion of their block.
 M_AFTER_MOTION: Final = M_PROGRAM_ENDS | {
-    0, 1, 5, 9, M_TOOL_CHANGE, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_CALL,
+    0, 1, 5, 9, M_TOOL_CHANGE, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_AT_ENDS_OFF, M_CALL,
 }  # fmt: skip
 
 #: M functions that the path does not depend on.
@@ -93,7 +95,7 @@ M_WITHOUT_PATH_EFFECT: Final = {
 M_UNSEEN_MODES: Final = {
     90: "contour speed", 101: "replacement tools", 102: "replacement tools", 103: "feed downwards",
     107: "message for oversize", 108: "message for oversize", 110: "feed at arcs", 111: "feed at arcs",
-    115: "tilt by M114", 118: "handwheel", 120: "look-ahead", 124: "points left out", 134: "exact stop of rotary axes",
+    118: "handwheel", 120: "look-ahead", 124: "points left out", 134: "exact stop of rotary axes",
     135: "exact stop of rotary axes", 138: "rotary axes that tilt", 148: "lift-off", 149: "lift-off",
 }  # fmt: skip
 
@@ -119,8 +121,6 @@ M_NOT_SIMULATED: Final = {
     109: ("arcs have another feed: not simulated", True),
     110: ("lowers the feed at compensated inner arcs: not simulated", False),
     112: ("contour transitions are not simulated", True),
-    114: ("compensates the tilt by itself: not simulated, M128 is", True),
-    115: ("ends M114, which is not simulated", False),
     118: ("handwheel superimposed: not simulated", False),
     130: ("positions in the untilted coordinate system: not simulated", True),
     142: ("deletes modal program information: not simulated", True),
@@ -138,6 +138,7 @@ M_NOT_SIMULATED: Final = {
 M_ARGUMENTS: Final = {
     94: _words("X Y Z A B C U V W"),
     103: _words("F"),
+    M_AT_ENDS: _words("A B C"),
     118: _words("X Y Z A B C U V W VT"),
     120: _words("LA"),
     124: _words("T"),
