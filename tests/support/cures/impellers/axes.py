@@ -63,8 +63,10 @@ def _searched(wanted: Wanted) -> Trial:
     attempts = (("highs-ipm", {"maxiter": 15}),)
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-        how = {"SHARES": (1.0,), "_DIRECTIONS": 256, "_ASKED": 1}
-        with patch.multiple(tool_axes, **how), patch.object(axis_field, "INTERIOR_POINT", attempts):
+        with (
+            patch.multiple(tool_axes, SHARES=(1.0,), _DIRECTIONS=256, _ASKED=1),
+            patch.object(axis_field, "INTERIOR_POINT", attempts),
+        ):
             return ended(lambda: choose_axes(floor(1.0), necked(4.0, 25.0, 75.0), _SLOT, wanted))
 
     return tried
