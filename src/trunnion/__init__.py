@@ -21,6 +21,7 @@ Functions
     verify         NC program against its CL files, and against a recording of the machine -> Verification
     fit            CL files or NC program -> MachineFit of each machine: which can run it
     reach          machine -> Reach: which tool axes and points it reaches
+    kinematics     machine -> Kinematics: its formulas, forward and inverse
     sensitivity    NC program -> Sensitivity: which number of the machine's geometry it depends on
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from trunnion.errors import Severity as Severity
     from trunnion.errors import TrunnionError as TrunnionError
     from trunnion.explanations import Explanation as Explanation
+    from trunnion.formulas.description import Kinematics as Kinematics
     from trunnion.geometry.curves import BSplineCurve as BSplineCurve
     from trunnion.geometry.fitting import CurveFit as CurveFit
     from trunnion.geometry.point_tables import PointTable as PointTable
@@ -73,6 +75,7 @@ if TYPE_CHECKING:
     from trunnion.jobs.describe.controls import ControlDescription as ControlDescription
     from trunnion.jobs.describe.controls import describe_control as describe_control
     from trunnion.jobs.describe.controls import describe_controls as describe_controls
+    from trunnion.jobs.describe.kinematics import kinematics as kinematics
     from trunnion.jobs.describe.machines import MachineDescription as MachineDescription
     from trunnion.jobs.describe.machines import describe_machine as describe_machine
     from trunnion.jobs.describe.plot import write_plot as write_plot
@@ -136,6 +139,7 @@ _MODULES: Final = {
     "ImpellerModel": "impeller.model",
     "ImpellerSolid": "impeller.solid.making",
     "InputError": "errors",
+    "Kinematics": "formulas.description",
     "Machine": "machines.machine",
     "MachineDescription": "jobs.describe.machines",
     "MachineFit": "jobs.capability.fitting",
@@ -171,6 +175,7 @@ _MODULES: Final = {
     "explain": "jobs.describe.codes",
     "fit": "jobs.capability.fitting",
     "fit_curve": "jobs.impeller.curves",
+    "kinematics": "jobs.describe.kinematics",
     "load_impeller": "jobs.impeller.models",
     "load_machine": "jobs.inputs.reading",
     "model_impeller": "jobs.impeller.models",
@@ -211,6 +216,7 @@ __all__ = [
     "ImpellerModel",
     "ImpellerSolid",
     "InputError",
+    "Kinematics",
     "Machine",
     "MachineDescription",
     "MachineFit",
@@ -247,6 +253,7 @@ __all__ = [
     "explain",
     "fit",
     "fit_curve",
+    "kinematics",
     "load_impeller",
     "load_machine",
     "model_impeller",

@@ -204,7 +204,7 @@ def setting_problem(name: str, wording: Wording) -> Problem:
     return Problem("settings", 0, wording.of_key(name), subject=Subject(SubjectKind.SETTING, name))
 
 
-def unusable_file(path: Path, what: str) -> Problem | None:
+def unusable_file(path: Path, what: Wording) -> Problem | None:
     """Return why a path is no file that can be read; None if it may be one. ``what`` is meant: ``an NC program``."""
     try:
         mode = path.stat().st_mode

@@ -1,11 +1,12 @@
 """Positions without a tool length, and registers: what a program does not say is asked for, all of it at once."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
 import trunnion
-from trunnion.errors import RefusedError
+from trunnion.errors import Problem, RefusedError
 
 HEAD = "%\nO1\nG21 G17 G40 G49 G69 G80 G90 G94\nT1 M6\nG54 G0 X0. Y0. S900 M3\n"
 
@@ -76,3 +77,44 @@ def test_length_registers_are_as_they_are_stated(tmp_path: Path) -> None:
     for stated, word in (({}, "H11"), ({"H11": "tool"}, "H1 "), ({"H11": "H7"}, "H7")):
         posted = trunnion.convert(nc, machine="matsuura_mx330", to_machine="haas_umc750", registers=stated)
         assert word in str(posted.text).replace("\n", " ").replace("H01", "H1").replace("H07", "H7")
+
+
+#: A cut under TCP, which a LinuxCNC switches on by itself, and the block that calls its length.
+UNDER_TCP = (
+    "G21 G17 G40 G49 G80 G90 G94\nT1 M6\nG54\nG0 A-20 C0\n{length}M428\n"
+    "G0 X0 Y0 Z50 S900 M3\nZ9\nG1 Z-1 F300\nX9\nG0 Z50\nM429\nG49\nG53 G0 Z0\nM2\n"
+)
+
+#: The same on a Sinumerik.
+UNDER_TRAORI = (
+    "G71 G17 G40 G90 G94\nT1 M6\nG54\nD0\nG0 B20 C0\n{length}TRAORI\n"
+    "G0 X0 Y0 Z50 S900 M3\nZ9\nG1 Z-1 F300\nX9\nG0 Z50\nTRAFOOF\nD0\nSUPA G0 Z0\nM30\n"
+)
+
+
+@pytest.mark.parametrize(("machine", "text"), [("xyzac_trt", UNDER_TCP), ("yl569", UNDER_TRAORI)])
+def test_positions_without_a_length_are_asked_for_under_tcp(machine: str, text: str, tmp_path: Path) -> None:
+    nc = program(tmp_path, text.format(length=""))
+    for given in ({}, {"positions": "gauge_line", "tool_length": 50.0}):
+        with pytest.raises(RefusedError, match="guides the gauge line, and not the tip"):
+            trunnion.convert(nc, machine=machine, to_cl=True, **given)  # type: ignore[arg-type]
+    assert trunnion.convert(nc, machine=machine, to_cl=True, positions="tip").passed
+    length = "D1\n" if machine == "yl569" else "G43 H1\n"
+    assert trunnion.convert(program(tmp_path, text.format(length=length)), machine=machine, to_cl=True).passed
+
+
+def test_a_length_that_may_be_skipped_alone_in_its_block_is_told(tmp_path: Path) -> None:
+    warned: list[str] = []
+
+    class Told(trunnion.Observer):
+        def problems(self, problems: Sequence[Problem]) -> None:
+            warned.extend(each.wording.variant for each in problems)
+
+    def variants(length: str) -> list[str]:
+        warned.clear()
+        nc = program(tmp_path, UNDER_TCP.format(length=length))
+        trunnion.convert(nc, machine="xyzac_trt", to_cl=True, observer=Told())
+        return [each for each in warned if each == "skips_length"]
+
+    assert variants("/G43 H1\n") == ["skips_length"]
+    assert variants("/M8\nG43 H1\n") == []

@@ -186,9 +186,11 @@ def test_what_changes_a_mode_or_moves_is_refused_at_the_function(machine: str, o
 
 def test_a_mode_that_the_path_does_not_show_is_refused_in_a_function_too(part: Path, tmp_path: Path) -> None:
     for place in ("after_approach", "stop"):
-        text = f"def at_{place}(place):\n    return [*place.lines, 'CYCLE832(0.5,_FINISH,1)']\n"
-        found = problem(part, text, tmp_path)
-        assert (Path(found.file).name, found.line, found.code) == ("shop.py", 2, "CTL457")
+        for word in ("CYCLE832(0.5,_FINISH,1)", "G18"):
+            text = f"def at_{place}(place):\n    return [*place.lines, {word!r}]\n"
+            found = problem(part, text, tmp_path)
+            assert (Path(found.file).name, found.line, found.code) == ("shop.py", 2, "CTL457")
+    assert lines(part, "def at_stop(place):\n    return [*place.lines, 'G18', 'G17']\n", tmp_path)
 
 
 def test_a_block_that_fails_the_proof_is_told_with_its_function(part: Path, tmp_path: Path) -> None:

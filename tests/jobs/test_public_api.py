@@ -28,7 +28,7 @@ def test_every_public_name_is_there_and_documented() -> None:
         assert inspect.getdoc(getattr(trunnion, name)) or name == "__version__", name
     assert FUNCTIONS == [
         "convert", "cut_impeller", "describe_cl", "describe_control", "describe_controls", "describe_machine",
-        "diff", "explain", "fit", "fit_curve", "load_impeller", "load_machine", "model_impeller",
+        "diff", "explain", "fit", "fit_curve", "kinematics", "load_impeller", "load_machine", "model_impeller",
         "place", "plan", "post", "post_placed", "post_project", "reach", "read_cl", "read_points", "read_program",
         "sensitivity", "simulate", "verify", "verify_manifest",
         "write_curve_picture", "write_impeller_step", "write_placing_plot", "write_plot", "write_report", "write_view",

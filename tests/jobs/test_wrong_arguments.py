@@ -28,6 +28,7 @@ _GOOD: Final[dict[str, dict[str, Any]]] = {
     "explain": {"code": "CTL110"},
     "fit": {"files": ["part.cls"]},
     "fit_curve": {"points": "points.csv"},
+    "kinematics": {"machine": "yl569"},
     "load_impeller": {"impeller": "impeller.toml"},
     "load_machine": {"machine": "yl569"},
     "model_impeller": {"impeller": "impeller.toml"},

@@ -30,7 +30,7 @@ def test_a_foreign_file_is_told_what_it_is_first(name: str, kind: str) -> None:
 
 
 def test_each_kind_has_a_file_or_a_reader() -> None:
-    assert {kind.name for kind in KINDS if not kind.languages} <= {
+    assert {kind.name.what for kind in KINDS if not kind.languages} <= {
         *FILES.values(),
         "a tape with $ at the end of its blocks",
     }
@@ -47,7 +47,7 @@ def test_a_tape_is_known_by_the_end_of_its_blocks(tmp_path: Path) -> None:
     tape.write_text("N1G01X+0010000Y+0020000F10$\nN2X+0030000$\nN3M02$\n", encoding="utf-8")
     found = recognize(tape)
     assert found
-    assert found.kind.name.startswith("a tape with $")
+    assert found.kind.name.what.startswith("a tape with $")
 
 
 @pytest.mark.parametrize("folder", sorted(path.name for path in (TESTS / "golden").iterdir() if path.is_dir()))

@@ -9,6 +9,7 @@ from tests.support.locations import DOCS
 from trunnion.capability.reach import Reach
 from trunnion.capability.sensitivity import Sensitivity
 from trunnion.errors import Problem
+from trunnion.formulas.description import Kinematics
 from trunnion.geometry.fitting import CurveFit
 from trunnion.jobs.capability.fitting import MachineFit
 from trunnion.jobs.convert.result import ConvertResult
@@ -31,6 +32,7 @@ DOCUMENTS: Final = (
     ("trunnion simulate --json", "", SimulationResult),
     ("trunnion reach --json", "", Reach),
     ("trunnion sensitivity --json", "", Sensitivity),
+    ("trunnion kinematics --json", "", Kinematics),
     ("trunnion fit --json", "machines[]", MachineFit),
     ("trunnion info --json", "", ClDescription),
     ("trunnion curve --json", "curves[]", CurveFit),

@@ -56,6 +56,7 @@ JOBS: dict[str, tuple[str, ...]] = {
     "reach_part": ("reach", "--machine", "mikron_600u", "--part", PLATE, "--step", "45", "--json", "{}"),
     "sensitivity": ("sensitivity", HUB_MPF, "--machine", "yl569", *ZERO, "--json", "{}"),
     "sensitivity_home": ("sensitivity", HUB_MPF, "--machine", "yl569", "--zero-at", "home", "--json", "{}"),
+    "kinematics": ("kinematics", "generic_nutated_b45_c", "--json", "{}"),
     "fit": ("fit", HUB, "--machines", "yl569,mikron_600u,dmu65", "--json", "{}"),
     "info": ("info", HUB, BLADE, "--json"),
     "info_unknown": ("info", "unknown.cls", "--json"),

@@ -127,7 +127,7 @@ def load_batch(path: Path) -> Batch:
 
     Raises ``InputError`` if it cannot be read, with every mistake in it and its line; or if a job has no files.
     """
-    if unusable := unusable_file(path, "a file of jobs"):
+    if unusable := unusable_file(path, phrase("file_of_jobs")):
         raise InputError(unusable)
     return read_batch_table(load_table(path, files(__package__), kind="file of jobs"), path)
 

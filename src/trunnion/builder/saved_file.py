@@ -12,7 +12,7 @@ from trunnion.builder.draft import MOST_LETTERS
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.files import name_fault
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: Letters that the name of a definition may have.
 _LONGEST: Final = 120
@@ -36,7 +36,7 @@ def check_place(file: Path) -> None:
     """
     if not is_within(file, file.parent):
         raise InputError(Problem(str(file), 0, Wording("PAG211", "link_leads_out", resolve=file.resolve())))
-    if file.exists() and (unusable := unusable_file(file, "the TOML file of a machine")):
+    if file.exists() and (unusable := unusable_file(file, phrase("file_of_machine"))):
         raise InputError(unusable)
 
 
@@ -45,7 +45,7 @@ def read_raw(file: Path) -> str:
 
     Raises ``InputError`` if it is not there, no regular file, too long, or not UTF-8.
     """
-    if unusable := unusable_file(file, "the TOML file of a machine"):
+    if unusable := unusable_file(file, phrase("file_of_machine")):
         raise InputError(unusable)
     try:
         with file.open(encoding="utf-8", newline="") as stream:

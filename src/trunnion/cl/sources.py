@@ -23,7 +23,7 @@ from trunnion.cl.byte_streams import Bzip2Stream, SharedStream
 from trunnion.cl.dialects import recognize_dialect
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file, warning
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.wording import one_line
 
 #: A text that is longer than this may be no more than so many times as long as its archive. CL files are some 3 to 25
@@ -118,7 +118,7 @@ def cl_sources(file: Path | BinaryIO) -> list[ClSource]:
     Raises ``InputError`` if it cannot be read, is damaged, has no CL file, or is an archive in an archive.
     """
     if isinstance(file, Path):
-        unusable = unusable_file(file, "a CL file")
+        unusable = unusable_file(file, phrase("file_of_cl"))
         if unusable:
             raise InputError(unusable)
         name, path = str(file), file

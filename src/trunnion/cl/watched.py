@@ -7,6 +7,7 @@ from typing import BinaryIO, TypeAlias
 
 from trunnion.cl.read import ClReading, read_cl_files
 from trunnion.errors import unusable_file
+from trunnion.messages import phrase
 from trunnion.model.toolpath import Toolpath
 
 #: Name, size and unit of what is read -> a context that gives a function for how much more is read.
@@ -18,7 +19,7 @@ def read_watched(file: Path | BinaryIO, watch: Watch, how: ClReading) -> list[To
 
     Raises ``InputError`` if a file cannot be used, with every problem found.
     """
-    is_plain = isinstance(file, Path) and unusable_file(file, "a CL file") is None
+    is_plain = isinstance(file, Path) and unusable_file(file, phrase("file_of_cl")) is None
     size = file.stat().st_size if isinstance(file, Path) and is_plain else 0
     with watch(file.name if isinstance(file, Path) else "stdin", size, "B") as advance:
         done = 0

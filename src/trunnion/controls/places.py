@@ -61,8 +61,9 @@ OUTPUT_PLACES: Final = (
     ),
     OutputPlace("before_operation", ("before_operation",), "before everything of an operation", is_own=True),
     OutputPlace(
-        "operation_start", ("operation_start", "operation_follows"),
-        "the start of an operation; `operation_follows` with `same_tool=retract`",
+        "operation_start", ("operation_start", "operation_again", "operation_follows"),
+        "the start of an operation; `operation_again` with the tool of the one before, `operation_follows` with "
+        "`same_tool=retract`",
     ),
     OutputPlace("tool_change", ("first_tool", "tool_change"), "the call of the first tool, and of another one"),
     OutputPlace("same_tool", ("same_tool",), "an operation with the tool of the one before", is_own=True),

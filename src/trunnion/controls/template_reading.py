@@ -6,6 +6,7 @@ from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.places import EVENT_PLACE, OWN_TEMPLATES
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
+    AGAIN,
     DRAW_BACK,
     FIVE_AXIS,
     FOLLOWING,
@@ -67,7 +68,7 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     plane_parts = ("plane_on", *_SHARED_PLANE_PARTS)
     groups: list[tuple[str, ...]] = [(SPINDLE_ON,), (NEW_SPEED_WITH_TCP,)]
     groups += [tuple(f"{part}_{suffix}" for part in ("approach", "operation_end")) for suffix in _SIMULTANEOUS]
-    groups += [(NEW_SPEED_WITH_M114,), (FOLLOWING,)]
+    groups += [(NEW_SPEED_WITH_M114,), (FOLLOWING,), (AGAIN,)]
     groups += [(f"{LEAVING}_{suffix}",) for suffix in (THREE_AXIS, *_SIMULTANEOUS, *family.PLANE_COMMANDS)]
     groups += [(f"next_axis_{suffix}",) for suffix in _SIMULTANEOUS]
     groups += [

@@ -217,6 +217,7 @@ PROGRAM_SETTINGS: Final = frozenset(
     {
         "title", "part", "date", "program", "series", "blank", "call", "call_folder", "normals", "rapid_feed",
         "rotary_feed", "orientation", "plane", HOLES_SETTING, SPLINES_SETTING, "bore_lift", "disengage", "rigid_tap",
+        "cycle_form",
     }
 )  # fmt: skip
 
@@ -245,6 +246,8 @@ DRAW_BACK: Final = "draw_back"
 #: The header of an operation with the tool of the one before, and the beginning of the templates by which the one
 #: before leaves the part for it.
 FOLLOWING: Final = "operation_follows"
+#: The start of an operation with the tool of the one before, which has gone home; without it the usual one.
+AGAIN: Final = "operation_again"
 LEAVING: Final = "leave"
 COOLANTS: Final = ("OFF", "ON", "FLOOD", "MIST", "TAP", "THRU", "AIR")
 TOOL_TYPES: Final = ("MILL", "BALL", "TCUTTER", "BARREL", "DRILL", "UNKNOWN")

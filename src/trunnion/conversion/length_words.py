@@ -28,7 +28,7 @@ def first_cut_without_length(run: Run) -> int:
     if not calls_length:
         return -1
     n = len(run)
-    bare = (run.state.length_axis.part(0, n) < 0) & ~run.tcp & ~run.state.xyz_is_tip.part(0, n)
+    bare = run.state.length_axis.part(0, n) < 0
     found = np.flatnonzero(bare & ~run.machine_frame & (run.kind != Kind.RAPID))
     return int(found[0]) if len(found) else -1
 
@@ -42,9 +42,14 @@ def unsaid_positions(run: Run, positions: str | None) -> list[Problem]:
     if row < 0 or positions == "tip":
         return []
     has_length = run.machine.tool_length is not None or bool(run.machine.tool_lengths)
-    if positions is not None and (has_length or run.setups is not None):
+    if run.state.xyz_is_tip[row]:
+        variant = "no_length_under_tcp"
+    elif positions is None:
+        variant = "no_length_word"
+    elif has_length or run.setups is not None:
         return []
-    variant = "no_length_word" if positions is None else "gauge_line_without_length"
+    else:
+        variant = "gauge_line_without_length"
     return [Problem(run.files[int(run.file[row])], int(run.line[row]), Wording("CNV145", variant))]
 
 

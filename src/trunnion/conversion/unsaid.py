@@ -79,8 +79,12 @@ def warn_of_skipped_words(
         has_tool = any(event.kind == "tool_change" for event in inside)
         found = {
             "skips_tool": has_tool,
+            # A call without a motion counts from the motion behind it.
             "skips_length": _calls_length(run, row, after)
-            or (row == 0 and any(_LENGTH.search(line) for _, line in text.line_texts(first, end))),
+            or (
+                (row == 0 or _calls_length(run, after, after + 1))
+                and any(_LENGTH.search(line) for _, line in text.line_texts(first, end))
+            ),
             "skips_head": not has_tool and (in_head or any(line in template_lines for line in range(first, end))),
             "skips_machine_move": bool(run.machine_frame[row:after].any()),
         }

@@ -17,7 +17,7 @@ from trunnion.definitions.source_lines import KeyPath, LocatedValue, layout, loc
 from trunnion.definitions.table import Table
 from trunnion.definitions.toml_faults import toml_fault
 from trunnion.errors import InputError, Problem, unusable_file
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: Larger files are refused unread; real definitions have a few kilobytes.
 MAX_FILE_BYTES: Final = 1_000_000
@@ -65,10 +65,27 @@ def _shipped(name: str, library: Library) -> _DefinitionFile:
     return _DefinitionFile(location, str(location), None)
 
 
-def _with_article(kind: str) -> str:
+#: What is read -> how messages call it, without and with an article.
+_KINDS: Final = {
+    "machine": ("kind_machine", "file_of_machine_definition"),
+    "control": ("kind_control", "file_of_control_definition"),
+    "impeller": ("kind_impeller", "file_of_impeller_definition"),
+    "project": ("kind_project", "file_of_project"),
+    "list of nodes": ("kind_list_of_nodes", "file_of_nodes"),
+    "tool library": ("kind_tool_library", "file_of_tools"),
+    "file of jobs": ("kind_file_of_jobs", "file_of_jobs"),
+    "definition": ("kind_definition", "file_of_definition"),
+}
+
+
+def _named(kind: str) -> Wording:
+    """Return a kind of definition as messages name it."""
+    return phrase(_KINDS[kind][0])
+
+
+def _with_article(kind: str) -> Wording:
     """Return a kind of definition as messages name one."""
-    what = kind if kind == "definition" else f"{kind} definition"
-    return f"{'an' if what[0] in 'aeiou' else 'a'} {what}"
+    return phrase(_KINDS[kind][1])
 
 
 def _read(source: _DefinitionFile, kind: str = "machine") -> LocatedValue:
@@ -266,9 +283,9 @@ def load_table(
                 Problem(
                     text,
                     0,
-                    Wording("DEF110", "no_shipped_name", kind=kind, near=near, names=tuple(names))
+                    Wording("DEF110", "no_shipped_name", kind=_named(kind), near=near, names=tuple(names))
                     if near
-                    else Wording("DEF110", "no_shipped", kind=kind, names=tuple(names)),
+                    else Wording("DEF110", "no_shipped", kind=_named(kind), names=tuple(names)),
                 )
             )
     problems: list[Problem] = []
@@ -314,7 +331,7 @@ def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
             Problem(
                 text,
                 0,
-                Wording("DEF140", "folder_not", with_article=_with_article(kind), kind=kind)
+                Wording("DEF140", "folder_not", with_article=_with_article(kind), kind=_named(kind))
                 if has_shipped
                 else Wording("DEF140", "definition_is_folder", with_article=_with_article(kind)),
             )
@@ -325,13 +342,13 @@ def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
                 text,
                 0,
                 (
-                    Wording("DEF140", "not_whose_name", with_article=_with_article(kind), kind=kind)
+                    Wording("DEF140", "not_whose_name", with_article=_with_article(kind), kind=_named(kind))
                     if has_shipped
                     else Wording("DEF140", "not_whose_name_ends", with_article=_with_article(kind))
                 )
                 if text.casefold().endswith(".toml")
                 else (
-                    Wording("DEF140", "not_whose_name_ends_toml", with_article=_with_article(kind), kind=kind)
+                    Wording("DEF140", "not_whose_name_ends_toml", with_article=_with_article(kind), kind=_named(kind))
                     if has_shipped
                     else Wording("DEF140", "not_whose", with_article=_with_article(kind))
                 ),

@@ -21,7 +21,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: So many bytes tell whether a file is text.
 _HEAD: Final = 1000
@@ -90,7 +90,7 @@ def read_point_table(file: Path) -> list[PointTable]:
 
     Raises ``InputError`` if the file cannot be read, or is no table of points; with every mistake and its line.
     """
-    problem = unusable_file(file, "a table of points")
+    problem = unusable_file(file, phrase("file_of_points"))
     if problem is not None:
         raise InputError(problem)
     with file.open("rb") as stream:

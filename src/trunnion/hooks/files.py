@@ -16,7 +16,7 @@ from typing import Final
 from trunnion.controls.places import OUTPUT_PLACES
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, unusable_file
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: The functions that a file of hooks may have, and what each is called with.
 _FUNCTIONS: Final = {
@@ -57,7 +57,7 @@ def load_hooks(paths: Iterable[Path]) -> tuple[HookFile, ...]:
 
 
 def _load(path: Path) -> HookFile:
-    problem = unusable_file(path, "a file of hooks")
+    problem = unusable_file(path, phrase("file_of_hooks"))
     if problem is None and path.suffix != ".py":
         problem = Problem(str(path), 0, Wording("HOK110", "no_python_file"))
     if problem is not None:

@@ -205,6 +205,10 @@ class FitArguments(ReadingArguments, SetUpArguments, total=False):
     turns: float | Sequence[float] | None
 
 
+class KinematicsArguments(SetUpArguments, total=False):
+    """Arguments of ``trunnion.kinematics``."""
+
+
 class SensitivityArguments(SetUpArguments, total=False):
     """Arguments of ``trunnion.sensitivity``."""
 

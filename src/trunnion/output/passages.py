@@ -147,6 +147,12 @@ class Passages:
         raised = (self.height(axis) if height is None else height) - float(tip @ axis)
         return np.asarray(tip + max(raised, 0.0) * axis)
 
+    def starts_again(self, number: int) -> bool:
+        """Whether an operation has the tool of the one before, which ends where it begins: behind the way home."""
+        if number <= 0 or self._subprograms or self._program.effective_setting("restart") == "on":
+            return False
+        return self._same_tool(number - 1)
+
     def _same_tool(self, number: int) -> bool:
         """Whether the next operation has the tool and the length of a motion's."""
         operation = self._operation[number]

@@ -12,7 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.template import Value
-from trunnion.controls.vocabulary import DRAW_BACK, FOLLOWING
+from trunnion.controls.vocabulary import AGAIN, DRAW_BACK, FOLLOWING
 from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
 from trunnion.model.motion import Motion
@@ -228,7 +228,8 @@ class _ProgramWriter:
             self._templates.write_place("before_operation", values, motion)
             if self._way.passage is Passage.HOME:
                 start = self._way.values(values) | {"edge": self._edge_of_spindle(motion)}
-                self._templates.write("operation_start", start, motion)
+                again = AGAIN in self._control.templates and self._passages.starts_again(number)
+                self._templates.write(AGAIN if again else "operation_start", start, motion)
             else:
                 self._templates.write(FOLLOWING, values, motion)
             self._change_tool(motion, self._way.values(values))

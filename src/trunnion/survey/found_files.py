@@ -101,8 +101,8 @@ def _found(name: str, path: Path) -> FoundFile:
     if found is None:
         return FoundFile(name, path, FileKind.PROGRAM)
     if not found.kind.languages:
-        return _other(name, path, found.kind.name)
-    return FoundFile(name, path, FileKind.PROGRAM, found.kind.name, found.kind.readers)
+        return _other(name, path, found.kind.name.what)
+    return FoundFile(name, path, FileKind.PROGRAM, found.kind.name.what, found.kind.readers)
 
 
 def _other(name: str, path: Path, looks: str) -> FoundFile:

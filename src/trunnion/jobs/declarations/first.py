@@ -19,6 +19,29 @@ _NEW: Final = job(
     ],
 )  # fmt: skip
 
+_IMPORT: Final = job(
+    "import", "make a definition of a post of NX Post Builder or of machine data of an 840D",
+    Option(
+        "files", "", FileIn("FILE"),
+        "files of one post (.tcl, .def, .pui), or one of machine data ($MA_…, as text)", many=Many.SOME,
+    ),
+    Option("output", "--output", Text("NAME"), "the definition: NAME.toml is written", either="what!"),
+    Option(
+        "machine", "--machine", FileIn("NAME_OR_FILE", leads="machine"),
+        "definition to compare with: its axes are listed that the files have otherwise", either="what!",
+    ),
+    Option(
+        "like", "--like", Text("MACHINE"),
+        "shipped machine that it extends",
+    ),
+    JSON,
+    run="machine.foreign:run",
+    examples=[
+        ("trunnion import mill.tcl mill.def --output our_mill", "a post of NX as a definition, line by line"),
+        ("trunnion import nck.arc --machine our_mill.toml", "which numbers the control has otherwise"),
+    ],
+)  # fmt: skip
+
 _CHECK: Final = job(
     "check", "validate a definition, a project or another file",
     Option(
@@ -78,4 +101,4 @@ _BUILD: Final = job(
     ],
 )  # fmt: skip
 
-JOBS: Final[tuple[Job, ...]] = (_NEW, _CHECK, _MACHINES, _CONTROLS, _BUILD)
+JOBS: Final[tuple[Job, ...]] = (_NEW, _IMPORT, _CHECK, _MACHINES, _CONTROLS, _BUILD)

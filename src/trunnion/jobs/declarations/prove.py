@@ -279,4 +279,19 @@ _SENSITIVITY: Final = job(
     ],
 )  # fmt: skip
 
-JOBS: Final[tuple[Job, ...]] = (_VERIFY, _DIFF, _SIMULATE, _REACH, _FIT, _SENSITIVITY)
+_KINEMATICS: Final = job(
+    "kinematics", "print the formulas of a machine: frames, matrices, forward and inverse",
+    Option("machine", "", FileIn("NAME_OR_FILE", leads="definition"), "machine whose formulas are printed"),
+    SETUP,
+    Option(
+        "format", "--format", Choice(("text", "markdown", "latex")), "how they are printed", default="text", own=True
+    ),
+    JSON,
+    run="machine.kinematics:run",
+    examples=[
+        ("trunnion kinematics yl569", "its matrices and formulas, compared with forward and inverse"),
+        ("trunnion kinematics our_mill.toml --format latex", "a LaTeX document of them"),
+    ],
+)  # fmt: skip
+
+JOBS: Final[tuple[Job, ...]] = (_VERIFY, _DIFF, _SIMULATE, _REACH, _FIT, _SENSITIVITY, _KINEMATICS)

@@ -213,7 +213,7 @@ def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[Fi
     """
     program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
     on = as_machine(machine)
-    if unusable := unusable_file(program, "an NC program"):
+    if unusable := unusable_file(program, phrase("file_of_program")):
         raise InputError(unusable)
     if not program.stat().st_size:
         raise InputError(Problem(str(program), 0, Wording("NC112", "file_empty")))

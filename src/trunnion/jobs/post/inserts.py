@@ -73,6 +73,9 @@ _BEHIND_MODES: Final = ("same_tool", "preselect", "after_approach", "between_pla
 #: Words of a text.
 _WORD: Final = re.compile(r"(?<![A-Z0-9_.])([A-Z_]+)([0-9]*(?:\.[0-9]+)?)")
 
+#: Words that select a working plane.
+_PLANE: Final = re.compile(r"(?<![A-Z0-9_.])G1([789])(?![0-9.])")
+
 _MOST_LISTED: Final = 20
 
 #: What is said of a text that calls a subprogram.
@@ -118,8 +121,8 @@ def _modes_at(name: str, program: Program) -> list[Problem]:
     template = program.control.templates.get(name)
     if template is None:
         return []
-    words = [(template.place_of(k), _mode_of(line, program)) for k, line in enumerate(template.plain_lines())]
-    return [_mode_problem(place, template.title, word) for place, word in words if word]
+    found = _modes_of(template.plain_lines(), program)
+    return [_mode_problem(template.place_of(k), template.title, word) for k, word in found]
 
 
 def mode_problems(program: Program, passages: Iterable[TemplatePassage]) -> list[Problem]:
@@ -130,8 +133,7 @@ def mode_problems(program: Program, passages: Iterable[TemplatePassage]) -> list
         _mode_problem(each.source, each.title, word)
         for each in passages
         if each.template in _BEHIND_MODES
-        for line in each.texts
-        if (word := _mode_of(line, program))
+        for _, word in _modes_of(each.texts, program)
     ]
 
 
@@ -139,11 +141,21 @@ def _mode_problem(place: tuple[str, int], source: Wording, word: str) -> Problem
     return Problem(*place, Wording("CTL457", "mode_not_stated_again", source=source, word=word))
 
 
-def _mode_of(line: str, program: Program) -> str:
-    """Return the word of a line that changes a mode which the path does not show; empty if there is none."""
-    reader = readers.reader_of(program.machine)
-    words = without_comments(program.control, line.replace("\0", "1")).upper()
-    return _mode_in(words, reader) if reader.raw_words.not_known(words, program.machine) else ""
+def _modes_of(lines: Sequence[str], program: Program) -> list[tuple[int, str]]:
+    """Return the words of lines that change a mode which the path does not show, with the indices of the lines.
+
+    So does another working plane than XY, unless the lines end in XY: cuts do not say theirs, and lengths count by it.
+    """
+    reader, machine = readers.reader_of(program.machine), program.machine
+    found, plane = list[tuple[int, str]](), (0, "")
+    for k, line in enumerate(lines):
+        words = without_comments(program.control, line.replace("\0", "1")).upper()
+        if word := reader.raw_words.not_known(words, machine) and _mode_in(words, reader):
+            found.append((k, word))
+        for match in _PLANE.finditer(words):
+            known = not reader.raw_words.not_known(match[0], machine)
+            plane = k, "" if known or match[1] == "7" else match[0]
+    return [*found, plane] if plane[1] else found
 
 
 def _mode_in(words: str, reader: FamilyReader) -> str:

@@ -25,7 +25,7 @@ from trunnion.jobs.project.project import Judgement, Project, ProjectChecks
 from trunnion.jobs.project.setups import OF_ONE_PROGRAM, Purpose, SetupReader, places_of, try_value
 from trunnion.jobs.project.stated_values import StatedValues
 from trunnion.machines import shipped_machines
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 
 #: A line that begins the table of a simulation: no control has one like it.
@@ -70,7 +70,7 @@ def load_project(path: Path) -> Project:
 
 def read_whole(path: Path, elsewhere: Collection[str] = (), *, is_posted: bool) -> Project:
     """Read a project for posts or for simulations; errors as ``load_project`` or ``read_project``."""
-    if unusable := unusable_file(path, "a project"):
+    if unusable := unusable_file(path, phrase("file_of_project")):
         raise InputError(unusable)
     if path.suffix != ".toml":
         raise InputError(Problem(str(path), 0, Wording("SIM112", "project_of_other_ending")))

@@ -12,7 +12,7 @@ from typing import Final
 from trunnion.errors import Problem
 from trunnion.families import FAMILIES
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Diagnostic, Run
 from trunnion.readers.program.settings import family_of
 
@@ -37,7 +37,7 @@ class ProgramKind:
     languages  in which readers read it; empty: none does
     """
 
-    name: str
+    name: Wording
     marks: tuple[str, ...]
     languages: tuple[str, ...] = ()
 
@@ -60,7 +60,7 @@ class Recognized:
     found: tuple[tuple[int, str], ...]
 
 
-def _kind(name: str, *marks: str, languages: tuple[str, ...] = ()) -> ProgramKind:
+def _kind(name: Wording, *marks: str, languages: tuple[str, ...] = ()) -> ProgramKind:
     return ProgramKind(name, marks, languages)
 
 
@@ -69,59 +69,59 @@ _N: Final = r"^/? ?(?:N\d+ ?)?"
 #: The kinds, the most telling marks first; where two have as many, the first one counts.
 KINDS: Final = (
     _kind(
-        "a listing of a postprocessor",
+        phrase("program_is_listing"),
         r"^[^(;\w]{0,5}[=_*]{20,}", r"\b(?:ISN|CLREC|CLDATA|CL REC)\b", r"\bPAGE +\d+",
         r"^ {0,9}\d+ +\d+ +N\d+ ?G\d",
     ),
     _kind(
-        "a Heidenhain Klartext program",
+        phrase("program_of_heidenhain"),
         r"^\d* ?(?:BEGIN|END) PGM ", r"^\d+ +TOOL CALL ", r"^\d+ +CYCL (?:DEF|CALL)", r"^\d+ +L +[XYZABC][+-]",
         r"^\d+ +(?:CC|LBL|FN \d+:|PLANE|FUNCTION|STOP M)\b", languages=("Heidenhain",),
     ),
     _kind(
-        "a Fagor program",
+        phrase("program_of_fagor"),
         r"^%[^,]{1,30},M?X?M?,", r"#(?:TEE|RTCP|CS ON|MCS|HSC|MPOLY|ACS|TOOL AX|TLC)\b",
         r"\((?:IF|CALL|PCALL|RPT|MSG)\b[^)]*P?\d",
         r"\(P\d+ ?= ?",
     ),
     _kind(
-        "a program for a wire eroding machine",
+        phrase("program_of_wire_eroding"),
         r"^H\d{3} ?=", r"\bT8[46]\b", r"^ ?C\d{3}\b", r"\bG5[12] ?A-?[\d.]", r"\b[UV]-?[\d.]+ ?[UV]-?[\d.]+",
     ),
     _kind(
-        "a program for a lathe",
+        phrase("program_of_lathe"),
         _N + r"G50 ?S\d", _N + r"G96 ?S\d", r"G7[0-3] ?P\d+ ?Q\d", r"G7[0-6] ?[UXZ]-?[\d.]+ ?[RWZ]", r"\bT0\d0\d\b",
         r"G28 ?U0?\.? ?W0", r"\b[UX]-?[\d.]+ ?W-?[\d.]",
     ),
     _kind(
-        "an Okuma program",
+        phrase("program_of_okuma"),
         r"^\$[\w-]+\.(?:MIN|SUB|SSB|LIB)%", r"\bG15 ?H\d", r"\bG56 ?H\d", r"\bCALL O\w", r"\bV[CSO]\d+ ?=",
         r"\bG116 ?T",
     ),
     _kind(
-        "a Fadal program",
+        phrase("program_of_fadal"),
         r"^N?\d* ?#(?:CLEAR|PRINT|IF|GOTO|R\d|[A-Z]\d* ?=)", r"\bE\d+ [XY]", _N + r"L\d{3,4}\b", r"\bE0\b.*\bH0\b",
         _N + r"M4[59]\b",
     ),
-    _kind("a Mach3 program", r"\bMach ?[34]\b", r"\bG40\.1\b", r"\bG80 ?G50\b", r"^M998\b"),
+    _kind(phrase("program_of_mach"), r"\bMach ?[34]\b", r"\bG40\.1\b", r"\bG80 ?G50\b", r"^M998\b"),
     _kind(
-        "a tape with $ at the end of its blocks",
+        phrase("program_on_tape"),
         r"^N?\d*[GXYZFSTM][^$]*\$ *$", r"^(?:N\d+)?G0?[01]X[+-]?\d{4,}Y?[^$]*\$ *$",
     ),
     _kind(
-        "a Sinumerik program",
+        phrase("program_of_sinumerik"),
         r"^%_N_\w+_(?:MPF|SPF)", r"\b(?:TRAORI|TRAFOOF|SUPA|ORIWKS|ORIAXES)\b", r"\bCYCLE\d{2,3} ?\(",
         r"^(?:N\d+ )?MSG ?\(\"",
         r"\bR\d+ ?= ?", r"^;\$PATH=", r"\bD\d+ ?M6\b|\bT ?= ?\"", languages=("Sinumerik",),
     ),
     _kind(
-        "a LinuxCNC program",
+        phrase("program_of_linuxcnc"),
         r"\bO ?(?:<\w+>|\d+) (?:sub|endsub|call|if|while|return)\b", r"#<\w+>", r"\bG64 ?P", r"\bG43\.1 ?Z",
         r"\bM6[2-8] ?[PE]\d",
         languages=("LinuxCNC",),
     ),
     _kind(
-        "a program for a Fanuc or Haas",
+        phrase("program_of_fanuc"),
         r"^:?O\d{1,8}\b", r"\bG5\.1 ?Q|\bG05\.1 ?Q", r"\bG43\.4\b|\bG68\.2\b|\bG234\b|\bG254\b",
         r"\bG154 ?P|\bG54\.1 ?P",
         languages=("Fanuc",),
@@ -129,7 +129,7 @@ KINDS: Final = (
 )  # fmt: skip
 
 #: A text that is no program.
-TEXT: Final = ProgramKind("a text, and no program", ())
+TEXT: Final = ProgramKind(phrase("program_is_text"), ())
 
 _WORD: Final = re.compile(r"(?:^|[\s(])[GMXYZFSTNO] ?(?:[-+]?\.?\d|=)", re.IGNORECASE)
 

@@ -18,7 +18,7 @@ from trunnion.arrays import Bytes, Ints
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.files import WriteProgress
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: Bytes read at a time.
 CHUNK: Final = 1 << 20
@@ -61,7 +61,7 @@ class SourceText:
         self.path = path
         self._encoding = encoding
         self.name = path.name
-        unusable = unusable_file(path, "an NC program")
+        unusable = unusable_file(path, phrase("file_of_program"))
         if unusable:
             raise InputError(unusable)
         try:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem, unusable_file
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 
 class Subprograms:
@@ -23,7 +23,7 @@ class Subprograms:
         found: dict[tuple[str, int], Path] = {}
         for path in files:
             key = self.key(path.name)
-            if unusable := unusable_file(path, "an NC program"):
+            if unusable := unusable_file(path, phrase("file_of_program")):
                 problems.append(unusable)
             elif key is None:
                 endings = ", ".join(suffix for suffix in self._suffixes if suffix)

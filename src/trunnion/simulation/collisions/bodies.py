@@ -17,7 +17,7 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, unusable_file, warning
 from trunnion.machines import BodyBox, BodyCylinder, BodyFile, Machine, MachineBody
 from trunnion.machines.links import SPINDLE, WORKPIECE
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh, load_mesh, revolved_mesh
 from trunnion.simulation.tools.profile import Element, ProfileArc, Section, ToolShape
 
@@ -162,7 +162,7 @@ def _file_beside(shape: BodyFile) -> Path:
         raise InputError(Problem(shape.file, 0, Wording("SIM312", "belongs_no_definition")))
     if not is_within(path, definition.parent):
         raise InputError(Problem(shape.file, 0, Wording("SIM312", "leads_out_folder")))
-    if path.exists() and (unusable := unusable_file(path, "a mesh")):
+    if path.exists() and (unusable := unusable_file(path, phrase("file_of_mesh"))):
         raise InputError(replace(unusable, file=shape.file))
     return path
 

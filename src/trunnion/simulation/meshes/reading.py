@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, Severity, unusable_file, warning
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.meshes.findings import LARGEST_EXTENT, SMALLEST_EXTENT, MeshFindings, judge_mesh
 from trunnion.simulation.meshes.step import STEP_ENDINGS, read_step
 from trunnion.simulation.meshes.stl import read_stl
@@ -123,7 +123,7 @@ def _check_file(file: Path, label: str, ending: str) -> None:
                 else Wording("SIM211", "no_ending_names", mesh_formats=tuple(MESH_FORMATS)),
             )
         )
-    unusable = unusable_file(file, "a mesh")
+    unusable = unusable_file(file, phrase("file_of_mesh"))
     if unusable:
         raise InputError(unusable)
 

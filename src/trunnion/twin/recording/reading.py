@@ -16,7 +16,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.extras import import_extra
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.recording import NO_TIME, Mark, Recording, TextColumn
 from trunnion.twin.recording.files import LONGEST_TEXT, parse_stamp, unguarded
 from trunnion.twin.recording.nodes import STAMPS, TEXTS, TIMES
@@ -47,7 +47,7 @@ def read_recording(path: Path) -> Recording:
     InputError
         If the file cannot be used, or with its mistakes.
     """
-    if problem := unusable_file(path, "a recording"):
+    if problem := unusable_file(path, phrase("file_of_recording")):
         raise InputError(problem)
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".parquet"):

@@ -48,6 +48,7 @@ def check_holes(context: ComparedContext) -> Check:
         if match is None:
             found.add(Place(context.last_line, -1, 0.0, Wording("holes", "nothing_drills"), hole.file, hole.line))
             continue
+        hole = _as_it_may_feed(context, hole)
         drilled = _Drilled(hole, match)
         faults = list(hole_faults(run, hole, match, dwells, work, _clearance_on_the_way(context, before, drilled)))
         faults += _faults_around(context, drilled)
@@ -93,6 +94,14 @@ def _dwells_by_row(run: Run) -> dict[int, list[float]]:
         if event.kind == "dwell" and isinstance(event.value, float):
             dwells.setdefault(event.before_row, []).append(event.value)
     return dwells
+
+
+def _as_it_may_feed(context: ComparedContext, hole: Hole) -> Hole:
+    """Return a hole whose cycle has the feed that stands for rapids with the next lower one, which programs write."""
+    settings = context.settings
+    if settings.below_rapid_feed is None or settings.rapid_feed is None or hole.cycle.feed != settings.rapid_feed:
+        return hole
+    return replace(hole, feed_tolerance=max(hole.feed_tolerance, settings.rapid_feed - settings.below_rapid_feed))
 
 
 def _clearance_on_the_way(context: ComparedContext, before: _Drilled | None, now: _Drilled) -> float | None:

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.messages import Wording, phrase
-from trunnion.model.programmed_words import POSITION_WORDS
+from trunnion.model.programmed_words import POSITION_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.verification.basis import TOOL_LENGTH, ZERO, missing_of
@@ -24,7 +24,7 @@ from trunnion.verification.results import Check, Coverage, Place
 from trunnion.verification.row_ranges import chunk_bounds
 from trunnion.verification.spindle_words import TURNING, both_senses, started_behind_cuts
 
-_FAULTS: Final = ("no_feed", "spindle_off", "no_time")
+_FAULTS: Final = ("no_feed", "spindle_off", "no_time", "hole_at_rapid")
 
 #: Smaller rotary motion, degrees, is none.
 _STILL: Final = 1e-3
@@ -116,6 +116,10 @@ def _without_feed_or_spindle(context: Context) -> list[Place]:
         if not isinstance(context, ComparedContext):
             off = (run.state.spindle.part(start, end) == 0) | (run.state.rpm.part(start, end) <= 0.0)
             faults["spindle_off"] = at_feed & off & ~run.state.machine_frame.part(start, end)
+            # A CL file tells the feeds of holes, too.
+            of_rapids = run.state.feed.part(start, end) == context.settings.rapid_feed
+            lines = run.kind[start:end] == Kind.LINEAR
+            faults["hole_at_rapid"] = lines & names_no_axis(programmed) & of_rapids
         for fault, rows in faults.items():
             if not found[fault] and rows.any():
                 found[fault] = True

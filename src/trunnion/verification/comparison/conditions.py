@@ -11,7 +11,9 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
+from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import EventValue, Run
 from trunnion.verification.comparison.stated_axes import first_statements
 from trunnion.verification.event_words import event_word
@@ -103,7 +105,7 @@ def _turns_in_planes(run: Run) -> Iterator[tuple[int, Wording]]:
 def _positioned_turns(run: Run) -> Iterator[int]:
     """Yield the first row between two motions of the tool that turns rotary axes without going to a point.
 
-    One that states an axis for the first time turns it from wherever it has been.
+    One that states an axis for the first time, or in another work offset, turns it from wherever it has been.
 
     Nothing else of such rows is compared. Whether one block turns both axes or two of them one each makes no
     difference.
@@ -118,9 +120,16 @@ def _positioned_turns(run: Run) -> Iterator[int]:
     for k, column in enumerate(columns):
         if run.machine.axes[column].endless:
             turned[:, k] = np.abs((turned[:, k] + 180.0) % 360.0 - 180.0)
-    rows = rows[(turned > _STILL).any(axis=1) | np.isin(rows, first_statements(run))]
+    rows = rows[(turned > _STILL).any(axis=1) | np.isin(rows, first_statements(run)) | _is_in_other_offset(run, rows)]
     motions = np.cumsum(~positioning)[rows]
     yield from rows[np.flatnonzero(np.diff(motions, prepend=-1))].tolist()
+
+
+def _is_in_other_offset(run: Run, rows: Ints) -> Flags:
+    """Which rows state rotary axes in another work offset than the row before that states one, (k,)."""
+    stated = np.flatnonzero(((run.programmed & int(ROTARY_WORDS)) != 0) & ~run.machine_frame)
+    offsets = run.state.work_offset.at(stated)
+    return np.isin(rows, stated[1:][offsets[1:] != offsets[:-1]])
 
 
 def _of_turns(run: Run) -> Iterator[tuple[int, Wording]]:

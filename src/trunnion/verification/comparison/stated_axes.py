@@ -14,21 +14,31 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
-from trunnion.model.run import Run
+from trunnion.model.run import ProgrammedWord, Run
 from trunnion.verification.axes_from_home import AXIS_WORDS, axis_names
 from trunnion.verification.comparison.states import ComparedState, Values
 
 _PLANES: Final = ("tilt", "plane", "cycle800")
 
 #: Not stated yet; in machine coordinates; in those of the workpiece before the program has selected a work offset.
-_NOWHERE, _IN_MACHINE, _UNSELECTED = -1, 0, -2
-_ELSEWHERE: Final = {_NOWHERE: "nowhere", _IN_MACHINE: "in_machine", _UNSELECTED: "in_no_offset"}
+#: At the end of its travel, to which a word has sent it.
+_NOWHERE, _IN_MACHINE, _UNSELECTED, _AWAY = -1, 0, -2, -3
+_ELSEWHERE: Final = {
+    _NOWHERE: "nowhere", _IN_MACHINE: "in_machine", _UNSELECTED: "in_no_offset", _AWAY: "at_end_of_travel",
+}  # fmt: skip
 
 
 def first_statements(run: Run) -> Ints:
     """Return the rows that state an axis for the first time: they move it from wherever it has been."""
     stated = [np.flatnonzero(run.programmed & np.uint8(word))[:1] for word in AXIS_WORDS]
     return np.unique(np.concatenate(stated)).astype(np.int64)
+
+
+def rows_behind_retracts(run: Run) -> Ints:
+    """Return the rows behind words that take the tool along its axis as far as it goes (k,), ascending."""
+    events = [event.before_row for event in run.events if event.kind == "retract" and event.before_row < len(run)]
+    rows = np.unique(np.array(events, np.int64))
+    return np.asarray(rows[~run.state.machine_frame.at(rows)])
 
 
 def stated_axes(one: Run, two: Run) -> Iterator[ComparedState]:
@@ -69,11 +79,15 @@ def _rows_of_planes(run: Run) -> list[int]:
 
 
 def _column(run: Run, word: int) -> StepColumn:
-    """Return where an axis has been stated last in each row, as a work offset or one of the two values above."""
+    """Return where an axis has been stated last in each row, as a work offset or one of the values above."""
     rows = np.setdiff1d(np.flatnonzero(run.programmed & np.uint8(word)), _rows_of_planes(run))
     offsets = run.state.work_offset.at(rows).astype(np.int64)
     offsets[offsets == 0] = _UNSELECTED
     codes = np.where(run.state.machine_frame.at(rows), _IN_MACHINE, offsets)
+    if word == int(ProgrammedWord.Z):
+        away = np.setdiff1d(rows_behind_retracts(run), rows)
+        order = np.argsort(np.append(rows, away), kind="stable")
+        rows, codes = np.append(rows, away)[order], np.append(codes, np.full(len(away), _AWAY))[order]
     changes = np.flatnonzero(np.diff(codes, prepend=_NOWHERE))
     steps = {0: _NOWHERE, **dict(zip(rows[changes].tolist(), codes[changes].tolist(), strict=True))}
     return StepColumn(len(run), np.array(list(steps), np.int64), np.array(list(steps.values()), np.int64))

@@ -1,10 +1,12 @@
 """Rapids written as lines: shops that allow no rapid motion write a high feed in its place.
 
-Such a line is checked as the rapid that it replaces. A cut at this very feed in the CL file stays a cut.
+Such a line is checked as the rapid that it replaces. A cut at this very feed in the CL file stays a cut, and so does
+what a cycle does at its feed: that is a hole, whatever F is in force.
 """
 
 from dataclasses import replace
 
+from trunnion.model.programmed_words import names_no_axis
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.row_ranges import chunk_bounds
@@ -20,5 +22,6 @@ def restore_rapids(run: Run, feed: float | None) -> Run:
     kind = run.kind.copy()
     for start, end in chunk_bounds(len(run)):
         fast = (run.state.feed.part(start, end) == feed) & (run.state.feed_mode.part(start, end) == 94)
-        kind[start:end][fast & (kind[start:end] == Kind.LINEAR)] = Kind.RAPID
+        fast &= (kind[start:end] == Kind.LINEAR) & ~names_no_axis(run.programmed[start:end])
+        kind[start:end][fast] = Kind.RAPID
     return replace(run, kind=kind)

@@ -49,6 +49,14 @@ def test_a_thread_has_the_hand_of_the_spindle(machine: str, lines: str, fault: s
     assert found == ([f"{fault} cuts a thread of the other hand than the spindle turns"] if fault else [])
 
 
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750"])
+@pytest.mark.parametrize("cycle", ["G81", "G84", "G85"])
+def test_a_cycle_has_no_inverse_time(machine: str, cycle: str, tmp_path: Path) -> None:
+    block = f"S500 M3\n{{}}G98 {cycle} X1. Z-5. R2. F500."
+    assert any("inverse time" in each for each in _errors(machine, block.format("G93\n"), tmp_path))
+    assert _errors(machine, block.format(""), tmp_path) == []
+
+
 def test_a_dwell_below_zero_is_refused(tmp_path: Path) -> None:
     (found,) = _errors("matsuura_mx330", "G98 G82 X1. Z-5. R2. P-500 F100.", tmp_path)
     assert "a dwell below zero" in found

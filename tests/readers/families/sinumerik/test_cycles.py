@@ -1,5 +1,6 @@
 """Drilling cycles, motion by motion."""
 
+import numpy as np
 import pytest
 
 from tests.support.reading import Runner, close
@@ -169,3 +170,63 @@ def test_each_cycle_makes_the_motions_of_the_manual(call: str, run: Runner) -> N
     ]
     assert " ".join(told) == motions
     assert [event.value for event in got.events if event.kind == "dwell" and event.value] == dwells
+
+
+#: The long form of an 840D sl -> the same in the classic form, or the code of what is refused.
+LONG = {
+    "CYCLE81(10,0,3,-6,,,0,1,2)": "CYCLE81(10,0,3,-6)",
+    "CYCLE81(10,0,3,,6,,0,0,11)": "CYCLE81(10,0,3,-6)",
+    "CYCLE82(10,0,3,-6,,0.5,0,1,12)": "CYCLE82(10,0,3,-6,,0.5)",
+    "CYCLE82(10,0,3,-6,6,0.5,0,1,12)": "CYCLE82(10,0,3,-6,,0.5)",
+    "CYCLE82(10,0,3,-6,,5,0,1,22)": "CYCLE82(10,0,3,-6,,-5)",
+    "CYCLE83(10,0,3,-15,,,5,0,0,0,1,0,3,0,0.5,2,,0,1,111112)": "CYCLE83(10,0,3,-15,,,5,0,0,0,1,0,3,0,0.5,2)",
+    "CYCLE83(10,0,3,-15,,-5,,0,0,0,1,0,3,0,0.5,2,,0,1,1021112)": "CYCLE83(10,0,3,-15,,,5,0,0,0,1,0,3,0,0.5,2)",
+    "CYCLE83(10,0,3,-15,,,5,0,0,0,1,1,3,0,0,2,1,0,1,1011112)": "CYCLE83(10,0,3,-15,,,5,0,0,0,1,1,3,0,0,2,1)",
+    'CYCLE84(10,0,3,-6,,0.5,3,,1.25,0,600,600,3,1,0,0,,,"","","",0,1,1001002)': (
+        "CYCLE84(10,0,3,-6,,0.5,3,,1.25,0,600,600)"
+    ),
+    'CYCLE84(10,0,3,-6,,0.5,4,,-1.25,0,600,600,3,1,0,0,,,"ISO_METRIC","M8","",0,1,2002)': (
+        "CYCLE84(10,0,3,-6,,0.5,4,,-1.25,0,600,600)"
+    ),
+    'CYCLE840(10,0,3,-6,,0.5,0,3,0,,1.25,3,1,0,"","","",0,1,2)': "CYCLE840(10,0,3,-6,,0.5,0,3,0,,1.25)",
+    "CYCLE85(10,0,3,-6,,0.5,100,200,0,1,12)": "CYCLE85(10,0,3,-6,,0.5,100,200)",
+    "CYCLE86(10,0,3,-6,,0.5,3,1,0,0.5,90,0,1,12)": "CYCLE86(10,0,3,-6,,0.5,3,1,0,0.5,90)",
+    "CYCLE88(10,0,3,-6,,0.5,3,0,1,0)": "CYCLE88(10,0,3,-6,,0.5,3)",
+    "CYCLE81(10,0,3,-6,,,1,1,2)": "NC220",
+    "CYCLE81(10,0,3,-6,,,0,2,2)": "NC380",
+    "CYCLE81(10,0,3,-6,,,0,1,1)": "NC380",
+    "CYCLE81(10,0,3,,6,,0,1,2)": "NC380",
+    "CYCLE81(10,0,3,-6,7,,0,1,2)": "NC380",
+    "CYCLE81(10,0,3,-6,,,0,1,3)": "NC220",
+    "CYCLE81(10,0,3,-6,,,0,1,112)": "NC220",
+    "CYCLE81(10,0,3,-6,,,0,1,-2)": "NC220",
+    "CYCLE81(10,0,3,-6,,,0,1,2.5)": "NC220",
+    "CYCLE81(10,0,3,-6,,,0,1,1000000002)": "NC220",
+    "CYCLE82(10,0,3,-6,,-5,0,1,12)": "NC380",
+    "CYCLE83(10,0,3,-15,,,5,90,0,0,1,0,3,0,0.5,2,,0,1,211112)": "NC220",
+    "CYCLE83(10,0,3,-15,,,5,-0.9,0,0,1,0,3,0,0.5,2,,0,1,111112)": "NC380",
+    "CYCLE83(10,0,3,-15,,,5,0,0,0,1,1,3,0,0,2,0,0,1,1011112)": "NC220",
+    "CYCLE83(10,0,3,-15,,,5,0,0,0,90,0,3,0,0.5,2,,0,1,11111112)": "NC220",
+    "CYCLE83(10,0,3,-15,,,5,0,0,0,1,0,3,0,0.5,2,,0,1,121112)": "NC380",
+    'CYCLE84(10,0,3,-6,,0.5,3,,1.25,0,600,600,3,1,0,0,,,"","","",0,1,2002)': "NC380",
+    'CYCLE84(10,0,3,-6,,0.5,3,,,0,600,600,3,1,0,0,,,"ISO_METRIC","M8","",0,1,2)': "NC380",
+    'CYCLE84(10,0,3,-6,,0.5,3,,1.25,0,600,600,3,1,0,0,,,"","","",0,100,2)': "NC380",
+    "CYCLE88(10,0,3,-6,,0.5,3,0,1,2)": "NC220",
+    "CYCLE84(10,0,3,-6,,0.5,3,,1.25,0,600,600,3,1,0,0,,,5,,,0,1,2)": "NC380",
+    "CYCLE840(10,0,3,-6,,0.5,0,3,0,5,1.25,3,1,0,,,,0,1,2)": "NC380",
+    "CYCLE840(10,0,3,-6,,0.5,0,3,0,,1.25,3,1,0,,5,,0,1,2)": "NC380",
+}
+
+
+@pytest.mark.parametrize("call", LONG)
+def test_the_long_form_is_read_digit_by_digit(call: str, run: Runner) -> None:
+    got, wanted = run(HEAD + call), LONG[call]
+    if wanted.startswith("NC"):
+        assert [finding.code for finding in got.errors] == [wanted]
+        assert len(got) == 1
+        return
+    classic = run(HEAD + wanted)
+    assert [finding.code for finding in got.errors] == [finding.code for finding in classic.errors] == []
+    np.testing.assert_allclose(heights(got), heights(classic), rtol=0, atol=1e-12)
+    assert (got.kind == classic.kind).all()
+    assert [event.value for event in got.events] == [event.value for event in classic.events]

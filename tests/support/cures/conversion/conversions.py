@@ -10,6 +10,21 @@ from trunnion.errors import TrunnionError
 
 _HEAD: Final = "%\nO1\nG21 G17 G40 G49 G69 G80 G90 G94\nT1 M6\nG54 G0 X0. Y0. S900 M3\n"
 _BARE: Final = _HEAD + "Z9.\nG1 Z-1. F300.\nX9.\nG0 Z9.\nM30\n%\n"
+_UNDER_TCP: Final = """G21 G17 G40 G49 G80 G90 G94
+T1 M6
+G54
+G0 A-20 C0
+M428
+G0 X0 Y0 Z50 S900 M3
+Z9
+G1 Z-1 F300
+X9
+G0 Z50
+M429
+G49
+G53 G0 Z0
+M2
+"""
 _REGISTER: Final = _HEAD + "G43 H1 Z9.\nG1 Z-1. F300.\nG41 D21 X9.\nY9.\nG40 X20.\nG0 Z9.\nG49\nM30\n%\n"
 _HOLES: Final = """TOOL PATH/DRILL,TOOL,D8
 TLDATA/MILL,8,0,60,0,0
@@ -28,15 +43,20 @@ END-OF-PATH
 _TIP: Final = {"positions": "tip"}
 
 
-def _converted(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-    """Convert a program of a Fanuc for a TNC; settings are arguments."""
+def _of_linuxcnc(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Convert a program of a LinuxCNC for a TNC; settings are arguments."""
+    return _converted(text, settings, folder, "xyzac_trt")
+
+
+def _converted(text: str, settings: Mapping[str, str], folder: Path, machine: str = "matsuura_mx330") -> Outcome:
+    """Convert a program, of a Fanuc by default, for a TNC; settings are arguments."""
     file, given = folder / "part.nc", dict(settings)
     file.write_text(text, encoding="utf-8")
     registers = dict([given.pop("registers").split("=")]) if "registers" in given else None
     length = float(given.pop("tool_length")) if "tool_length" in given else None
     try:
         found = trunnion.convert(
-            file, machine="matsuura_mx330", to_machine="dmu65", registers=registers, tool_length=length,
+            file, machine=machine, to_machine="dmu65", registers=registers, tool_length=length,
             **given,  # type: ignore[arg-type]
         )  # fmt: skip
     except TrunnionError as error:
@@ -64,6 +84,8 @@ CURES: Final = (
         ({"tool_length": "50"},),
         {"positions": "gauge_line"},
     ),
+    Cure("CNV145", "no_length_under_tcp", _of_linuxcnc, _UNDER_TCP, (("M428", "G43 H1\nM428"),)),
+    Cure("CNV145", "no_length_under_tcp", _of_linuxcnc, _UNDER_TCP, (_TIP,)),
     Cure("CNV163", "cycles_become_motion", _posted_and_converted, _HOLES, (), cured_by=post("dmu65")),
     Cure("CNV146", "registers_not_said", _converted, _REGISTER, ({"registers": "D21=tool"},)),
 )

@@ -23,7 +23,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
 from trunnion.reporting.text import clean
@@ -248,7 +248,7 @@ def verify_manifest(manifest: FilePath, *, cl: Sequence[FilePath] = ()) -> Manif
     sums = {entry.get("sha256"): clean(str(entry.get("name"))) for entry in stated}
     given = set[str]()
     for file in check_paths("cl", cl):
-        _check_file(file, "a CL file")
+        _check_file(file, phrase("file_of_cl"))
         given.add(own := _sum_of(file))
         fault = "" if own in sums else "is not what the program was made from"
         found.append(ManifestFile(clean(file.name), "cl", fault))
@@ -293,7 +293,7 @@ def _is_sound(check: dict[str, Any]) -> bool:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    _check_file(path, "a manifest")
+    _check_file(path, phrase("file_of_manifest"))
     try:
         with path.open("rb") as file:
             text = file.read(_MOST_BYTES + 1)
@@ -344,7 +344,7 @@ def _is_plain(name: str) -> bool:
         return False
 
 
-def _check_file(path: Path, what: str) -> None:
+def _check_file(path: Path, what: Wording) -> None:
     """Raise ``InputError`` for what is no file on the disk; a pipe would let the caller wait."""
     if problem := unusable_file(path, what):
         raise InputError(problem)

@@ -27,6 +27,18 @@ _MAX_LIFT: Final = 100.0
 #: How far a chip-breaking peck is retracted, mm.
 _CHIP_BREAK: Final = 1.0
 
+#: How many parameters a cycle of an 840D sl has before _GMODE, and its _AMODE.
+_LONG_FORMS: Final = {
+    "CYCLE81": (6, "2"),
+    "CYCLE82": (6, "12"),
+    "CYCLE83": (17, "111112"),
+    "CYCLE84": (21, "0"),
+    "CYCLE840": (17, "0"),
+    "CYCLE85": (8, "12"),
+    "CYCLE86": (11, "12"),
+    "CYCLE88": (7, "0"),
+}
+
 #: The name of a cycle, and its arguments behind the heights.
 CycleArguments = tuple[str, list[str]]
 
@@ -58,7 +70,13 @@ class _Input:
 
 
 def cycle_statement(
-    cycle: Cycle, top: float, spindle: SpindleState | None, lift: float | None, formats: Mapping[str, NumberFormat]
+    cycle: Cycle,
+    top: float,
+    spindle: SpindleState | None,
+    lift: float | None,
+    formats: Mapping[str, NumberFormat],
+    *,
+    is_long: bool = False,
 ) -> str:
     """Return the call of a cycle, as it follows MCALL.
 
@@ -66,6 +84,7 @@ def cycle_statement(
     top      Z of the hole points, mm
     spindle  None while it is stopped
     lift     how far BORE,NODRAG lifts off along X after the spindle was oriented, mm; None if it is not set
+    is_long  with _GMODE, _DMODE and _AMODE behind all other parameters
     formats  ``coordinate``, ``angle``, ``pitch``, ``feed``, ``feed_per_rev`` and ``dwell`` of the control
 
     Raises ``HoleCycleError`` if the control cannot make the cycle.
@@ -79,7 +98,17 @@ def cycle_statement(
     angle, pitch = formats["angle"].text, formats["pitch"]
     inputs = _Input(cycle, spindle, dwell, lift, number, angle, pitch.text, pitch.unit != 1.0, feed)
     name, arguments = _CYCLES[cycle.method](inputs)
-    return f"{name}({','.join([*heights, *arguments])})"
+    return f"{name}({','.join(_long_form(name, [*heights, *arguments]) if is_long else [*heights, *arguments])})"
+
+
+def _long_form(name: str, arguments: list[str]) -> list[str]:
+    """Return the arguments with empty places up to _GMODE 0 (depth of the tip), _DMODE 1 (G17), and _AMODE.
+
+    Digits of _AMODE that are settled say what is written: an absolute depth, dwells in seconds, a first peck from the
+    reference plane, a degression as a length. Where they are not, 0 has the parameters count as in the classic form.
+    """
+    count, alternatives = _LONG_FORMS[name]
+    return [*arguments, *[""] * (count - len(arguments)), "0", "1", alternatives]
 
 
 def is_valid_lift(text: str) -> bool:

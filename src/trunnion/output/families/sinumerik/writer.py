@@ -55,6 +55,7 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     HOLES_SETTING: (HOLES_IN_PLANES, "torot", "positions"),
     SAFE_START_SETTING: SAFE_START_CHOICES,
     SPLINES_SETTING: (LINES_FOR_SPLINES, "polynomial"),
+    "cycle_form": ("classic", "long"),
 }
 SETTING_MEANINGS: Mapping[str, str] = {
     "plane": "The command for a tilted plane: CYCLE800, or frames (TRAORI, TRANS, AROT).",
@@ -70,6 +71,8 @@ SETTING_MEANINGS: Mapping[str, str] = {
     "machines that have swivel data.",
     SPLINES_SETTING: "Splines of three-axis operations: linearize writes the lines between their points; polynomial "
     "writes POLY, for controls with the option of polynomial interpolation.",
+    "cycle_form": "How drilling cycles are called: classic, or long with _GMODE, _DMODE and _AMODE behind all other "
+    "parameters, as an 840D sl shows them in its own masks.",
 }
 _PLANE_FIELDS = ("plane_first", "plane_second", "plane_third", "plane_mode")
 _CANCELLING_FIELDS = ("cancel_swivel", "cancel_tool_frame", "cancel_frames")
@@ -227,7 +230,8 @@ def cycle_call(
     lift = float(settings["bore_lift"]) if settings.get("bore_lift") else None
     if settings[HOLES_SETTING] != HOLES_IN_PLANES and cycle.method is HoleMethod.BORE_WITH_LIFT:
         raise HoleCycleError(Wording("CTL370", "bore_nodrag_while"))
-    call = cycle_statement(cycle, top, spindle, lift, formats)
+    is_long = settings.get("cycle_form") == "long"
+    call = cycle_statement(cycle, top, spindle, lift, formats, is_long=is_long)
     if settings[HOLES_SETTING] == "torot":
         return [EACH_HOLE, "TOROT", call, "TOROTOF", "TRANS"]
     return [f"MCALL {call}"]

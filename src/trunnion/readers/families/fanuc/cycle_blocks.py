@@ -101,6 +101,8 @@ class CycleInterpreter(OffsetInterpreter):
     def _drill_at(self, places: Sequence[dict[str, AxisWord]]) -> None:
         """Execute the cycle in force at places, by the words that lead there."""
         control = self.control
+        if self._inverse_time:
+            raise BlockError(Wording("NC210", "cycle_cannot_inverse_time"))
         self._check_cycle_feed()
         hole = self._hole()
         if hole.bottom > hole.retract and control.plane_axis == 2 and self.motion_code != cycles.BACK_BORE:

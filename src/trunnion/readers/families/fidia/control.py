@@ -18,6 +18,7 @@ from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.start_modes import check_start_modes, with_tcp_off
+from trunnion.readers.families.fidia.cycles import ABOVE
 from trunnion.readers.families.fidia.words import TABLE
 from trunnion.readers.program.forms import read_form
 from trunnion.readers.program.settings import family_of, reading_of, unit_of
@@ -34,10 +35,14 @@ _NO_TURN: Final = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How a control is set: what F refers to where rotary axes turn without TCP, the unit, and words of its own."""
+    """How a control is set: what F refers to where rotary axes turn without TCP, the unit, and words of its own.
+
+    peck_clearance  how far above the last depth the rapid approach of G83 ends, mm
+    """
 
     feed_path: FeedPath
     unit: str
+    peck_clearance: float
     words: WordMeanings
 
 
@@ -46,12 +51,13 @@ def settings_of(machine: Machine) -> Settings:
     table = reading_of(machine)
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     unit = unit_of(table)
+    above = table.number("peck_clearance_mm", ABOVE, at_least=0.0)
     words = read_word_meanings(table, TABLE.is_own)
     read_form(table, family_of(machine))
     check_start_modes(table, _start_modes_of(machine))
     table.report_unread_keys()
     table.raise_problems()
-    return Settings(FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit, words)
+    return Settings(FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit, above, words)
 
 
 #: How the reader takes the control to start; it has one feed mode.

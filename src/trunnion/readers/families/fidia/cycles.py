@@ -16,15 +16,15 @@ PECKS: Final = 830
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "ZERDH"
 
-#: How far above the last depth the rapid approach of G83 ends, mm (unconfirmed).
+#: How far above the last depth the rapid approach of G83 ends unless the definition says otherwise, mm (unconfirmed).
 ABOVE: Final = 1.0
 
 
-def cycle_motions(code: int, words: dict[str, float], units: float) -> list[HoleMotion]:
+def cycle_motions(code: int, words: dict[str, float], above: float) -> list[HoleMotion]:
     """Return the motions of a cycle from the height of positioning on and back to it.
 
     words   Z, E and R at least
-    units   units of the program in a millimetre
+    above   how far above the last depth the rapid approach of G83 ends, in units of the program
     """
     height, start, depth = words["Z"], words["R"], words["E"]
     if not height >= start > depth:
@@ -36,7 +36,7 @@ def cycle_motions(code: int, words: dict[str, float], units: float) -> list[Hole
         case 810 | 820 | 860:
             cut = [into]
         case 830:
-            cut = _peck(start, depth, words.get("D", 0.0), dwell, units)
+            cut = _peck(start, depth, words.get("D", 0.0), dwell, above)
         case _:
             assert code in (840, 850, 890)
             cut = [into, HoleMotion(False, start)]
@@ -51,7 +51,7 @@ def spindle_work(code: int) -> SpindleWork | None:
     return SpindleWork(SpindleTask.STOP) if code == 860 else None
 
 
-def _peck(start: float, bottom: float, peck: float, dwell: float, units: float) -> list[HoleMotion]:
+def _peck(start: float, bottom: float, peck: float, dwell: float, above: float) -> list[HoleMotion]:
     total = start - bottom
     check_pecks(total, peck, "D")
 
@@ -59,7 +59,7 @@ def _peck(start: float, bottom: float, peck: float, dwell: float, units: float) 
         return bottom if depth == total else start - depth
 
     def out(depth: float) -> list[HoleMotion]:
-        approach = [HoleMotion(True, height(depth) + ABOVE * units)] if depth > ABOVE * units else []
+        approach = [HoleMotion(True, height(depth) + above)] if depth > above else []
         return [HoleMotion(True, start), *approach]
 
     return descent(peck_depths(total, peck), height, out, dwells=(dwell, dwell))

@@ -167,9 +167,8 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
             raise BlockError(Wording("NC220", "cycles_simulated_g17_g90_only"))
         self._require_words(self._modal_words)
         self._check_cycle_feed()
-        motions = self._cycle_motions(
-            lambda: cycles.cycle_motions(self.motion_code, self._modal_words, 1.0 / control.length_unit)
-        )
+        above = control.settings.peck_clearance / control.length_unit
+        motions = self._cycle_motions(lambda: cycles.cycle_motions(self.motion_code, self._modal_words, above))
         self._counter.count_motions(len(motions) + 2)
         self._drill({name: word for name, word in axes.items() if name in "XY"}, motions)
 

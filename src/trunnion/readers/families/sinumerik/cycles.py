@@ -1,7 +1,7 @@
 """Drilling cycles of a Sinumerik as the motions that they make at one hole.
 
-Heights are positions along the drilling axis, mm, in the frame of the program. Of the parameter lists the classic part
-is read; the parameters of newer controls (``_GMODE``, ``_DMODE``, ``_AMODE``) are not needed for the motions.
+Heights are positions along the drilling axis, mm, in the frame of the program. The parameter lists are the classic
+ones; ``cycle_modes`` makes them of those of newer controls.
 """
 
 import math
@@ -20,6 +20,7 @@ from trunnion.readers.control.hole_motion import (
     descent,
     full_retract,
 )
+from trunnion.readers.families.sinumerik.cycle_modes import MODE_PLACES
 from trunnion.readers.families.sinumerik.words import CYCLE_NEEDS, CYCLE_VALUES
 
 #: How far a chip-breaking peck backs off by default, mm.
@@ -54,20 +55,13 @@ _LENGTH_PLACES: Final[dict[str, tuple[int, ...]]] = {
 _FEED_PLACES: Final[dict[str, tuple[int, ...]]] = {"CYCLE85": (7, 8)}
 
 #: Places of the sense of the spindle after a cycle (SDAC, SDIR), and what its values say; places of the drilling axis
-#: (_AXN); and the first of the three places of _GMODE, _DMODE and _AMODE, which newer controls have.
+#: (_AXN).
 _SENSE_PLACES: Final = {"CYCLE84": 7, "CYCLE840": 8, "CYCLE86": 7, "CYCLE87": 6, "CYCLE88": 7}
 _SENSES: Final = {0.0: None, 3.0: 1, 4.0: -1, 5.0: 0}
 _AXIS_PLACES: Final = {"CYCLE83": 13, "CYCLE84": 13, "CYCLE840": 12}
-_MODE_PLACES: Final = {
-    "CYCLE81": 7, "CYCLE82": 7, "CYCLE83": 18, "CYCLE84": 22, "CYCLE840": 18,
-    "CYCLE85": 9, "CYCLE86": 12, "CYCLE87": 7, "CYCLE88": 8, "CYCLE89": 7,
-}  # fmt: skip
 
 #: Pitches that differ by less are the same, mm.
 _SAME_PITCH: Final = 1e-4
-
-#: _AMODE of CYCLE81 and CYCLE82: how the depth counts (1 by DPR, 2 by DP), and in tens the dwell (1 s, 2 turns).
-_ALTERNATIVES: Final = frozenset(float(10 * dwell + depth) for dwell in range(3) for depth in range(3))
 
 #: The degression of CYCLE83; the pitch of threads, and its unit (_PITA).
 _DEGRESSION: Final = 8
@@ -152,7 +146,7 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
 
     plane_axis   the axis along which it drills here: that perpendicular to the working plane
     """
-    most = _MODE_PLACES[name] + 2
+    most = MODE_PLACES[name] + 2
     if any(value is not None for value in arguments[most:]):
         raise CycleExecutionError(Wording("NC380", "too_many_values", most=most, given=len(arguments)))
     if name in _SENSE_PLACES and _get(arguments, _SENSE_PLACES[name]) == 0.0:
@@ -160,8 +154,8 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
     for place, word in CYCLE_NEEDS.get(name, {}).items():
         if not _or(arguments, place):
             raise CycleExecutionError(Wording("NC380", "has_no_value", value=place, word=word))
-    if name == "CYCLE84":
-        _check_tap(arguments)
+    if name in _PITCH_PLACES:
+        _check_tap(name, arguments)
     for place, known in CYCLE_VALUES.get(name, {}).items():
         if (value := _or(arguments, place)) not in known:
             raise CycleExecutionError(Wording("NC215", "value_control_knows", value=value, place=place, known=known))
@@ -175,31 +169,17 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
         pitch = _get(arguments, 11) or _get(arguments, 10)
         if not pitch or (back == 3.0) is (pitch > 0.0):
             raise CycleExecutionError(Wording("NC380", "would_leave_thread_sense_sdr"))
-    first = _MODE_PLACES[name]
-    geometry, plane, alternatives = (_or(arguments, first + k) for k in range(3))
-    if geometry:
-        raise CycleExecutionError(Wording("NC220", "gmode_not_simulated", geometry=geometry))
-    if plane and plane != 3 - plane_axis:
-        raise CycleExecutionError(Wording("NC380", "dmode_not_working_plane", plane=plane))
-    if not alternatives:
-        return
-    if name not in ("CYCLE81", "CYCLE82") or alternatives not in _ALTERNATIVES:
-        raise CycleExecutionError(Wording("NC220", "amode_not_simulated", alternatives=alternatives))
-    depth, dwell = alternatives % 10, alternatives // 10
-    if (depth == 1 and not _or(arguments, 5)) or (depth == 2 and _or(arguments, 5)):
-        raise CycleExecutionError(Wording("NC380", "amode_does_not_fit_dp", alternatives=alternatives))
-    if (dwell == 1 and _or(arguments, 6) < 0.0) or (dwell == 2 and _or(arguments, 6) > 0.0):
-        raise CycleExecutionError(Wording("NC380", "amode_does_not_fit_dwell", alternatives=alternatives))
 
 
-def _check_tap(arguments: Arguments) -> None:
+def _check_tap(name: str, arguments: Arguments) -> None:
     """Refuse a size of thread (MPIT) beside another pitch (PIT), and a speed (SST, SST1) below zero."""
-    size, pitch, unit = _get(arguments, 8), _get(arguments, 9), _or(arguments, 14)
+    place, unit_place = _PITCH_PLACES[name]
+    size, pitch, unit = _get(arguments, place - 1), _get(arguments, place), _or(arguments, unit_place)
     if size and pitch:
         is_same = abs(_pitch(size, None, unit) - _pitch(None, pitch, unit)) < _SAME_PITCH
         if not is_same or (size > 0.0) is not (pitch > 0.0):
             raise CycleExecutionError(Wording("NC380", "two_pitches", size=size, pitch=pitch))
-    if _or(arguments, 11) < 0.0 or _or(arguments, 12) < 0.0:
+    if name == "CYCLE84" and (_or(arguments, 11) < 0.0 or _or(arguments, 12) < 0.0):
         raise CycleExecutionError(Wording("NC215", "speed_below_zero"))
 
 

@@ -22,6 +22,7 @@ from trunnion.readers.families.sinumerik.control import (
 from trunnion.readers.families.sinumerik.corner_words import CornerWords
 from trunnion.readers.families.sinumerik.cycle800 import swivel
 from trunnion.readers.families.sinumerik.cycle832 import smooth
+from trunnion.readers.families.sinumerik.cycle_modes import classic_form, without_texts
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader, Value
 from trunnion.readers.families.sinumerik.flow import ActiveProgram
 from trunnion.readers.families.sinumerik.polynomials import move_along_polynomials
@@ -339,9 +340,10 @@ class SinumerikInterpreter(WordInterpreter):
 
     def _drill(self, call: Call) -> None:
         try:
-            numbers = [finite(_number(value)) for value in call.arguments]
+            numbers = [finite(_number(value)) for value in without_texts(call.name, call.arguments)]
             control, rpm = self.control, float(self.control.modal.rpm.current)
             cycles.check_unread(call.name, numbers, control.plane_axis)
+            numbers = classic_form(call.name, numbers, control.plane_axis)
             numbers = cycles.in_millimetres(call.name, numbers, control.length_unit, control.feed_unit)
             motions, work = cycles.cycle_motions(call.name, numbers, rpm), cycles.spindle_work(call.name, numbers)
         except CycleExecutionError as error:

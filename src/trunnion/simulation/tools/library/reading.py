@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem, argument_problem, unusable_file
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.tools.library.autodesk import read_autodesk
 from trunnion.simulation.tools.library.freecad import read_freecad
 from trunnion.simulation.tools.library.json_text import MAX_BYTES, parse_json
@@ -26,7 +26,7 @@ _MAX_TABLE: Final = 1_000_000
 
 _UNITS: Final = {"mm": 1.0, "inch": 25.4}
 
-_WHAT: Final = "a tool library"
+_WHAT: Final = phrase("file_of_tools")
 
 
 def read_tools(path: str | Path, unit: str = "") -> ToolLibrary:

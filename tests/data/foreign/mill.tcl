@@ -1,0 +1,37 @@
+  set mom_sys_rapid_code                        "0"
+  set mom_sys_coolant_code(THRU)                "51"
+  set mom_sys_seqnum_start                      "5"
+  set mom_sys_seqnum_incr                       "5"
+  set mom_sys_home_pos(0)                       "0"
+  set mom_sys_home_pos(1)                       "0"
+  set mom_sys_home_pos(2)                       "400"
+  set mom_sys_5th_axis_has_limits               "0"
+  set mom_kin_4th_axis_leader "B"
+  set mom_kin_4th_axis_plane "ZX"
+  set mom_kin_4th_axis_rotation                 "reverse"
+  set mom_kin_4th_axis_min_limit "-30"
+  set mom_kin_4th_axis_max_limit "120"
+  set mom_kin_4th_axis_center_offset(0)         "0.0"
+  set mom_kin_4th_axis_center_offset(1)         "0.0"
+  set mom_kin_4th_axis_center_offset(2)         "2.5"
+  set mom_kin_5th_axis_leader "C"
+  set mom_kin_5th_axis_plane "XY"
+  set mom_kin_5th_axis_min_limit "0"
+  set mom_kin_5th_axis_max_limit "360"
+  set mom_kin_5th_axis_center_offset(0)         "1.0"
+  set mom_kin_5th_axis_center_offset(1)         "0.0"
+  set mom_kin_5th_axis_center_offset(2)         "0"
+  set mom_kin_machine_type                      "5_axis_dual_table"
+  set mom_kin_output_unit                       "IN"
+  set mom_kin_rapid_feed_rate                   "400"
+  set mom_kin_x_axis_limit                      "50"
+proc MOM_start_of_program { } {
+   MOM_output_literal "G40 G17 G49 G80 G90 G94"
+   MOM_do_template start_it
+   PB_CMD_do_things
+}
+proc MOM_linear_move { } {
+   MOM_output_literal "G43.4 H1"
+   MOM_output_literal "G43.4 H1"
+   MOM_output_literal "G68.2"
+}
