@@ -116,3 +116,26 @@ def test_velocities_are_those_of_the_positions_and_rows_end_in_their_places(tmp_
     cuts = state.row >= 1
     assert state.tip_feed[cuts].max() <= 3000.0 * (1.0 + 1e-9)
     assert state.tip_feed[cuts].max() >= 2999.0
+
+
+@pytest.mark.parametrize("jerk", [None, 2e4])
+def test_accelerations_and_jerks_are_those_of_the_velocities(tmp_path: Path, jerk: float | None) -> None:
+    """Within a line at even feed and on its ramps; between two of them they step."""
+    path = tmp_path / "a.mpf"
+    path.write_text("G710 G90 G54\nTRAFOOF\nG1 X60 Y30 F3000\nG1 X0\nM30\n", encoding="utf-8")
+    machine = load_machine("generic_head_table_bc")
+    axes = tuple(replace(axis, acceleration=500.0, jerk=jerk) for axis in machine.axes)
+    timed = time_run(run_program(path, replace(machine, axes=axes)))
+    times = np.arange(1e-3, timed.duration - 1e-3, 1e-4)
+    state = timed.at(times)
+    for lower, higher in ((state.velocity, state.acceleration), (state.acceleration, state.jerk)):
+        mean = np.diff(lower, axis=0) / 1e-4
+        steps = np.abs(np.diff(higher, axis=0)).max(axis=1) > 1e-6 * (1.0 + np.abs(higher[1:]).max(axis=1)) + 2.1
+        steps |= np.diff(state.row) != 0  # the path turns there
+        assert steps.mean() < 0.02
+        np.testing.assert_allclose(mean[~steps], 0.5 * (higher[1:] + higher[:-1])[~steps], atol=2.0, rtol=1e-6)
+        if jerk is None:
+            assert not state.jerk.any()
+            break
+    assert np.abs(state.acceleration).max() == pytest.approx(500.0, rel=1e-6)
+    assert np.abs(state.jerk).max() == pytest.approx(jerk or 0.0, rel=1e-6)

@@ -191,3 +191,25 @@ class Counter:
 
     def datachange_notification(self, *_given: Any) -> None:
         self.count += 1
+
+
+def test_a_client_reads_how_axes_move_and_which_switches_are_on() -> None:
+    async def read(address: str) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        async with Client(address) as client:
+            for name in ("Velocity", "Acceleration", "Jerk", "AtPlus"):
+                node = client.get_node(f"ns=3;s=Twin.Axes.X.{name}")
+                value = await node.read_data_value(raise_on_bad_status=False)
+                found[name] = value.Value.Value if value.StatusCode.is_good() else value.StatusCode.name
+            unit = client.get_node("ns=3;s=Twin.Axes.X.Acceleration.EngineeringUnits")
+            found["unit"] = (await unit.read_value()).DisplayName.Text
+            for name in ("ToolInSpindle", "SpindleTurns"):
+                found[name] = await client.get_node(f"ns=3;s=Twin.{name}").read_value()
+        return found
+
+    with served(BLADE_FINISH, "--hold") as twin:
+        seen = asyncio.run(read(twin.opcua))
+    assert seen == {
+        "Velocity": 0.0, "Acceleration": 0.0, "Jerk": 0.0, "AtPlus": "BadNotSupported", "unit": "mm/s²",
+        "ToolInSpindle": False, "SpindleTurns": False,
+    }  # fmt: skip

@@ -292,4 +292,30 @@ def test_a_twin_says_what_its_positions_and_times_stand_on(tmp_path: Path) -> No
     assert twin_program(file, machine="yl569").not_measured == ()
     file.write_text(HEAD + "G0 X0 Y0 Z50 B0 C0\nG1 X10 C30 F500\nM30\n")
     found = twin_program(file, machine="yl569").not_measured
-    assert [value.partition(" (")[0] for value in found] == ["C point_mm", "spindle gauge_point_mm"]
+    assert [value.partition(" (")[0] for value in found] == ["spindle gauge_point_mm", "C point_mm"]
+
+
+def test_axes_show_how_they_move_and_when_they_stand_at_an_end_of_their_travel(tmp_path: Path) -> None:
+    text = "TRAFOOF\nT=1\nM6\nG1 X250 F3000\nG4 F1\nG1 X0\nM30\n"
+    program = program_of(tmp_path, text, placed=True)
+    shown = program.at(np.linspace(0.0, program.timed.duration, 2001), np.full(2001, -1))
+    columns = columns_of(program, shown)
+    speed = np.array(columns["axis.X.velocity"])
+    assert speed.max() == pytest.approx(50.0, rel=1e-6)
+    assert np.abs(columns["axis.X.acceleration"]).max() == pytest.approx(1000.0, rel=1e-6)
+    assert not np.any(columns["axis.X.jerk"])
+    at_plus = np.array(columns["axis.X.at_plus"])
+    assert at_plus.any()
+    assert (np.array(columns["axis.X.actual"])[at_plus] > 250.0 - 1e-3).all()
+    assert not np.any(columns["axis.X.at_minus"])
+    assert "axis.C.at_plus" not in columns  # turns without end
+    assert columns["block.has_tool"][-1]
+    slow = program.at(shown.seconds, np.full(2001, -1), 0.5)
+    np.testing.assert_allclose(slow.rates[:, 0], 0.5 * shown.rates[:, 0])
+    np.testing.assert_allclose(slow.rates[:, 1], 0.25 * shown.rates[:, 1])
+
+
+def test_nobody_knows_ends_of_travel_without_a_workpiece_zero(tmp_path: Path) -> None:
+    program = program_of(tmp_path, "TRAFOOF\nG1 X250 F3000\nM30\n")
+    columns = columns_of(program, program.at(np.zeros(1), np.full(1, -1)))
+    assert not [name for name in columns if name.endswith(("at_plus", "at_minus")) and name.startswith("axis.X")]

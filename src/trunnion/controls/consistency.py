@@ -15,8 +15,13 @@ from trunnion.controls.vocabulary import (
     FIELD_SETTINGS,
     FILTERS,
     LISTS,
+    PRINTED_SETTINGS,
+    PROGRAM_CHOICES,
+    READ_SETTINGS,
+    READING_KEYS,
     RUN_ONLY_SETTINGS,
     SUBPROGRAM_TEMPLATES,
+    TCP_SETTINGS,
     WRITER_FORMATS,
 )
 from trunnion.definitions import Table
@@ -117,3 +122,22 @@ def check_setting_names(table: Table, control: Control) -> None:
             )
         elif name in fields:
             table.add_problem(name, Wording("DEF520", "template_field_whose"))
+    _report_misspelt(table, control)
+
+
+def _report_misspelt(table: Table, control: Control) -> None:
+    """Report settings that nothing reads, and whose name resembles one that something reads.
+
+    Functions of a user may read others.
+    """
+    printed = {name for template in control.templates.values() for name, _ in template.fields()}
+    known = printed | control.setting_rules.keys() | PROGRAM_CHOICES.keys() | PRINTED_SETTINGS | TCP_SETTINGS
+    known |= READ_SETTINGS | RUN_ONLY_SETTINGS | FIELD_SETTINGS
+    known |= control.family.SETTING_CHOICES.keys() | control.family.SETTING_FIELDS.keys()
+    settings = known - printed | (printed & control.settings.keys())
+    for name in sorted(table.keys() - known):
+        if name in READING_KEYS:
+            table.add_problem(name, Wording("DEF520", "key_of_reading"))
+        elif near := meant_word(name, sorted(settings - RUN_ONLY_SETTINGS)) or meant_word(name, sorted(settings)):
+            variant = "near_setting_of_run" if near in RUN_ONLY_SETTINGS else "near_setting"
+            table.add_problem(name, Wording("DEF520", variant, near=near))

@@ -111,6 +111,22 @@ RUN_ONLY_SETTINGS: Final = frozenset(
 #: Settings whose value is also a template field.
 FIELD_SETTINGS: Final = frozenset({"tool"})
 
+#: Settings of definitions that writers read themselves, on any control; others are printed by templates, or have rules.
+READ_SETTINGS: Final = frozenset({"method", "disengage", "program", "bore_lift", "missing_cycles"})
+
+#: Keys of ``[control.reading]``, which count nowhere else.
+READING_KEYS: Final = frozenset(
+    {
+        "approach_without_side", "arc_centres", "arc_vectors", "behind_circles", "block_ends", "compensation_start",
+        "corner_feed", "cycles_along_tool", "cycles_repeat_with", "dwells", "end_in_subprogram", "extended_offsets",
+        "feed_without_tcp", "home_ends_length", "home_takes_all", "kept_by", "least_increment_mm", "length_along_z",
+        "m114", "m_codes", "machine_positions", "more_comments", "needs_program_number", "nested_comments",
+        "numbers_anywhere", "program_digits", "program_numbers", "start_distances", "start_modes", "start_plane",
+        "swivel_axes", "tape_marks", "threads_stop_spindle", "units", "variables", "whole_feeds", "whole_numbers",
+        "words",
+    }
+)  # fmt: skip
+
 #: Formats that writers use although no word and no template names them, and that of plane angles, which the basic Fanuc
 #: keeps for definitions that have planes.
 WRITER_FORMATS: Final = frozenset(

@@ -128,6 +128,7 @@ def read_machine(table: Table, key: str) -> Machine:
     spindle_point = _vector(spindle.vector("gauge_point_mm", 3, (0.0, 0.0, 0.0)))
     max_rpm = spindle.number("max_rpm", None, above=0)
     facts = _facts(spindle, table.table("facts"))
+    _report_contradiction(spindle, facts.spindle_min_rpm, max_rpm)
     zero = workpiece.vector("zero_mm", 3, None)
     before = len(table.problems)
     axes = tuple(_axis(entry) for entry in axis_tables)
@@ -288,10 +289,15 @@ def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:
 def _gear(table: Table) -> tuple[float, float]:
     """Return the least and the greatest speed of a gear, rev/min."""
     least, greatest = table.number("min_rpm", at_least=0), table.number("max_rpm", above=0)
-    if least > greatest:
-        table.add_problem("min_rpm", Wording("DEF440", "above_max_rpm", least=least, greatest=greatest))
+    _report_contradiction(table, least, greatest)
     table.report_unread_keys()
     return least, greatest
+
+
+def _report_contradiction(table: Table, least: float | None, greatest: float | None) -> None:
+    """Report a least speed above the greatest one."""
+    if least is not None and greatest is not None and least > greatest:
+        table.add_problem("min_rpm", Wording("DEF440", "above_max_rpm", least=least, greatest=greatest))
 
 
 def _facts(spindle: Table, facts: Table) -> MachineFacts:

@@ -345,7 +345,7 @@ LIVE: Final = Group(
             "nodes",
             "--nodes",
             FileIn("NAME_OR_FILE", leads="named"),
-            "what is read: cnc (OPC 40502, such as a twin), sinumerik, heidenhain, or a file (.toml)",
+            "what is read: cnc (OPC 40502), twin (and how its axes move), sinumerik, heidenhain, or a file (.toml)",
             default="cnc",
         ),
         RATE,

@@ -40,6 +40,8 @@ class MachineState:
 
     joints    (k, 5)        axis values as displayed, with all turns; mm or deg, machine order
     velocity  (k, 5)        mm/s or deg/s
+    acceleration  (k, 5)    mm/s^2 or deg/s^2
+    jerk      (k, 5)        mm/s^3 or deg/s^3; 0 where the definition states none, and accelerations step
     row       (k,)  int64   row that is run, or was run last; -1 before the first
     feed      (k,)          speed along the path as F counts it, mm/min; that of the tip where F counts degrees
     tip_feed  (k,)          speed of the tip at the workpiece, mm/min
@@ -49,6 +51,8 @@ class MachineState:
 
     joints: Floats
     velocity: Floats
+    acceleration: Floats
+    jerk: Floats
     row: Ints
     feed: Floats
     tip_feed: Floats
@@ -112,7 +116,7 @@ class TimedRun:
         times = np.asarray(seconds, np.float64)
         row = np.searchsorted(self.ends, times, "right") - 1
         joints = self._row_joints[row + 1]
-        velocity, feed, tip_feed = np.zeros((len(times), 5)), np.zeros(len(times)), np.zeros(len(times))
+        rates, feed, tip_feed = np.zeros((len(times), 3, 5)), np.zeros(len(times)), np.zeros(len(times))
         motion = self._motion
         if len(motion.ends):
             phase = np.searchsorted(motion.begins, times, "left") - 1
@@ -123,9 +127,10 @@ class TimedRun:
                 moves = np.where(after, (later >= 0) & (times < motion.ends[later]), moves)
             if moves.any():
                 found = _moving(motion, phase[moves], times[moves])
-                joints[moves], velocity[moves], row[moves], feed[moves], tip_feed[moves] = found
+                joints[moves], rates[moves], row[moves], feed[moves], tip_feed[moves] = found
                 feed[moves] *= self.in_mm[row[moves]]
-        return MachineState(joints, velocity, row, feed, tip_feed, *self._spindle.at(times, after))
+        spindle = self._spindle.at(times, after)
+        return MachineState(joints, rates[:, 0], rates[:, 1], rates[:, 2], row, feed, tip_feed, *spindle)
 
     def passed(self, since: Floats, until: Floats) -> tuple[Floats, Floats]:
         """Return the least and the greatest values of all axes at the ends of pieces after ``since``, up to ``until``.
@@ -145,7 +150,7 @@ class TimedRun:
 
 
 def _moving(motion: _Motion, phase: Ints, times: Floats) -> tuple[Floats, Floats, Ints, Floats, Floats]:
-    """Axis values, velocities, rows, feeds and those of the tip at times within phases."""
+    """Axis values, their derivatives (k, 3, 5), rows, feeds and those of the tip at times within phases."""
     phases = motion.phases
     time, piece = times - motion.begins[phase], phases.piece[phase]
     speed, acceleration, jerk = phases.speed[phase], phases.acceleration[phase], phases.jerk[phase]
@@ -158,7 +163,8 @@ def _moving(motion: _Motion, phase: Ints, times: Floats) -> tuple[Floats, Floats
     rate = speed + time * (acceleration + time * jerk / 2.0)
     rate[rate < _STANDS] = 0.0
     row = motion.row[piece]
-    return joints, (after - before) * (rate / length)[:, None], row, 60.0 * rate, 60.0 * rate * motion.tip_share[row]
+    along = np.stack((rate, acceleration + time * jerk, jerk), axis=1) / length[:, None]
+    return joints, along[:, :, None] * (after - before)[:, None], row, 60.0 * rate, 60.0 * rate * motion.tip_share[row]
 
 
 def time_run(run: Run, lengths: Mapping[int, float] = _ALL_LENGTHS, *, limits: AxisDynamics | None = None) -> TimedRun:

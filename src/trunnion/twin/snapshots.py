@@ -39,6 +39,7 @@ class Snapshots:
     joints     (k, 5)  axis values as displayed, machine order
     remaining  (k, 5)  from there to the end of the row
     moving     (k, 5)  the axis moves
+    rates      (k, 3, 5)  velocity, acceleration and jerk of the axes, mm or degrees and seconds
     tip        (k, 3)  tool tip in the workpiece frame
     to_go      (k, 3)  from there to the tip at the end of the row
     feed       (k,)    speed along the path as F counts it
@@ -53,6 +54,7 @@ class Snapshots:
     joints: Floats
     remaining: Floats
     moving: Flags
+    rates: Floats
     tip: Floats
     to_go: Floats
     feed: Floats
@@ -122,6 +124,7 @@ class TwinProgram:
         moving = state.velocity != 0.0
         if is_end.any():  # an axis that goes on moves, one that has arrived does not
             moving[is_end] &= self.timed.at(seconds[is_end], np.ones(int(is_end.sum()), np.bool_)).velocity != 0.0
+        rates = np.stack((state.velocity, state.acceleration, state.jerk), axis=1) * share ** np.arange(1, 4)[:, None]
         blocks = self._blocks.at(seconds, row, is_end, state.told_rpm)
         joints = state.joints.copy()
         joints[is_end] = run.positions(ended[is_end]).joints
@@ -132,8 +135,8 @@ class TwinProgram:
         before = row < 0
         remaining[before], to_go[before] = 0.0, 0.0
         return Snapshots(
-            seconds, row, is_end, joints, remaining, moving & (share > 0.0), tip, to_go, state.feed * share, state.rpm,
-            state.told_rpm, blocks,
+            seconds, row, is_end, joints, remaining, moving & (share > 0.0), rates, tip, to_go, state.feed * share,
+            state.rpm, state.told_rpm, blocks,
         )  # fmt: skip
 
     def before_start(self) -> Snapshots:
@@ -142,7 +145,8 @@ class TwinProgram:
         none, still = np.zeros((1, 5)), np.zeros(1)
         return Snapshots(
             still, np.full(1, -1), np.zeros(1, np.bool_), joints, none, np.zeros((1, 5), np.bool_),
-            forward(self.machine, joints)[0], np.zeros((1, 3)), still, still, still, (self._blocks.before_start(),),
+            np.zeros((1, 3, 5)), forward(self.machine, joints)[0], np.zeros((1, 3)), still, still, still,
+            (self._blocks.before_start(),),
         )  # fmt: skip
 
     def tool_number(self, name: str) -> int:

@@ -104,7 +104,7 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
 
 
 def test_the_shipped_lists_of_nodes_are_sound() -> None:
-    assert node_list_names() == ["cnc", "heidenhain", "sinumerik"]
+    assert node_list_names() == ["cnc", "heidenhain", "sinumerik", "twin"]
     for name in node_list_names():
         names = [column.name for column in load_nodes(name).columns]
         assert names[:3] == ["X", "Y", "Z"]

@@ -3,18 +3,24 @@
 from collections.abc import Mapping
 
 from trunnion.compensation.stretches import RegisterValue
-from trunnion.controls import Control, load_control
+from trunnion.controls import Control, control_library, load_control
 from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
+from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.machines import Machine
 
 
 def written_control(machine: Machine) -> Control | None:
-    """Return the control of a machine; None where its programs can be read but not written."""
+    """Return the control of a machine; None where its programs can be read but not written.
+
+    Raises ``InputError`` with the mistakes of one that has number formats: those of a control that is written.
+    """
     try:
         return load_control(machine.control)
     except InputError:
+        if "format" in resolve_extends(machine.control.unread_copy(), control_library()):
+            raise
         return None
 
 

@@ -44,7 +44,7 @@ def record(
 
     address         of its server, ``opc.tcp://HOST:PORT/…``
     output          the file, ``.csv`` or ``.parquet``. One that exists is never written over
-    nodes           what is recorded: ``"cnc"``, ``"sinumerik"``, ``"heidenhain"``, or a file (.toml)
+    nodes           what is recorded: ``"cnc"``, ``"twin"``, ``"sinumerik"``, ``"heidenhain"``, or a file (.toml)
     seconds         how long; None: until Ctrl-C
     rate            milliseconds between two looks of the server at its variables, 5 to 60000
     secure          sign and encrypt; the certificate of the client is made on first use

@@ -21,6 +21,12 @@ from trunnion.twin.snapshots import Snapshots, TwinProgram, displayed
 #: Axes of the workpiece frame.
 FRAME: Final = ("X", "Y", "Z")
 
+#: Derivatives of what axes show.
+RATES: Final = ("velocity", "acceleration", "jerk")
+
+#: A switch at the end of the travel is on from here, mm or degrees before it.
+AT_LIMIT: Final = 1e-6
+
 Columns = dict[str, Sequence[Any]]
 
 # CncAxisStatus, CncSpindleStatus and CncSpindleTurnDirection of OPC 40502.
@@ -47,6 +53,9 @@ def columns_of(program: TwinProgram, snapshots: Snapshots) -> Columns:
         shown = displayed(machine, column, snapshots.joints[:, column])
         actual, to_go = _known(shown), _known(snapshots.remaining[:, column])
         found |= _position(f"axis.{name}", actual, to_go)
+        for what, values in zip(RATES, snapshots.rates[:, :, column].T, strict=True):
+            found[f"axis.{name}.{what}"] = _known(values)
+        found |= _switches(machine, column, f"axis.{name}", snapshots.joints[:, column])
         found[f"axis.{name}.status"] = [_MOVING if moves else _IN_POSITION for moves in snapshots.moving[:, column]]
     for k, name in enumerate(FRAME):
         found |= _position(f"tip.{name}", _known(snapshots.tip[:, k]), _known(snapshots.to_go[:, k]))
@@ -57,6 +66,17 @@ def columns_of(program: TwinProgram, snapshots: Snapshots) -> Columns:
         found[f"geo.{name}.actual"] = _known(np.where(tcp, snapshots.tip[:, k], snapshots.joints[:, column]))
         found[f"geo.{name}.to_go"] = _known(np.where(tcp, snapshots.to_go[:, k], snapshots.remaining[:, column]))
     return found | _spindle(snapshots) | _blocks(program, snapshots)
+
+
+def _switches(machine: Machine, column: int, name: str, joints: Floats) -> Columns:
+    """Whether an axis stands at an end of its travel; nothing where nobody knows where in it the axis stands."""
+    axis = machine.axes[column]
+    if not axis.has_limits or not machine.is_placed(column):
+        return {}
+    return {
+        f"{name}.at_minus": (joints <= axis.low + AT_LIMIT).tolist(),
+        f"{name}.at_plus": (joints >= axis.high - AT_LIMIT).tolist(),
+    }
 
 
 def _known(values: Floats) -> list[float | None]:
@@ -111,5 +131,6 @@ def _blocks(program: TwinProgram, snapshots: Snapshots) -> Columns:
         "block.g": [list(block.g) for block in blocks],
         "block.m": [list(block.m) for block in blocks],
         "block.tool": [block.tool for block in blocks],
+        "block.has_tool": [bool(block.tool) for block in blocks],
         "block.tool_number": [program.tool_number(block.tool) for block in blocks],
     }

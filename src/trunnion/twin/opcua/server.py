@@ -17,6 +17,7 @@ from trunnion.twin.opcua.cnc import build_cnc
 from trunnion.twin.opcua.events import Events
 from trunnion.twin.opcua.history import TwinHistory
 from trunnion.twin.opcua.machine_tool import build_machine_tool
+from trunnion.twin.opcua.motion import build_motion
 from trunnion.twin.opcua.operating import OVERRIDE, Operated, TwinAttributes, TwinRules, build_operating
 from trunnion.twin.opcua.publisher import Publisher
 from trunnion.twin.opcua.sinumerik import VARIABLES, build_sinumerik
@@ -154,6 +155,7 @@ class TwinServer(Server):
         await build_machine_tool(space, program)
         await build_sinumerik(space, program)
         await build_operating(space, self._operated, speed, program.timed.duration)
+        await build_motion(space, program)
         await self.events.prepare()
         attributes = TwinAttributes(self.iserver.aspace, space.id_of(OVERRIDE), self._operated)
         self.iserver.attribute_service = attributes

@@ -31,6 +31,10 @@ _UNITS: Final = {
     "RPM": ("r/min", "revolutions per minute"),
     "P1": ("%", "percent"),
     "SEC": ("s", "second"),
+    "C16": ("mm/s", "millimetre per second"),
+    "E96": ("°/s", "degree per second"),
+    "M41": ("mm/s²", "millimetre per second squared"),
+    "M45": ("°/s²", "degree per second squared"),
 }
 _UNITS_NAMESPACE: Final = "http://www.opcfoundation.org/UA/units/un/cefact"
 

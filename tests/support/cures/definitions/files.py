@@ -169,6 +169,7 @@ CURES: Final = (
     _lines("DEF430 name_too", '[[axis]]\nname = "b"\nkind = "linear"\ncarries = "tool"\ndirection = [0, 0, 1]', ""),
     _lines("DEF440 above_max_rpm", "[[spindle.gear]]\nmin_rpm = 99\nmax_rpm = 9",
            "[[spindle.gear]]\nmin_rpm = 9\nmax_rpm = 99"),
+    _lines("DEF440 above_max_rpm", "[spindle]\nmin_rpm = 99\nmax_rpm = 9", "[spindle]\nmin_rpm = 9\nmax_rpm = 99"),
     _axis("DEF440 axis_limits", "B", 'output = "0..360"', ""),
     Cure("DEF440", "missing", define, _SOUND.replace("limits_deg = [-11, 100]\n", ""),
          (("point_mm = [0, 0, -50]", "point_mm = [0, 0, -50]\nlimits_deg = [-11, 100]"),)),
