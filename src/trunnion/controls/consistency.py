@@ -135,7 +135,7 @@ def _report_misspelt(table: Table, control: Control) -> None:
     known |= READ_SETTINGS | RUN_ONLY_SETTINGS | FIELD_SETTINGS
     known |= control.family.SETTING_CHOICES.keys() | control.family.SETTING_FIELDS.keys()
     settings = known - printed | (printed & control.settings.keys())
-    for name in sorted(table.keys() - known):
+    for name in sorted(set(table.keys()) - known):
         if name in READING_KEYS:
             table.add_problem(name, Wording("DEF520", "key_of_reading"))
         elif near := meant_word(name, sorted(settings - RUN_ONLY_SETTINGS)) or meant_word(name, sorted(settings)):

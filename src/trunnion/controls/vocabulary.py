@@ -103,7 +103,7 @@ RUN_ONLY_SETTINGS: Final = frozenset(
         "cl_units", "cutcom", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance",
         "axis_tolerance", "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways",
         "tool_retract", "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit",
-        "compensation", "first_number", "listing", "missing_feed", "open_cycle", "spindle",
+        "compensation", "first_block", "first_number", "listing", "missing_feed", "open_cycle", "spindle",
         *(option.setting for option in POSTING),
     }
 )  # fmt: skip
@@ -121,9 +121,9 @@ READING_KEYS: Final = frozenset(
         "corner_feed", "cycles_along_tool", "cycles_repeat_with", "dwells", "end_in_subprogram", "extended_offsets",
         "feed_without_tcp", "home_ends_length", "home_takes_all", "kept_by", "least_increment_mm", "length_along_z",
         "m114", "m_codes", "machine_positions", "more_comments", "needs_program_number", "nested_comments",
-        "numbers_anywhere", "program_digits", "program_numbers", "start_distances", "start_modes", "start_plane",
-        "swivel_axes", "tape_marks", "threads_stop_spindle", "units", "variables", "whole_feeds", "whole_numbers",
-        "words",
+        "numbers_anywhere", "peck_clearance_mm", "program_digits", "program_numbers", "start_distances", "start_modes",
+        "start_plane", "swivel_axes", "tape_marks", "threads_stop_spindle", "units", "variables", "whole_feeds",
+        "whole_numbers", "words",
     }
 )  # fmt: skip
 

@@ -16,6 +16,7 @@ from trunnion.definitions.messages import as_written, meant_word
 from trunnion.definitions.source_lines import KeyPath, LocatedValue, layout, locate_values, texts_below
 from trunnion.definitions.table import Table
 from trunnion.definitions.toml_faults import toml_fault
+from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.messages import Wording, phrase
 
@@ -108,14 +109,24 @@ def _read(source: _DefinitionFile, kind: str = "machine") -> LocatedValue:
     return LocatedValue(dict(root.value), root.file, root.line)  # its ``extends`` will be taken out
 
 
+def _text(label: str, data: bytes) -> str:
+    """Return the bytes of a file as text: UTF-8, or GBK where all of it reads as Chinese."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        detector = EncodingDetector()
+        detector.add(data)
+        with suppress(UnicodeDecodeError):
+            if detector.encoding() == "gb18030":
+                return data.decode("gb18030")
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(Problem(label, line, Wording("DEF120", "not_utf_8"))) from None
+
+
 @lru_cache(maxsize=32)
 def _parse(label: str, data: bytes) -> LocatedValue:
     """Return the values of a file: a post needs those of its control four times."""
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(Problem(label, line, Wording("DEF120", "not_utf_8"))) from None
+    text = _text(label, data)
     try:
         found = layout(text)
         raw = tomllib.loads(text)

@@ -7,6 +7,13 @@ Columns whose names end in ``x``, ``y`` and ``z`` (and ``_mm``, ``_in`` or ``_in
 curve; others are left out. Columns are parted by commas, semicolons, tabs or blanks. Where semicolons or tabs do it,
 a comma may be the decimal sign. Empty lines and those that begin with ``#`` are passed over. Without names there are
 three columns, or four of which the first numbers the points.
+
+A table as books print it has the names of its curves in a line of their own, above columns that repeat:
+
+    序号  叶顶曲线              叶根曲线
+          X/(mm) Y/(mm) Z/(mm)  X/(mm) Y/(mm) Z/(mm)
+
+Without that line curves whose columns repeat are called ``curve_1``, ``curve_2`` and so on.
 """
 
 import math
@@ -30,12 +37,16 @@ _HEAD: Final = 1000
 _MOST_BYTES: Final = 64_000_000
 
 _COLUMN: Final = re.compile(
-    r"(?:(?P<curve>.{1,80})[_ .])?(?P<axis>[xyz])(?:[_ ]?[(\[]?(?P<unit>mm|inch|in)[)\]]?)?", re.IGNORECASE
+    r"(?:(?P<curve>.{1,80})[_ .])?(?P<axis>[xyz])(?:[_ ]?/?[(\[（]?(?P<unit>mm|毫米|inch|in)[)\]）]?)?", re.IGNORECASE
 )
+
+#: What numbers the points, in the line of the names of curves.
+_NUMBERING: Final = frozenset({"序号", "编号", "点号", "no", "no.", "nr", "nr.", "index", "point"})
 
 #: Columns of a coordinate in a unit that is not read: nobody wants a curve left out for it.
 _OTHER_UNIT: Final = re.compile(
-    r"(?:.{1,80}[_ .])?[xyz][_ ]?[(\[]?(?P<unit>[nµμu]m|cm|dm|m|km|ft|feet|foot|inches|mils?|thou)[)\]]?", re.IGNORECASE
+    r"(?:.{1,80}[_ .])?[xyz][_ ]?/?[(\[（]?(?P<unit>[nµμu]m|cm|dm|m|km|ft|feet|foot|inches|mils?|thou)[)\]）]?",
+    re.IGNORECASE,
 )
 
 _INCH: Final = 25.4
@@ -114,8 +125,14 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
     if _has_number(first):
         columns = _unnamed(file, first_line, first)
     else:
-        columns = _named(file, first_line, first)
+        names = _names_above(rows)
+        if names:
+            rows = rows[1:]
+            first_line, first = rows[0]
         rows = rows[1:]
+        if rows and len(rows[0][1]) == len(first) + 1:  # nothing stands above the numbers of the points
+            first = ["", *first]
+        columns = _named(file, first_line, first, names)
     if len(rows) > MOST_POINTS:
         raise InputError(Problem(file, rows[MOST_POINTS][0], too_many(len(rows))))
     problems: list[Problem] = []
@@ -168,8 +185,29 @@ def _unnamed(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
     return [_Columns("", _UNNAMED[count], 1.0)]
 
 
-def _named(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
-    """Return the curves that the names of columns tell of."""
+def _names_above(rows: Sequence[tuple[int, list[str]]]) -> list[str]:
+    """Return the names of curves that stand in a line of their own, above that of the columns; empty: there is none."""
+    if len(rows) < 2 or any(map(_COLUMN.fullmatch, rows[0][1])) or not any(map(_COLUMN.fullmatch, rows[1][1])):
+        return []
+    return [cell for cell in rows[0][1] if cell and cell.lower() not in _NUMBERING]
+
+
+def _with_curves(cells: Sequence[str], names: Sequence[str]) -> list[str]:
+    """Return the names of columns with that of their curve where plain X, Y and Z repeat."""
+    plain = [place for place, cell in enumerate(cells) if (match := _COLUMN.fullmatch(cell)) and not match["curve"]]
+    count = len(plain) // 3
+    if len(plain) % 3 or (count < 2 and len(names) != 1):
+        return list(cells)
+    called = names if len(names) == count else [f"curve_{number + 1}" for number in range(count)]
+    found = list(cells)
+    for order, place in enumerate(plain):
+        found[place] = f"{called[order // 3]}_{cells[place]}"
+    return found
+
+
+def _named(file: str, line: int, cells: Sequence[str], names: Sequence[str]) -> list[_Columns]:
+    """Return the curves that the names of columns tell of; ``names`` are those in the line above."""
+    cells = _with_curves(cells, names)
     found: dict[str, dict[str, tuple[int, float]]] = {}
     problems, curves = list[Problem](), []
     for place, cell in enumerate(cells):
@@ -183,7 +221,7 @@ def _named(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
         axis, unit = match["axis"].lower(), (match["unit"] or "mm").lower()
         if axis in axes:
             raise InputError(Problem(file, line, Wording("IMP111", "two_columns", cell=cell)))
-        axes[axis] = place, 1.0 if unit == "mm" else _INCH
+        axes[axis] = place, 1.0 if unit in ("mm", "毫米") else _INCH
     for name, axes in found.items():
         missing = [axis for axis in "xyz" if axis not in axes]
         units = {unit for _, unit in axes.values()}

@@ -16,6 +16,7 @@ from trunnion.messages import Wording
 from trunnion.output.subprograms import DEVICE_NAME
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.sizes import ToolKind, ToolSizes
+from trunnion.transliteration import spelled
 
 _GREATEST: Final = 1000.0
 
@@ -138,15 +139,15 @@ def read_name(table: Table, default: str) -> str:
 
 
 def file_stem(name: str) -> str:
-    """Return a name as that of a file and of a program: letters, digits and underscores.
+    """Return a name as that of a file and of a program: letters, digits and underscores; Chinese as pinyin.
 
     Examples
     --------
-    >>> file_stem("Gehäuse 2"), file_stem("CON")
-    ('Gehause_2', 'CON_')
+    >>> file_stem("Gehäuse 2"), file_stem("CON"), file_stem("叶轮 1")
+    ('Gehause_2', 'CON_', 'YeLun_1')
     """
     plain = "".join(one for one in unicodedata.normalize("NFKD", name) if not unicodedata.combining(one))
-    stem = "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in plain)
+    stem = "".join(letter if letter.isalnum() else "_" for letter in spelled(plain, "ascii"))
     return f"{stem}_" if DEVICE_NAME.fullmatch(stem) else stem
 
 

@@ -26,7 +26,7 @@ from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
 from trunnion.output.operation_list import operation_texts
 from trunnion.output.passages import Passage, Passages, Way
-from trunnion.output.printed_planes import with_printed_planes
+from trunnion.output.printed_planes import needs_plane, with_printed_planes
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
 from trunnion.output.template_printing import TemplatePrinting
@@ -301,7 +301,7 @@ class _ProgramWriter:
         """Place the rotary axes for the first row, and activate TCP or the tilted plane."""
         onward = "next_axis" if motion.plane is None else "next_plane"
         self._templates.write(f"{'approach' if motion.starts_operation else onward}_{suffix}", values, motion)
-        if motion.plane is not None:
+        if needs_plane(self._program, motion):
             self._templates.write(f"plane_on_{suffix}", values, motion)
         self._blocks.assume_rotary_position(motion)
 

@@ -178,7 +178,8 @@ class Check:
 
     def line(self, words: Words = LIBRARY) -> str:
         """Return the line that the command prints: key, state, summary."""
-        return f"{self.key:<{_KEY_WIDTH}}  {self.state.said(words):<4}  {self.said(words)}"
+        width = len(State.FAIL.said(words))
+        return f"{self.key:<{_KEY_WIDTH}}  {self.state.said(words):<{width}}  {self.said(words)}"
 
     def __str__(self) -> str:
         """Return ``line`` in English."""

@@ -185,6 +185,13 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         "operations",
         default="as the control's definition says",
     ),
+    "first_block": RunSetting(
+        "Number of the first block; the others follow by the step of the control's definition.",
+        "as the control's definition says",
+        bounds=(0, 99999999),
+        form="NUMBER",
+        example="100",
+    ),
     "listing": _choice(
         "What the listing has besides the tip and both rotary axes: nothing, or the positions of the linear axes.",
         "tip",

@@ -188,7 +188,7 @@ def prepare(
     check_settings(texts, control, machine)
     stated_cycles(texts)  # before the CL files are read by it
     control = _with_numbers(control, texts.get("numbers"))
-    control = _with_first_number(control, texts)
+    control = _with_first_number(_with_first_block(control, texts), texts)
     machine = apply_setup(machine, texts)
     papers = papers or PaperFiles()
     options = parse_plan_options(texts, control, explain or papers.report is not None)
@@ -211,6 +211,28 @@ def _with_numbers(control: Control, asked: str | None) -> Control:
     every = numbers.every if asked == "off" else 1
     changed = replace(numbers, numbered=asked != "off", every=every, at_operations=asked == "operations")
     return replace(control, block_numbers=changed)
+
+
+def _with_first_block(control: Control, settings: Mapping[str, str]) -> Control:
+    """Return the control with the setting ``first_block``.
+
+    Raises ``InputError`` if it is no whole number or beyond the highest, or if blocks have no numbers, or have them by
+    the control's own count.
+    """
+    first, numbers = number_setting(settings, "first_block"), control.block_numbers
+    if first is None:
+        return control
+    if first != int(first):
+        wording = Wording("ARG220", "no_whole_number", value=repr(settings["first_block"]))
+    elif not numbers.letter:
+        wording = Wording("ARG250", "first_block_of_control", control=control.name)
+    elif not numbers.numbered:
+        wording = Wording("ARG250", "first_block_without_numbers")
+    elif first > numbers.highest:
+        wording = Wording("ARG250", "first_block_beyond", control=control.name, highest=numbers.highest)
+    else:
+        return replace(control, block_numbers=replace(numbers, start=int(first)))
+    raise InputError(setting_problem("first_block", wording))
 
 
 def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control:

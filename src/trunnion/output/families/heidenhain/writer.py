@@ -267,7 +267,8 @@ def _blank_corners(blank: str) -> tuple[str, str] | None:
     sides = zip(numbers[:3], numbers[3:], strict=False)
     if len(numbers) != 6 or any(not low < high or not abs(low) + abs(high) < 1e5 for low, high in sides):
         return None
-    texts = [f"{number:+.4f}".rstrip("0").rstrip(".") for number in numbers]
+    # Rounded before, and no zero has a minus.
+    texts = [f"{round(number, 4) + 0.0:+.4f}".rstrip("0").rstrip(".") for number in numbers]
     low, high = (
         " ".join(f"{axis}{text}" for axis, text in zip("XYZ", corner, strict=True)) for corner in (texts[:3], texts[3:])
     )

@@ -1,0 +1,44 @@
+"""The page of published work: every command of it does what its row says."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.support.locations import GOLDEN, ROOT
+from tests.support.published_work import PAGE, groups, page
+from trunnion.cli import main
+
+ROWS = [row for rows in groups().values() for row in rows]
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with what the commands read."""
+    folder = tmp_path_factory.mktemp("checkout")
+    shutil.copytree(GOLDEN, folder / "tests" / "golden", ignore=shutil.ignore_patterns("results"))
+    shutil.copytree(ROOT / "examples", folder / "examples")
+    return folder
+
+
+def test_the_page_is_made_of_its_rows() -> None:
+    assert PAGE.read_text(encoding="utf-8") == page()
+
+
+def test_every_row_has_a_command_or_says_why_it_is_out() -> None:
+    assert [row.can for row in ROWS if bool(row.command) == bool(row.why) or bool(row.where) == bool(row.why)] == []
+
+
+@pytest.mark.parametrize(("nightly"), [False, pytest.param(True, marks=pytest.mark.nightly)], ids=["quick", "long"])
+def test_every_command_does_what_its_row_says(
+    nightly: bool, checkout: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    monkeypatch.chdir(checkout)
+    wrong = []
+    for row in ROWS:
+        if not row.command or row.nightly != nightly:
+            continue
+        code, told = main(row.words), capfdbinary.readouterr()
+        if code or not (told.out or told.err) or row.prints.encode() not in told.out:
+            wrong.append(f"{row.command}: exit code {code}, {told.err.decode()[-200:]}")
+    assert wrong == [], "\n".join(wrong)
