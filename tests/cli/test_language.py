@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.locations import TESTS
 from trunnion.cli import main
 from trunnion.cli.command_line.language import with_language
 
@@ -106,3 +107,9 @@ def test_data_is_the_same_in_every_language(capsys: pytest.CaptureFixture[str], 
         assert main(["explain", "CL110", "--json", "-", "--language", language]) == 0
         data.append(json.loads(capsys.readouterr().out))
     assert data[0] == data[1] == data[2]
+
+
+def test_a_comparison_is_said_in_the_language(capsys: pytest.CaptureFixture[str]) -> None:
+    program = str(TESTS / "golden" / "yl569" / "2_hub_rough.expected.mpf")
+    assert main(["diff", program, program, "--machine", "yl569", "--language", "de"]) == 0
+    assert capsys.readouterr().out.startswith("gleich: ")

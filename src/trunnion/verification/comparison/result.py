@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from trunnion.arrays import Ints
-from trunnion.messages import Wording, phrase
+from trunnion.messages import LIBRARY, Wording, Words, phrase
 from trunnion.results import FIRST, NOT_DATA, Figure
 
 
@@ -96,16 +96,19 @@ class Comparison:
         )
         return replace(self, first=first, worst=worst)
 
-    def lines(self) -> Iterator[str]:
+    def lines(self, words: Words = LIBRARY) -> Iterator[str]:
         """Yield the result for a terminal."""
         if not self.same:
             yield from self.first_unknown[0]
-        yield from map(str, self._wordings())
-        if self.stated:
-            yield str(phrase("stands_on_stated", words=self.stated))
-        yield from (str(Wording("comparison", "not_needed", word=word)) for word in self.not_needed)
+        yield from (wording.text("what", words) for wording in self._wordings())
 
     def _wordings(self) -> Iterator[Wording]:
+        yield from self._compared()
+        if self.stated:
+            yield phrase("stands_on_stated", words=self.stated)
+        yield from (Wording("comparison", "not_needed", word=word) for word in self.not_needed)
+
+    def _compared(self) -> Iterator[Wording]:
         reached = {"points": self.points, "tip": self.tip, "axis": self.axis}
         if self.same:
             yield Wording("comparison", "same", **reached)
