@@ -26,6 +26,16 @@ def test_blocks_are_numbered_from_it_by_the_step_of_the_control(
     assert found == list(range(107, 107 + step * len(found), step))
 
 
+@pytest.mark.parametrize("number", ["-1", "2.5", "99999990", "one"])
+def test_a_number_from_which_blocks_cannot_be_counted_is_refused(
+    number: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text(HEAD + FOOT, encoding="utf-8")
+    assert main(["post", str(cl), "--machine", "yl569", "--output", "-", "--set", f"first_block={number}"]) != 0
+    assert "first_block" in capfd.readouterr().err
+
+
 @pytest.mark.parametrize("low", ["-0", "-0.0", "-0.00001", "0"])
 def test_no_corner_of_a_block_form_is_minus_zero(low: str) -> None:
     settings = {**load_control(load_machine("dmu65").control).settings, "blank": f"{low},-5,-7.5,10,-0.0,0.00004"}

@@ -216,8 +216,8 @@ def _with_numbers(control: Control, asked: str | None) -> Control:
 def _with_first_block(control: Control, settings: Mapping[str, str]) -> Control:
     """Return the control with the setting ``first_block``.
 
-    Raises ``InputError`` if it is no whole number or beyond the highest, or if blocks have no numbers, or have them by
-    the control's own count.
+    Raises ``InputError`` if it is no whole number or beyond half the highest, from where the numbers would soon begin
+    again, or if blocks have no numbers, or have them by the control's own count.
     """
     first, numbers = number_setting(settings, "first_block"), control.block_numbers
     if first is None:
@@ -228,8 +228,8 @@ def _with_first_block(control: Control, settings: Mapping[str, str]) -> Control:
         wording = Wording("ARG250", "first_block_of_control", control=control.name)
     elif not numbers.numbered:
         wording = Wording("ARG250", "first_block_without_numbers")
-    elif first > numbers.highest:
-        wording = Wording("ARG250", "first_block_beyond", control=control.name, highest=numbers.highest)
+    elif first > (most := numbers.highest // 2):
+        wording = Wording("ARG250", "first_block_beyond", control=control.name, highest=most)
     else:
         return replace(control, block_numbers=replace(numbers, start=int(first)))
     raise InputError(setting_problem("first_block", wording))
