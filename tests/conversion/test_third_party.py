@@ -49,7 +49,7 @@ def test_the_impeller_goes_to_another_machine_and_control_and_back(
 ) -> None:
     program, there, back = tmp_path / "first.ngc", tmp_path / "there.nc", tmp_path / "back.ngc"
     program.write_text("G54\nT1 M6\n" + IMPELLER.read_text())  # it selects no work offset and calls no tool itself
-    converted(program, "xyzac_trt", machine, there)
+    converted(program, "xyzac_trt", machine, there, "--positions", "tip")  # it calls no length
     same(program, "xyzac_trt", there, machine, tolerance, capfd)
     converted(there, machine, "xyzac_trt", back)
     same(there, machine, back, "xyzac_trt", tolerance, capfd)

@@ -49,9 +49,9 @@ def rows(centre: Floats, normal: Floats, shares: Floats) -> PassFamily:
     return PassFamily(tuple(passes), 2.0, Way.BOTH_WAYS)
 
 
-def floor(width: float, count: int = 3) -> PassFamily:
+def floor(width: float, count: int = 3, length: float = 40.0) -> PassFamily:
     """Rows along x on the floor z = 0 of a slot about y = 0, so wide for centres."""
-    x, y = np.linspace(0.0, 40.0, 21), np.linspace(-width / 2.0, width / 2.0, count)
+    x, y = np.linspace(0.0, length, 21), np.linspace(-width / 2.0, width / 2.0, count)
     centre = np.stack([np.column_stack((x, np.full(21, one), np.full(21, 2.0))) for one in y])
     return rows(centre, np.array([0.0, 0.0, 1.0]), np.linspace(0.0, 1.0, count))
 
@@ -63,3 +63,13 @@ def slot(half: float, height: float, lean: float = 0.0) -> Obstacles:
     left = sheet(np.array([-200.0, half, 0.0]), side, up)
     right = sheet(np.array([-200.0, -half, 0.0]), side, up * np.array([1.0, -1.0, 1.0]))
     return bodies(left, right)
+
+
+def bent_slot(half: float, height: float, lean: float) -> Obstacles:
+    """A slot about y = 0 whose sides lean to the right, degrees, and from x = 20 on to the left."""
+    grids = []
+    for begin, angle in ((-200.0, -lean), (20.0, lean)):
+        up = height * np.array([0.0, np.tan(np.radians(angle)), 1.0])
+        side = np.array([220.0, 0.0, 0.0])
+        grids += [sheet(np.array([begin, y, 0.0]), side, up) for y in (half, -half)]
+    return bodies(*grids)

@@ -8,7 +8,7 @@ from trunnion.cli.cl_files import result_stem
 from trunnion.cli.printing import tell, tell_problem
 from trunnion.cli.results import show
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
-from trunnion.cli.wording import problem_line
+from trunnion.cli.wording import in_words, problem_line, said
 from trunnion.controls import load_control
 from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.errors import warning
@@ -18,7 +18,6 @@ from trunnion.jobs.guard import files_read
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording, phrase
-from trunnion.wording import counted
 
 
 def run(given: Given) -> int:
@@ -40,9 +39,9 @@ def run(given: Given) -> int:
     if target != "-":
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
-        tell(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}")
+        tell(f"{target}: {said('points_and_operations', points=rows, operations=len(operations))}")
     if converted.stated:
-        tell(str(phrase("stands_on_stated", words=converted.stated)))
+        tell(in_words(phrase("stands_on_stated", words=converted.stated)))
     if given.json is not None:
         show(given, lambda: converted, ())
     return 0 if converted.passed else 1

@@ -14,6 +14,7 @@ from trunnion.impeller.solid.making import ImpellerSolid
 from trunnion.jobs.impeller.cut import CutStep, ImpellerCut
 from trunnion.jobs.impeller.cutting import cut_impeller
 from trunnion.jobs.impeller.models import load_impeller, model_impeller, write_impeller_step
+from trunnion.jobs.impeller.step_times import setting_for_published
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording
 from trunnion.results import to_data
@@ -115,9 +116,24 @@ def _cut_lines(found: ImpellerCut) -> Iterator[str]:
     """Yield what was made, step by step."""
     for step in found.steps:
         yield _step_line(step)
+        yield from _explained_time(step)
     yield f"{found.result.output}: {counted(sum(step.points for step in found.steps), 'point')}"
     if found.simulation is not None:
         yield from simulation_lines(found.simulation)
+
+
+def _explained_time(step: CutStep) -> Iterator[str]:
+    """Yield where the time goes, and what would give the published one."""
+    times = step.times
+    leads, rest = (format_duration(60.0 * minutes) for minutes in (times.leads, times.rest))
+    passes = f" in {times.passes} passes" if times.passes > 1 else ""
+    yield (
+        f"  of it {format_duration(60.0 * times.cuts)} for {times.cut / 1000.0:.1f} m of cuts at "
+        f"{step.step.feed:g} mm/min{passes}, {leads} for leads and links, {rest} for rapids and all else"
+    )
+    if other := setting_for_published(step.step, times):
+        minutes = format_duration(60.0 * other.minutes)
+        yield f"  with stepover_mm = {other.stepover:g}: {other.passes} passes, which take about {minutes}"
 
 
 def _step_line(step: CutStep) -> str:

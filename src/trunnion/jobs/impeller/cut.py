@@ -11,6 +11,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.material import Material
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.steps import MachiningStep
+from trunnion.jobs.impeller.step_times import StepTimes
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.toolpath import Toolpath
@@ -28,6 +29,7 @@ class CutStep:
     toolpath   its operations, one for each blade or channel, as the CL file says them
     points     of all of them
     seconds    of each operation on the machine, with what leads to it
+    times      where they go
     clearance  of each part of the tool, the least that it has to a blade or the hub, or to the stock where the step
                goes round the part. In flank milling the cutter's is that to the hub and to other blades
     flanks     of flank milling: overcut and undercut of each side, mm
@@ -45,7 +47,8 @@ class CutStep:
     toolpath: Annotated[Toolpath, NOT_DATA]
     points: Annotated[int, Figure(after="programs")]
     seconds: Annotated[tuple[float, ...], Figure("operations", take=len)]
-    clearance: Annotated[tuple[PartClearance, ...], Figure("clearances", after="published_minutes")]
+    times: Annotated[StepTimes, Figure(after="published_minutes")]
+    clearance: Annotated[tuple[PartClearance, ...], Figure("clearances", after="times")]
     before: Annotated[Material, Figure(after="clearances")]
     flanks: Annotated[tuple[tuple[float, float], ...], Figure(decimals=6, take=_flanks, after="before")] = ()
     cl_file: Path | None = None

@@ -25,6 +25,7 @@ from trunnion.jobs.impeller.cut import CutStep, ImpellerCut
 from trunnion.jobs.impeller.files import ImpellerFiles, output_folder
 from trunnion.jobs.impeller.models import load_impeller, model_impeller
 from trunnion.jobs.impeller.settings import operation_settings, program_settings
+from trunnion.jobs.impeller.step_times import step_times
 from trunnion.jobs.impeller.windings import winding_problems
 from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.input_files import machine_files
@@ -298,7 +299,7 @@ def _steps(
     }
     assert result.verification is not None
     seconds, _ = durations(result.verification)
-    of_operation = iter([float(seconds[rows.first : rows.end].sum()) for rows in result.verification.operations])
+    of_operation = iter(result.verification.operations)
     files = result.subprograms
     is_each = len(files) == sum(len(one.operations) for one in toolpaths)
     for paths, toolpath in zip(made, toolpaths, strict=True):
@@ -307,11 +308,13 @@ def _steps(
         for one in (*paths.clearance, *(one for axes in paths.axes for one in axes.clearance)):
             if one.part not in clearance or one.distance < clearance[one.part].distance:
                 clearance[one.part] = one
-        own = tuple(next(of_operation) for _ in toolpath.operations)
+        rows = [next(of_operation) for _ in toolpath.operations]
+        own = tuple(float(seconds[each.first : each.end].sum()) for each in rows)
+        times = step_times(paths.step.feed, toolpath.operations, rows, result.verification)
         flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
         programs, files = (files[: len(own)], files[len(own) :]) if is_each else ((), files)
         yield CutStep(
-            paths.step, toolpath, points, own, tuple(clearance.values()), before[paths.step.name], flanks,
+            paths.step, toolpath, points, own, times, tuple(clearance.values()), before[paths.step.name], flanks,
             Path(toolpath.file), programs,
         )  # fmt: skip
 

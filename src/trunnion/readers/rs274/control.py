@@ -99,8 +99,8 @@ class Rs274Control(VirtualControl):
         clockwise = self.motion == CLOCKWISE
         given = {axis: words[name] * self.length_unit for axis, name in enumerate("IJK") if name in words}
         if self.plane_axis in given:
-            self.note(Wording("NC213", "no_word_of_circle", word="IJK"[self.plane_axis]), Severity.WARNING)
-            del given[self.plane_axis]
+            severity = Severity.ERROR if given.pop(self.plane_axis) else Severity.WARNING
+            self.note(Wording("NC213", "no_word_of_circle", word="IJK"[self.plane_axis]), severity)
         if "R" in words:
             if given:
                 self.note(Wording("NC216", "r_centre_block_r_counts"), Severity.ERROR)

@@ -57,6 +57,7 @@ class Arithmetic:
     assigns_without_brackets  the right side of an assignment may be an expression without brackets
     compare_unset             evaluates a comparison with an unset value, None for other operators
     asks_for_parameters       ``EXISTS[#<name>]`` asks whether a parameter is there
+    one_sign                  a value with two signs is an alarm
     """
 
     levels: tuple[tuple[str, ...], ...]
@@ -66,6 +67,7 @@ class Arithmetic:
     assigns_without_brackets: bool = False
     compare_unset: Callable[[str, Value, Value], float | None] | None = None
     asks_for_parameters: bool = False
+    one_sign: bool = False
 
 
 #: What a language has that knows no expressions.
@@ -128,6 +130,12 @@ class ExpressionReader:
             raise BlockError(Wording("NC215", "number_too_large"))
         return value, "." not in match.group()
 
+    def _behind_sign(self) -> tuple[Value, bool]:
+        """Read a value behind a sign."""
+        if self._arithmetic.one_sign and self.text[self.at : self.at + 1] in ("+", "-"):
+            raise BlockError(Wording("NC210", "number_missing_before", rest=repr(self.rest)))
+        return self.signed_value()
+
     def signed_value(self) -> tuple[Value, bool]:
         """Read the value of a word; returns it, and whether it is a number without a point."""
         if self.text[self.at : self.at + 1] in _FIGURES:
@@ -137,10 +145,10 @@ class ExpressionReader:
         self._deeper()
         try:
             if self.accept("-"):
-                value, whole = self.signed_value()
+                value, whole = self._behind_sign()
                 return (None if value is None else -value), whole
             if self.accept("+"):
-                return self.signed_value()
+                return self._behind_sign()
             if self.text.startswith("[", self.at):
                 return self.bracket(), False
             if self.accept("#"):

@@ -57,6 +57,13 @@ def test_a_cycle_has_no_inverse_time(machine: str, cycle: str, tmp_path: Path) -
     assert _errors(machine, block.format(""), tmp_path) == []
 
 
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750"])
+@pytest.mark.parametrize("word", ["X--1.", "X-+1.", "X+-1.", "X[--1.]"])
+def test_a_value_has_one_sign(machine: str, word: str, tmp_path: Path) -> None:
+    assert any("a number is missing" in each for each in _errors(machine, f"G0 {word}", tmp_path))
+    assert _errors(machine, "G0 X-1.\nX-[1.]\nX[2.-1.]", tmp_path) == []
+
+
 def test_a_dwell_below_zero_is_refused(tmp_path: Path) -> None:
     (found,) = _errors("matsuura_mx330", "G98 G82 X1. Z-5. R2. P-500 F100.", tmp_path)
     assert "a dwell below zero" in found

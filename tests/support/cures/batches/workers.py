@@ -13,7 +13,7 @@ from unittest.mock import patch
 from tests.support.cures.cure import Cure, Outcome, Trial
 from tests.support.cures.scripts import FILES
 from tests.support.simulating import SLOT, STOCK, TOOL
-from trunnion.batch import cluster
+from trunnion.batch import cluster, processing
 from trunnion.batch.cluster import DaskWorkers, Scheduler
 from trunnion.batch.local import LocalWorkers
 from trunnion.batch.processing import work
@@ -100,6 +100,21 @@ def _locally(how: str, timeout: float | None = None, start: float = 60.0) -> Tri
         return Outcome(found[0].problems, found[0].status is Status.PASSED)
 
     return tried
+
+
+def _each(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Do the work on files of names, at one of which Trunnion has an error."""
+
+    def broken(task: Task, *_: Any) -> Any:
+        raise ZeroDivisionError(f"no room for {task.file}")
+
+    found: list[Became] = []
+    for name in text.split():
+        how = {Action.VERIFY: broken} if name == "broken.mpf" else {}
+        with patch.dict(processing._DOING, how):
+            found.append(work(_task()))
+    problems = tuple(problem for outcome in found for problem in outcome.problems)
+    return Outcome(problems, all(outcome.status is Status.PASSED for outcome in found))
 
 
 class _Future:
@@ -224,6 +239,7 @@ def _simulated(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 _WORKS: Final = _locally("works", 60.0)
 
 CURES: Final = (
+    Cure("BAT330", "trunnion_error_here", _each, "part.mpf broken.mpf", ((" broken.mpf", ""),)),
     Cure("BAT210", "worker_processes_end", _locally("ends"), "", (), cured_by=_WORKS),
     Cure("BAT310", "worker_process_died", _locally("dies"), "", (), cured_by=_WORKS),
     Cure("BAT350", "was_not_done", _locally("is silent", 0.0, 0.0), "", (), cured_by=_WORKS),

@@ -10,10 +10,10 @@ from unittest.mock import patch
 import numpy as np
 
 from tests.support.cures.cure import Cure, Outcome, Trial
-from tests.support.cures.impellers.definitions import IMPELLER
+from tests.support.cures.impellers.definitions import IMPELLER, MIXED
 from tests.support.cures.impellers.paths import WHOLE, built, made_of
 from tests.support.cures.reading import ended
-from tests.support.plates import floor, necked, slot
+from tests.support.plates import bent_slot, floor, necked, slot
 from trunnion.arrays import Flags, Floats
 from trunnion.impeller import machining
 from trunnion.impeller.definition import StockSize
@@ -21,7 +21,8 @@ from trunnion.impeller.flank import blade_flank
 from trunnion.impeller.flank.blade_flank import BladeFlank
 from trunnion.impeller.impeller import rotated
 from trunnion.impeller.machining import StepPaths
-from trunnion.impeller.paths import tool_axes
+from trunnion.impeller.paths import axis_field, tool_axes
+from trunnion.impeller.paths.around import side_end
 from trunnion.impeller.paths.channel_sheets import Ball, sheets_of
 from trunnion.impeller.paths.clear_poses import pose_check
 from trunnion.impeller.paths.clearance import Margins, Obstacles, tool_body
@@ -52,8 +53,28 @@ def _sideways(axes: Floats) -> Flags:
 
 _NOTHING: Final = Margins(0.0, 0.0, 0.0, 1.0)
 _LEANS: Final = Wanted(tilt=30.0)
+_LITTLE: Final = Wanted(0.1, 0.1, 0.2, 0.05, 1.0, tilt=60.0)
 _SLOT: Final = slot(6.0, 60.0)
 _FITS: Final = _chosen(floor(1.0), necked(4.0, 25.0, 75.0), _SLOT, _LEANS)
+
+
+def _searched(wanted: Wanted) -> Trial:
+    """Return what chooses axes in a slot within few iterations."""
+    attempts = (("highs-ipm", {"maxiter": 15}),)
+
+    def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+        with (
+            patch.multiple(tool_axes, SHARES=(1.0,), _DIRECTIONS=256, _ASKED=1),
+            patch.object(axis_field, "INTERIOR_POINT", attempts),
+        ):
+            return ended(lambda: choose_axes(floor(1.0), necked(4.0, 25.0, 75.0), _SLOT, wanted))
+
+    return tried
+
+
+def _bent(length: float) -> Trial:
+    """Return what chooses axes for so much of the floor of a slot whose sides lean to the other side half-way."""
+    return _chosen(floor(0.2, length=length), necked(4.0, 25.0, 75.0), bent_slot(6.0, 60.0, 20.0), Wanted(tilt=60.0))
 
 
 def _blocked(variant: str, tool: ToolShape, plates: Obstacles, code: str = "IMP323", **how: Any) -> Cure:
@@ -130,10 +151,21 @@ def _shared(tool: ToolShape) -> Trial:
     return tried
 
 
+def _trailing(reach: float) -> Trial:
+    """Return what looks how far sides go for a ball whose centre is so far from the blade."""
+    return made_of(lambda one: side_end(one, one.blade, reach))
+
+
 def _sheets(allowance: float = 0.3) -> Trial:
     return made_of(lambda one: sheets_of(one, Ball(3.0, 0.05, 0.3, allowance), None))
 
 
+_CUT: Final = 'trailing_edge = "cut"'
+_WIDE: Final = (
+    MIXED.replace("bottom_mm = -4.0", "bottom_mm = -200.0")
+    .replace("height_mm = 42.0", "height_mm = 238.0")
+    .replace("diameter_mm = 108.0", "diameter_mm = 300.0")
+)
 _ROUGH: Final = WHOLE.replace("step_down_mm = 1.0", "step_down_mm = 19")
 _TALL: Final = IMPELLER.replace("height_mm = 35.0", "height_mm = 200.0\nbottom_mm = -100.0")
 
@@ -157,6 +189,10 @@ CURES: Final = (
     ),
     Cure("IMP327", "no_stock_between_blades", _sheets(25.0), IMPELLER, (), cured_by=_sheets()),
     Cure("IMP327", "no_way_out_at_inlet", _sheets(), _TALL, ((_TALL, IMPELLER),)),
+    Cure("IMP327", "no_way_out_at_outlet", _sheets(), _WIDE, ((_WIDE, MIXED),)),
+    Cure("IMP327", "ball_does_not", _trailing(60.0), IMPELLER, ((_CUT, _CUT.replace("cut", "round")),)),
+    Cure("IMP324", "tool_axes_clear", _bent(40.0), "", (), cured_by=_bent(12.0)),
+    Cure("IMP324", "no_smooth_field", _searched(_LEANS), "", (), cured_by=_searched(_LITTLE)),
     Cure("IMP330", "clearances_kept_in_part", _shared(necked(4.0, 20.0)), "", (), cured_by=_shared(necked(4.0, 35.0))),
     Cure("IMP331", "whole_depth_in_one_layer", _layered, _ROUGH, (("step_down_mm = 19", "step_down_mm = 1.0"),)),
 )

@@ -1,5 +1,6 @@
 """Cures of messages about impellers that are cut, and written as solids."""
 
+import itertools
 import pickle
 import subprocess
 from collections.abc import Mapping
@@ -14,16 +15,20 @@ import numpy as np
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
-from tests.support.cures.impellers.definitions import IMPELLER, POINTS, written
+from tests.support.cures.impellers.definitions import IMPELLER, MIXED, POINTS, written
 from tests.support.cures.impellers.paths import built, made_of
 from tests.support.cures.reading import ended
 from tests.support.example_impellers import EXAMPLES
 from tests.support.operations import operation_of
 from tests.support.path_strategies import winding
+from trunnion.geometry.interpolation import interpolate
+from trunnion.geometry.parameters import parameters_of
+from trunnion.impeller import model
 from trunnion.impeller.machining import step_paths
 from trunnion.impeller.model import impeller_model
+from trunnion.impeller.profiles import Profile
 from trunnion.impeller.solid import making
-from trunnion.impeller.solid.impeller_body import impeller_body
+from trunnion.impeller.solid.impeller_body import _hub_meridian, impeller_body
 from trunnion.impeller.solid.order import Made
 from trunnion.impeller.solid.root_loop import Density
 from trunnion.jobs.impeller import models
@@ -91,6 +96,29 @@ def _solid(code: int = 0, said: bytes = b"", *, volume: float = 100.0, ends: boo
     return tried
 
 
+def _led(*places: tuple[float, float], foot: float = 20.0) -> Trial:
+    """Return what leads a hub through places (radius, height) to the axis and out of the stock.
+
+    foot  radius at which the foot of a fillet is, on the hub or where it goes on straight before its inlet
+    """
+    flat = np.array([(radius, 0.0, height) for radius, height in places])
+    points = np.concatenate([np.linspace(*pair, 9)[:-1] for pair in itertools.pairwise(flat)] + [flat[-1:]])
+    hub = Profile(interpolate(points, parameters_of(points)))
+    slope = (flat[1] - flat[0]) / (flat[1] - flat[0])[0]
+    feet = np.array([flat[0] + (foot - flat[0][0]) * slope])
+    return made_of(lambda one: _hub_meridian(replace(one, hub=hub), feet))
+
+
+def _faceted(tolerance: float) -> Trial:
+    """Return what makes a mesh whose facets are 0.6 mm off the surfaces of a blade that meets itself."""
+
+    def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+        with patch.object(model, "off_surfaces", return_value=np.array([0.6])):
+            return ended(lambda: impeller_model(built(text), tolerance))
+
+    return tried
+
+
 def _named(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Write a solid, which is made already, into a file of a name."""
     file = written(IMPELLER, folder)
@@ -126,16 +154,14 @@ def _wound(machine: str) -> Trial:
     return planned
 
 
-_MIXED_POINTS: Final = (EXAMPLES / "mixed_flow_points.csv").read_text(encoding="utf-8") + "#END\n"
-_MIXED: Final = _MIXED_POINTS + (EXAMPLES / "mixed_flow.toml").read_text(encoding="utf-8").partition("[[tool]]")[
-    0
-].replace("mixed_flow_points.csv", "blade_points.csv")
+_FLAT_HUB: Final = ((7.0, 32.0), (14.0, 33.0), (45.0, 6.0))
+_HUB: Final = ((10.0, 35.0), (20.0, 15.0), (45.0, 6.0))
 _LARGE: Final = (
     ("bottom_mm = -400.0", "bottom_mm = -4.0"),
     ("height_mm = 480.0", "height_mm = 42.0"),
     ("diameter_mm = 500.0", "diameter_mm = 108.0"),
 )
-_CROSSING: Final = reduce(lambda text, change: text.replace(*change[::-1]), _LARGE, _MIXED)
+_CROSSING: Final = reduce(lambda text, change: text.replace(*change[::-1]), _LARGE, MIXED)
 #: Two blades that go half round the axis.
 _WINDING: Final = _twisted(POINTS, 1.5) + "#END\n" + IMPELLER.replace("number = 6", "number = 2")
 _mesh: Final = made_of(cache(lambda one: impeller_model(one, 4.0)))
@@ -186,6 +212,17 @@ CURES: Final = (
     ),
     Cure("IMP420", "channel_goes_round", _body, _WINDING, (), cured_by=_mesh),
     Cure("IMP420", "hub_shroud_cross", _body, _CROSSING, _LARGE),
+    Cure("IMP420", "hub_leads_neither", _led((20.0, 50.0), (10.0, 55.0)), IMPELLER, (), cured_by=_led(*_HUB)),
+    Cure("IMP420", "hub_does_not", _led((10.0, 35.0), (45.0, 6.0), (40.0, 9.0)), IMPELLER, (), cured_by=_led(*_HUB)),
+    Cure(
+        "IMP420",
+        "fillet_reaches_farther",
+        _led(*_FLAT_HUB, foot=2.5),
+        IMPELLER.replace("height_mm = 35.0", "height_mm = 35.0\nbore_mm = 12.0"),
+        (),
+        cured_by=_led(*_FLAT_HUB, foot=5.0),
+    ),
+    Cure("IMP220", "facets_would_mm", _faceted(0.5), IMPELLER, (), cured_by=_faceted(4.0)),
     Cure("IMP220", "bodies_make_no", _mesh, _CROSSING, _LARGE),
     Cure("IMP420", "makes_no_solid", _solid(1, b"it fails"), IMPELLER, (), cured_by=_mesh),
     Cure("IMP421", "open_cascade_makes", _solid(ends=False), IMPELLER, (), cured_by=_mesh),

@@ -16,6 +16,15 @@ from trunnion.impeller.machining import step_paths
 
 POINTS: Final = (EXAMPLES / "blade_points.csv").read_text(encoding="utf-8")
 IMPELLER: Final = (EXAMPLES / "impeller.toml").read_text(encoding="utf-8").partition("[[tool]]")[0]
+#: A mixed-flow impeller, with its table of points before it.
+MIXED: Final = (
+    (EXAMPLES / "mixed_flow_points.csv").read_text(encoding="utf-8")
+    + "#END\n"
+    + (EXAMPLES / "mixed_flow.toml")
+    .read_text(encoding="utf-8")
+    .partition("[[tool]]")[0]
+    .replace("mixed_flow_points.csv", "blade_points.csv")
+)
 TOOLS: Final = """[[tool]]
 number = 1
 kind = "flat"

@@ -1,8 +1,10 @@
 """Cures of messages about what a project asks for once its programs are proven, and about programs of operations."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
+from unittest.mock import patch
 
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
@@ -43,6 +45,20 @@ def _seen(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     _post(text, settings, folder)
     found = trunnion.simulate(folder / "part.toml")
     return Outcome((), len(found.findings) > 1)
+
+
+def _without_places(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Post a project whose simulation blames no line for what is missing."""
+    simulate = checks._simulate
+    with patch.object(checks, "_simulate", lambda *given: replace(simulate(*given), findings=())):
+        return _post(text, settings, folder)
+
+
+def _seen_missing(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """The same; what is missing from the part is there then."""
+    _post(text, settings, folder)
+    found = trunnion.simulate(folder / "part.toml")
+    return Outcome((), found.gouge is not None and found.gouge.largest > 1.0)
 
 
 def _accepted(*, changes: bool) -> Trial:
@@ -114,6 +130,14 @@ CURES: Final = (
         f"{CL.replace(_LOW, _LOW + _BACK)}#END\n{_WHOLE}",
         (('"refuse"', '"warn"'),),
         cured_by=_seen,
+    ),
+    Cure(
+        "PRJ210",
+        "missing_from_part",
+        _without_places,
+        _WHOLE,
+        (('"refuse"', '"warn"'),),
+        cured_by=_seen_missing,
     ),
     Cure("PRJ160", "changed_since_compared", _accepted(changes=True), "", (), cured_by=_accepted(changes=False)),
 )

@@ -71,6 +71,7 @@ ARITHMETIC: Final = Arithmetic(
     pairs={"ATAN": _atan, "POW": lambda a, b: a**b},
     assigns_without_brackets=True,
     compare_unset=_compare_empty,
+    one_sign=True,
 )
 
 

@@ -219,7 +219,8 @@ class SinumerikControl(VirtualControl):
             if name not in params:
                 continue
             if axis == self.plane_axis:
-                self.note(Wording("NC213", "no_word_of_circle", word=name), Severity.WARNING)
+                severity = Severity.ERROR if params[name][0] else Severity.WARNING
+                self.note(Wording("NC213", "no_word_of_circle", word=name), severity)
                 continue
             centre = start.copy() if centre is None else centre
             value, how = params[name]
