@@ -27,7 +27,11 @@ def converted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, tru
     program = tmp_path_factory.mktemp("no_offset") / "part.ngc"
     program.write_text(LINES, encoding="utf-8")
     target = program.with_name("part.mpf")
-    return program, target, trunnion.convert(program, machine="xyzac_trt", to_machine="yl569", output=target)
+    return (
+        program,
+        target,
+        trunnion.convert(program, machine="xyzac_trt", to_machine="yl569", output=target, positions="tip"),
+    )
 
 
 def test_the_conversion_tells_which_work_offset_the_new_program_selects(
@@ -44,7 +48,7 @@ def test_a_work_offset_that_is_given_needs_no_warning(tmp_path: Path) -> None:
     program = tmp_path / "part.ngc"
     for text, settings in ((LINES, {"work_offset": "G55"}), (f"G54\n{LINES}", {})):
         program.write_text(text, encoding="utf-8")
-        result = trunnion.convert(program, machine="xyzac_trt", to_machine="yl569", settings=settings)
+        result = trunnion.convert(program, machine="xyzac_trt", to_machine="yl569", settings=settings, positions="tip")
         assert not [problem for problem in result.problems if "work offset" in problem.what]
 
 

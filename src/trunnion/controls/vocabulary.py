@@ -103,7 +103,8 @@ RUN_ONLY_SETTINGS: Final = frozenset(
         "cl_units", "cutcom", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance",
         "axis_tolerance", "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "drills_sideways",
         "tool_retract", "limit_margin", "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit",
-        "compensation", "first_block", "first_number", "listing", "missing_feed", "open_cycle", "spindle",
+        "compensation", "feed_rapid_from", "first_block", "first_number", "listing", "missing_feed", "open_cycle",
+        "spindle",
         *(option.setting for option in POSTING),
     }
 )  # fmt: skip

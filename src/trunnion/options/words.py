@@ -15,7 +15,7 @@ EDITED: Final = ("refuse", "keep", "replace")
 PROOF_SETTINGS: Final = (
     "same_tool", "operation_clearance", "first_approach", "stop_between", "radius_offset", "edge_from", "rapid_feed",
     "rigid_tap", "swivel_data", "delta_length", "delta_radius", "tolerance", "three_axis_tolerance",
-    "fallback_tolerance", "spindle", "missing_feed", "open_cycle", "compensation",
+    "fallback_tolerance", "spindle", "missing_feed", "feed_rapid_from", "open_cycle", "compensation",
 )  # fmt: skip
 
 #: Words in cures of messages in whose place a value is to be written.

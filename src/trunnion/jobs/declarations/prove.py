@@ -91,7 +91,8 @@ _VERIFY: Final = job(
         "the feed_limit of that post, in place of the CL file's",
     ),
     SETTINGS.but(
-        help=f"setting that the program was posted with and its CL files do not show: {', '.join(PROOF_SETTINGS)};"
+        help=f"setting of its post that the CL files do not show: {', '.join(PROOF_SETTINGS[:14])}; "
+        f"{', '.join(PROOF_SETTINGS[14:])};"
         " or a variable that the program reads and does not set: Q13=10; may be repeated",
     ),
     ASSUME,

@@ -125,6 +125,12 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         form="MM_MIN or OPERATION:MM_MIN",
         example="300,TAP:1.25MMPR",
     ),
+    "feed_rapid_from": RunSetting(
+        "Feed from which on lines of the CL file are rapids, mm/min, for CAM systems that write a high feed in place "
+        "of RAPID; OPERATION:MM_MIN is that of one alone. Holes, arcs and splines stay what they are.",
+        form="MM_MIN or OPERATION:MM_MIN",
+        example="5000,FACE:3000",
+    ),
     "open_cycle": RunSetting(
         "What becomes of a cycle of the CL file that is still on where another operation begins: it ends there, or "
         "goes_on, and the points of that operation are holes too. Every point before is a hole. OPERATION:ends is "

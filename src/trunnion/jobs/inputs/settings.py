@@ -37,7 +37,7 @@ Settings: TypeAlias = Mapping[str, SettingValue]
 SINGLE_VALUES: Final = ("zero", "tool_length")
 
 #: Settings of a post that may have a value for each operation.
-BY_OPERATION: Final = ("compensation", "missing_feed", "mode", "open_cycle", "spindle")
+BY_OPERATION: Final = ("compensation", "feed_rapid_from", "missing_feed", "mode", "open_cycle", "spindle")
 
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6

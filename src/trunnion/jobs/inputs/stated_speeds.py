@@ -70,6 +70,9 @@ def with_stated_speeds(toolpaths: Iterable[Toolpath], settings: Mapping[str, str
             if speed is None and not own and _first_cut(operation) < len(operation.moves):
                 speed = _speed_of_others(speeds, at_cut, tool.is_another(before))
             new = operation if speed is None else _turning(operation, speed)
+            if speed is not None:
+                said = Wording("CTL320", "speed_stated", operation=operation.name, stated=speed)
+                remarks.append(warning(toolpath.file, operation.line, said))
             operations.append(new)
             running = _last_switch(new, running)
         found.append(replace(toolpath, operations=tuple(operations), remarks=tuple(remarks)))

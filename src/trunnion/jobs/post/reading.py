@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from trunnion.controls.vocabulary import HOOKS_NOTICE
+from trunnion.jobs.inputs.stated_rapids import stated_notices
 from trunnion.jobs.post.operation_setups import setup_notices, with_operation_setups
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
@@ -34,7 +35,7 @@ def as_clamped(
     notices: tuple[str, ...] = ()
     if is_placed or stated is not None or not clamping.is_as_drawn:
         notices = (*clamped_notices(clamping), *setup_notices(job, toolpaths))
-    job = replace(job, notices=(*notices, *carried), clamping=clamping)
+    job = replace(job, notices=(*notices, *stated_notices(toolpaths, job.settings), *carried), clamping=clamping)
     if hooks is not None:
         decisions = tuple(hooks.decisions) if job.options.explain else ()
         job = replace(job, notices=(*job.notices, *hooks.notices), decisions=decisions)
