@@ -1,14 +1,13 @@
 """``trunnion place --goal collisions``, and what other goals tell of bodies."""
 
 import json
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import trunnion
-from tests.support.locations import ROOT, YL569
+from tests.support.locations import YL569
 from trunnion.cli import main
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 
@@ -108,6 +107,7 @@ def trunnion_turned(file: str, degrees: float) -> TriangleMesh:
 @pytest.mark.parametrize(
     ("options", "code"),
     [
+        (["--machine", "yl569", "--tool-length", "100"], "PLC190"),
         (["--machine", "generic_head_head_ca"], "SIM310"),
         (["--machine", "generic_head_head_ca", "--tool", "2=ball:x"], "SIM153"),
         (["--machine", "generic_head_head_ca", "--tool", TOOL, "--stock", "box:1,2"], "SIM122"),
@@ -119,18 +119,13 @@ def test_what_cannot_be_judged_is_refused(options: list[str], code: str, capsys:
     assert f"[{code}]" in capsys.readouterr().err
 
 
-def test_what_is_missing_is_told_where_no_bodies_could_meet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The YL569 without its column, and nobody states its gauge point."""
-    shipped = (ROOT / "src/trunnion/machines/library/yl569.toml").read_text(encoding="utf-8")
-    head, *bodies = re.sub("gauge_point_mm.*\n", "", shipped).split("\n[[body]]")
-    moving = [body for body in bodies if '"bed"' not in body]
-    (tmp_path / "ours.toml").write_text("\n[[body]]".join([head, *moving]), encoding="utf-8")
-    part = ["place", BLADE, "--machine", str(tmp_path / "ours.toml"), "--turn", "0", "--tool-length", "110"]
+def test_what_is_missing_is_told_where_no_bodies_could_meet(capsys: pytest.CaptureFixture[str]) -> None:
+    part = ["place", BLADE, "--machine", "yl569", "--turn", "0", "--tool-length", "110"]
     assert main([*part, "--goal", "collisions"]) == 2
-    assert "--goal: error: ours has no spindle.gauge_point_mm, so that" in capsys.readouterr().err
+    assert "--goal: error: yl569 has no spindle.gauge_point_mm, so that" in capsys.readouterr().err
     assert main([*part, "--tool", TOOL]) == 0  # another goal does without bodies
     told = capsys.readouterr()
-    assert "--tool: warning: ours has no spindle.gauge_point_mm, so that" in told.err
+    assert "--tool: warning: yl569 has no spindle.gauge_point_mm, so that" in told.err
     assert "nearest to each other" not in told.out
 
 

@@ -1,7 +1,6 @@
 """``trunnion.simulate``: fixtures, the machine's bodies, and where they are."""
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,13 +9,9 @@ import trunnion
 from tests.support.simulating import SLOT, cuboid, simulate
 from trunnion.cli.simulate import simulation_lines
 from trunnion.jobs.simulate.report import simulation_content
-from trunnion.machines import load_machine
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.results import to_data
 from trunnion.simulation.meshes import save_mesh
-
-#: A YL569 that says nothing of its gauge point.
-UNSTATED = replace(load_machine("yl569"), spindle_point_is_stated=False)
 
 #: The slot for a control of the YL569.
 SLOT_OF_YL569 = (
@@ -160,7 +155,7 @@ def test_fixtures_are_called_by_their_files(tmp_path: Path) -> None:
 def test_what_is_sunk_in_the_table_is_a_warning_without_a_gauge_point(tmp_path: Path) -> None:
     """The rotary table of the YL569 ends at Z -50 of the machine, its cradle is at Z -230 to -115."""
     vice = cuboid((-60, -30, -45), (60, 30, -15))
-    given: dict[str, object] = {"machine": UNSTATED, "tool_length": 110, "fixtures": vice}
+    given: dict[str, object] = {"machine": "yl569", "tool_length": 110, "fixtures": vice}
 
     def sunk(zero: str, **more: object) -> list[str]:
         found = simulate(tmp_path, SLOT_OF_YL569, **(given | more), zero=zero)
@@ -178,7 +173,7 @@ def test_what_is_sunk_in_the_table_is_a_warning_without_a_gauge_point(tmp_path: 
 def test_the_verdict_says_that_collisions_with_the_machine_were_not_checked(tmp_path: Path) -> None:
     folder = Path("examples/simulation")
     unstated = trunnion.simulate(
-        folder / "plate_top.mpf", machine=UNSTATED, stock="box:100,80,30,-50,-40,-30", zero=(0, 0, -160),
+        folder / "plate_top.mpf", machine="yl569", stock="box:100,80,30,-50,-40,-30", zero=(0, 0, -160),
         tool_libraries=[folder / "tools.toml"], tool_length=110, cell=1.0,
     )  # fmt: skip
     assert unstated.passed

@@ -165,7 +165,7 @@ def test_a_mesh_beside_the_definition_becomes_a_body(tmp_path: Path) -> None:
 
 def test_a_gauge_point_that_is_not_stated_is_told() -> None:
     said: list[Problem] = []
-    for name in ("haas_umc750", "matsuura_mx330"):
+    for name in ("yl569", "matsuura_mx330"):
         machine_bodies(load_machine(name), said.append)
     assert [str(each).partition(": ")[2].partition(";")[0] for each in said] == [
         "warning: has no spindle.gauge_point_mm: spindle and tools are not checked against the rest of the machine"
