@@ -185,15 +185,37 @@ def test_no_machine_like_it_is_refused(tmp_path: Path) -> None:
         nearest_machine(found)
 
 
-def test_a_value_that_is_set_again_is_reported(tmp_path: Path) -> None:
+def test_of_a_value_that_is_set_again_the_last_counts_and_the_other_is_reported(tmp_path: Path) -> None:
     files = changed_post(tmp_path, ("proc MOM_start", 'set mom_kin_4th_axis_max_limit "90"\nproc MOM_start'))
-    assert "mom_kin_4th_axis_max_limit = 90" in [each.what for each in read_nx_post(files).left]
+    found = read_nx_post(files)
+    assert stated(found)["axis.B.limits_deg"] == [-30.0, 90.0]
+    assert "mom_kin_4th_axis_max_limit = 120" in [each.what for each in found.left]
+
+
+def test_what_a_procedure_sets_does_not_count_and_is_reported(tmp_path: Path) -> None:
+    files = changed_post(tmp_path, ("   PB_CMD_do", '   set mom_kin_4th_axis_max_limit "90"\n   PB_CMD_do'))
+    found = read_nx_post(files)
+    assert stated(found)["axis.B.limits_deg"] == [-30.0, 120.0]
+    assert "it is set while the program runs, in MOM_start_of_program" in [each.why for each in found.left]
 
 
 @pytest.mark.parametrize("value", ["[exec rm -rf /]", "$env(HOME)", '"$x"', "1e999", "nan", "abc"])
 def test_expressions_and_odd_numbers_state_nothing(value: str, tmp_path: Path) -> None:
     files = changed_post(tmp_path, ('mom_kin_4th_axis_max_limit "120"', f"mom_kin_4th_axis_max_limit {value}"))
-    assert ("axis", "B", "limits_deg") not in read_nx_post(files).values
+    found = read_nx_post(files)
+    assert ("axis", "B", "limits_deg") not in found.values
+    assert [each for each in found.left if each.what.startswith("mom_kin_4th_axis_max_limit")]
+
+
+def test_limits_that_cannot_be_are_reported(tmp_path: Path) -> None:
+    files = changed_post(tmp_path, ('mom_kin_4th_axis_max_limit "120"', 'mom_kin_4th_axis_max_limit "-120"'))
+    assert [each.what for each in read_nx_post(files).left if "limits_deg" in each.why] == [
+        "mom_kin_4th_axis_min_limit = -30", "mom_kin_4th_axis_max_limit = -120"
+    ]  # fmt: skip
+    data = (FILES / "nck.arc").read_text(encoding="utf-8").replace("[AX4]=100", "[AX4]=-100")
+    (tmp_path / "nck.arc").write_text(data, encoding="utf-8")
+    whys = [each.what for each in read_machine_data(tmp_path / "nck.arc").left if "can be made" in each.why]
+    assert whys == ["$MA_POS_LIMIT_MINUS[AX4] = -11", "$MA_POS_LIMIT_PLUS[AX4] = -100"]
 
 
 def test_files_that_are_no_text_or_not_there_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

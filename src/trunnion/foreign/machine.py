@@ -31,7 +31,12 @@ class Stated:
     @property
     def source(self) -> str:
         """Name, file and line, as remarks and reports have them."""
-        return f"{self.name}, {Path(self.file).name}:{self.line}"
+        return f"{self.name}, {self.place}"
+
+    @property
+    def place(self) -> str:
+        """File and line."""
+        return f"{Path(self.file).name}:{self.line}"
 
     def as_value(self, value: Any) -> "Stated":
         """Return another value from the same place."""

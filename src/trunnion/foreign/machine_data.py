@@ -28,6 +28,8 @@ _MM_PER_M, _DEG_PER_TURN = 1000.0, 360.0
 #: Type of transformation, without its lowest bits -> what the first and the second rotary axis carry.
 _TYPES: Final = {16: ("tool", "tool"), 32: ("part", "part"), 48: ("part", "tool")}
 
+_OF_AXES: Final = ("POS_LIMIT_MINUS", "POS_LIMIT_PLUS", "MAX_AX_VELO", "MAX_AX_ACCEL")
+
 #: A reference point is a place of its own, and no home for tool changes.
 _NOT_TAKEN: Final = {
     "TRAFO5_PART_OFFSET_1": "compare it at the control: it counts from the table, not from the machine's frame",
@@ -54,7 +56,7 @@ def read_machine_data(file: Path) -> ForeignMachine:
         value = Stated(found[4].strip("\"'"), f"$M{found[1]}_{found[2]}[{found[3] or ''}]", str(file), number)
         known = data.setdefault(key, value)
         if known is not value and known.value != value.value:
-            repeated.append(Left(f"{value.name} = {value.value}", value.source, f"line {known.line} counts"))
+            repeated.append(Left(f"{value.name} = {value.value}", value.place, f"line {known.line} counts"))
     if not any(name in ("POS_LIMIT_MINUS", "IS_ROT_AX", "MAX_AX_VELO") for name, _ in data):
         raise InputError(Problem(str(file), 0, Wording("DEF630", "no_data_of_axes")))
     names = _names(data)
@@ -142,7 +144,15 @@ def _rotary(data: Mapping[tuple[str, str], Stated], names: Mapping[int, str]) ->
 
 
 def _left(data: Mapping[tuple[str, str], Stated], names: Mapping[int, str]) -> Iterator[Left]:
+    taken = {(value.file, value.line) for _, value in _values(data, names)}
+    for (name, index), value in data.items():
+        if name in _OF_AXES and (value.file, value.line) not in taken and (axis := _AXIS.fullmatch(index)):
+            partner = data.get(("POS_LIMIT_MINUS", index)) if name == "POS_LIMIT_PLUS" else None
+            if int(axis[2]) not in names:
+                yield Left(f"{value.name} = {value.value}", value.place, "no name of this axis is stated")
+            elif partner is None or (partner.file, partner.line) not in taken:
+                yield Left(f"{value.name} = {value.value}", value.place, "no value of the axis can be made of it")
     for (name, index), value in data.items():
         axis = _AXIS.fullmatch(index)
         if name in _NOT_TAKEN and (axis is None or int(axis[2]) in names):
-            yield Left(f"{value.name} = {value.value}", value.source, _NOT_TAKEN[name])
+            yield Left(f"{value.name} = {value.value}", value.place, _NOT_TAKEN[name])

@@ -1,6 +1,7 @@
 """A post of NX Post Builder: the event handler (``.tcl``), the definition file (``.def``) and the builder's ``.pui``.
 
-In:     the files of one post. None is run: statements ``set NAME "value"`` with a value that is no expression count.
+In:     the files of one post. None is run: statements ``set NAME "value"`` outside of procedures count, the last of a
+        name, if the value is no expression.
 Out:    a ``ForeignMachine``.
 
 The variables ``mom_kin_…`` describe the machine, ``mom_sys_…`` codes and numbers of blocks. The fourth axis of a
@@ -21,6 +22,7 @@ from trunnion.messages import Wording
 _SET: Final = re.compile(
     r"\s*set\s+(?:::)?(mom_(?:kin|sys)_\w+(?:\([\w, ]+\))?)\s+(\"[^\"$\[]*\"|[-+.\w\\#]+)\s*(?:;.*)?$"
 )
+_COMPUTED: Final = re.compile(r"\s*set\s+(?:::)?(mom_kin_\w+(?:\([\w, ]+\))?)\s+(\S.*)")
 _IN_PUI: Final = re.compile(r'\s*\{?"\$(mom_(?:kin|sys)_\w+(?:\([\w, ]+\))?)"\s+"([^"$\[]*)"')
 _PROC: Final = re.compile(r"\s*proc\s+(?:::)?(\w+)")
 _LITERAL: Final = re.compile(r"\s*MOM_output_(?:literal|text)\s+\"([^\"]*)\"")
@@ -78,7 +80,21 @@ _WORDS_OF_CONTROLS: Final = (
     ("haas_ngc", ("HAAS", "G234", "G254")),
     ("fanuc_31i", ("FANUC", "G43.4", "G68.2", "G05.1", "G54.2")),
 )
+#: Keys of a rotary axis, and the variables of which they are made.
+_PARTS_OF_AXES: Final = (
+    (("limits_deg", "endless"), ("min_limit", "max_limit")),
+    (("direction",), ("plane", "vector(0)", "vector(1)", "vector(2)")),
+    (("point_mm",), ("center_offset(0)", "center_offset(1)", "center_offset(2)")),
+)
+#: Variables that are looked at for what is made of others, or that describe no machine with five axes.
+_LOOKED_AT: Final = re.compile(
+    r"mom_kin_(?:machine_type|output_unit|post_data_unit|[xyz]_axis_limit|pivot_gua?ge_offset|rapid_feed_rate"
+    r"|max_dpm|linearization_tol|tool_change_time"
+    r"|[45]th_axis_(?:leader|type|plane|rotation|min_limit|max_limit|vector\(\d\)|center_offset\(\d\)))"
+)
 _INCH: Final = 25.4
+#: Greater numbers are no sizes of a machine, mm, degrees or mm/min.
+_LARGEST: Final = 1e6
 #: Limits of more are those of an axis that turns without end.
 _ENDLESS: Final = 9000.0
 
@@ -118,21 +134,31 @@ def read_nx_post(files: Sequence[Path]) -> ForeignMachine:
     order = [(names[0], mounts[0]), (names[1], mounts[1])]
     values = dict(_values(post, names, kind.value))
     return ForeignMachine(
-        tuple(reversed(order) if mounts[2] else order), values, tuple(_left(post, values)), _control(post)
+        tuple(reversed(order) if mounts[2] else order), values, tuple(_left(post, names, values)), _control(post)
     )
 
 
 def _read(file: Path, text: str, post: _Post) -> None:
     is_pui, event, block, address = file.suffix.lower() == ".pui", "", "", ""
+    procedure = ""
     for number, line in enumerate(text.splitlines(), 1):
         if found := (_IN_PUI if is_pui else _SET).match(line):
-            _note(post, Stated(found[2].strip('"').strip(), found[1].replace(" ", ""), str(file), number))
+            _note(post, Stated(found[2].strip('"').strip(), found[1].replace(" ", ""), str(file), number), procedure)
+            continue
+        if not is_pui and not procedure and (found := _COMPUTED.match(line)):
+            where = f"{file.name}:{number}"
+            post.stated.pop(found[1], None)
+            post.left.append(
+                Left(f"{found[1]} = {found[2].strip()}", where, "it is computed, and nothing of a post is run")
+            )
             continue
         for control, words in _WORDS_OF_CONTROLS:
             if any(word in line for word in words):
                 post.words[control] = post.words.get(control, 0) + 1
+        if line.startswith("}"):
+            procedure = ""
         if found := _PROC.match(line):
-            event = _EVENTS.get(found[1], "")
+            event, procedure = _EVENTS.get(found[1], ""), found[1]
         elif found := _TEMPLATE.match(line):
             block = found[1]
         elif found := _FORMAT.match(line):
@@ -147,12 +173,23 @@ def _read(file: Path, text: str, post: _Post) -> None:
             post.blocks.setdefault(block, []).append(word)
 
 
-def _note(post: _Post, value: Stated) -> None:
-    """Keep a value; the first one in a file counts, and another later is reported."""
-    known = post.stated.setdefault(value.name, value)
-    if known is not value and known.value != value.value and known.file == value.file:
-        where = f"{Path(value.file).name}:{value.line}"
-        post.left.append(Left(f"{value.name} = {value.value}", where, f"{known.value} at line {known.line} counts"))
+def _note(post: _Post, value: Stated, procedure: str) -> None:
+    """Keep a value: the last that a file sets outside of procedures counts, of the first file that has it; the others
+    are reported.
+    """
+    known = post.stated.get(value.name)
+    if procedure:
+        if value.name.startswith("mom_kin_") and (known is None or known.value != value.value):
+            why = f"it is set while the program runs, in {procedure}"
+            post.left.append(Left(f"{value.name} = {value.value}", value.place, why))
+        return
+    if known is None or known.file == value.file:
+        post.stated[value.name] = value
+    if known is not None and known.value != value.value:
+        counts = post.stated[value.name]
+        other = known if counts is value else value
+        why = f"{counts.value} of {counts.place} counts"
+        post.left.append(Left(f"{other.name} = {other.value}", other.place, why))
 
 
 def _name_of(post: _Post, which: str, kind: Stated) -> str:
@@ -170,7 +207,7 @@ def _number(post: _Post, name: str) -> Stated | None:
         value = math.nan if found is None else float(found.value)
     except ValueError:
         return None
-    return found.as_value(value) if found is not None and math.isfinite(value) else None
+    return found.as_value(value) if found is not None and abs(value) <= _LARGEST else None
 
 
 def _values(post: _Post, names: Sequence[str], kind: str) -> Iterator[tuple[Key, Stated]]:
@@ -258,8 +295,15 @@ def _offset(post: _Post, which: str, scale: float) -> Stated | None:
     return found[0].as_value([each.value * scale for each in found if each])
 
 
-def _left(post: _Post, values: Mapping[Key, Stated]) -> Iterator[Left]:
+def _left(post: _Post, names: Sequence[str], values: Mapping[Key, Stated]) -> Iterator[Left]:
     yield from post.left
+    for which, name in zip(("4th", "5th"), names, strict=True):
+        for keys, parts in _PARTS_OF_AXES:
+            if not any(("axis", name, key) in values for key in keys):
+                for found in (post.stated.get(f"mom_kin_{which}_axis_{part}") for part in parts):
+                    if found is not None:
+                        why = f"{keys[0]} of {name} cannot be made of it"
+                        yield Left(f"{found.name} = {found.value}", found.place, why)
     for name in "xyz":
         if travel := post.stated.get(f"mom_kin_{name}_axis_limit"):
             yield Left(
@@ -271,11 +315,14 @@ def _left(post: _Post, values: Mapping[Key, Stated]) -> Iterator[Left]:
         ("mom_kin_tool_change_time", "take the time at the machine"),
     ):
         if found := post.stated.get(name):
-            yield Left(f"{name} = {found.value}", found.source, why)
+            yield Left(f"{name} = {found.value}", found.place, why)
     if ("control", "format", "coordinate", "decimals") not in values:
         for address in _ADDRESSES:
             if found := post.formats.get(post.addresses.get(address, "")):
-                yield Left(f"{found.name} of {address}: {found.value} decimals", found.source, "a post in inches")
+                yield Left(f"{found.name} of {address}: {found.value} decimals", found.place, "a post in inches")
+    for found in post.stated.values():
+        if found.name.startswith("mom_kin_") and not _LOOKED_AT.fullmatch(found.name):
+            yield Left(f"{found.name} = {found.value}", found.place, "a definition has no such value, or another way")
     for event, lines in post.lines.items():
         for line in lines:
             words = _block_words(post, line)
