@@ -36,6 +36,14 @@ def test_what_has_no_blank_and_what_is_code_is_never_cut() -> None:
     assert list(folded("see " * 40, None)) == ["see " * 40]
 
 
+@pytest.mark.parametrize("width", range(20, 60))
+def test_chinese_lines_neither_begin_with_what_closes_nor_end_with_what_opens(width: int) -> None:
+    text = "或存储另一个原点（G28.1）；此前写过的（见“工艺单”）会留在数控系统中，这是警告。" * 2
+    pieces = list(folded(text, width))
+    assert "".join(piece.strip() for piece in pieces) == text
+    assert not [piece for piece in pieces if piece.lstrip()[0] in "，。；）”" or piece[-1] in "（“"]
+
+
 def test_a_line_goes_on_under_its_last_column() -> None:
     assert list(folded("tip   ok    largest 0.000000 mm in X, Y or Z, rms 0.000000", 40)) == [
         "tip   ok    largest 0.000000 mm in X, Y",

@@ -19,6 +19,9 @@ _COLUMN: Final = re.compile(r"(?<=\S) {2,}(?=\S)")
 #: What stands at the beginning of no line.
 _CLOSING: Final = "，。；：、！？）》”’…"
 
+#: What stands at the end of no line.
+_OPENING: Final = "（《“‘"
+
 
 class CodeLine(str):
     """A line of a program or a definition, which is copied as it is: it is never broken."""
@@ -105,7 +108,9 @@ def _end_of_piece(line: str, start: int, width: int) -> int:
 
 def _may_begin(line: str, at: int) -> bool:
     """Whether a line may be broken before a character that is no blank."""
-    return (_columns(line[at]) == 2 or _columns(line[at - 1]) == 2) and line[at] not in _CLOSING
+    if line[at] in _CLOSING or line[at - 1] in _OPENING:
+        return False
+    return _columns(line[at]) == 2 or _columns(line[at - 1]) == 2
 
 
 def table(rows: Iterable[Sequence[str]], width: int | None, right: frozenset[int] = frozenset()) -> Iterator[str]:
