@@ -70,7 +70,7 @@ def test_the_definition_is_good_and_each_number_is_to_be_measured(
     axes = {axis.name: axis for axis in machine.axes}
     assert (axes["B"].low, axes["B"].high, str(axes["B"].positive)) == (-30.0, 120.0, "reversed")
     assert axes["C"].point == (25.4, 0.0, 63.5)
-    assert "axis.Z.home_mm" in out  # taken by name, and beyond the travel of the shipped machine
+    assert "not taken: home of Z" in out  # beyond the travel of the shipped machine
     assert "# not taken: home of Z" in (tmp_path / "our_mill.toml").read_text(encoding="utf-8")
     report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
     assert report["numbers_to_measure"] == len([value for value in machine.unmeasured if "our_mill" in value.file])
@@ -81,7 +81,7 @@ def test_the_definition_is_good_and_each_number_is_to_be_measured(
 def test_a_pui_alone_is_enough(tmp_path: Path) -> None:
     found = read_nx_post([FILES / "mill.pui"])
     assert found.rotary == (("C", "part"), ("A", "part"))
-    assert loaded(written_definition(found, nearest_machine(found), "ours"), tmp_path).axes[1].low == -110.0
+    assert loaded(written_definition(found, nearest_machine(found), "ours").text, tmp_path).axes[1].low == -110.0
 
 
 def test_a_fork_head_has_its_pivot_above_the_gauge_point(tmp_path: Path) -> None:
@@ -98,7 +98,7 @@ def test_a_fork_head_has_its_pivot_above_the_gauge_point(tmp_path: Path) -> None
     assert found.rotary == (("C", "tool"), ("A", "tool"))
     values = stated(found)
     assert (values["axis.A.point_mm"], values["axis.C.point_mm"]) == ([0.0, 0.0, 200.0], [-1.0, 0.0, 200.0])
-    machine = loaded(written_definition(found, nearest_machine(found), "ours"), tmp_path)
+    machine = loaded(written_definition(found, nearest_machine(found), "ours").text, tmp_path)
     assert next(axis for axis in machine.axes if axis.name == "A").has_limits  # stay until they are measured
 
 
@@ -121,7 +121,7 @@ def test_every_shipped_machine_comes_back_from_a_post_of_it(name: str, tmp_path:
     (tmp_path / "post.tcl").write_text("\n".join(lines), encoding="utf-8")
     found = read_nx_post([tmp_path / "post.tcl"])
     base = nearest_machine(found)
-    again = loaded(written_definition(found, base, "ours"), tmp_path)
+    again = loaded(written_definition(found, base, "ours").text, tmp_path)
     for axis in (first, second):
         same = next(each for each in again.axes if each.name == axis.name)
         assert (same.mount, same.direction, same.positive) == (axis.mount, axis.direction, axis.positive)
@@ -139,7 +139,7 @@ def test_machine_data_are_compared_with_a_definition(capsys: pytest.CaptureFixtu
 def test_machine_data_become_a_definition(tmp_path: Path) -> None:
     found = read_machine_data(FILES / "nck.arc")
     assert (found.rotary, nearest_machine(found)) == ((("C", "part"), ("B", "part")), "yl569")
-    machine = loaded(written_definition(found, "yl569", "ours"), tmp_path)
+    machine = loaded(written_definition(found, "yl569", "ours").text, tmp_path)
     assert list(differences(found, machine)) == []
     assert {axis.name: axis.rapid for axis in machine.axes}["B"] == 16 * 360.0
 
@@ -165,7 +165,7 @@ def test_a_machine_like_none_gets_a_definition_of_its_own(tmp_path: Path) -> Non
     plane = ('5th_axis_plane "XY"', '5th_axis_plane "ZX"')
     found = read_nx_post(changed_post(tmp_path, *changes, *heads, plane))
     assert (found.rotary, nearest_machine(found)) == ((("A", "tool"), ("B", "tool")), "")
-    machine = loaded(written_definition(found, "", "ours"), tmp_path)
+    machine = loaded(written_definition(found, "", "ours").text, tmp_path)
     assert [axis.name for axis in machine.axes] == ["X", "Y", "Z", "A", "B"]
     assert {"X carries", "Y carries", "Z carries"} <= {value.name for value in machine.unmeasured}
 
@@ -173,7 +173,7 @@ def test_a_machine_like_none_gets_a_definition_of_its_own(tmp_path: Path) -> Non
 def test_limits_of_an_axis_that_the_shipped_machine_turns_endlessly_count(tmp_path: Path) -> None:
     files = changed_post(tmp_path, ('mom_sys_5th_axis_has_limits               "0"', 'mom_sys_5th "1"'))
     for base in ("yl569", "haas_umc750"):
-        machine = loaded(written_definition(read_nx_post(files), base, "ours"), tmp_path)
+        machine = loaded(written_definition(read_nx_post(files), base, "ours").text, tmp_path)
         axis = next(each for each in machine.axes if each.name == "C")
         assert (axis.low, axis.high, axis.endless) == (0.0, 360.0, False)
 
@@ -227,3 +227,22 @@ def test_files_that_are_no_text_or_not_there_are_refused(tmp_path: Path, capsys:
     assert main(["import", str(tmp_path / "list.txt"), "--output", str(tmp_path / "ours")]) == 2
     assert "[DEF630]" in capsys.readouterr().err
     assert sorted(file.name for file in tmp_path.iterdir()) == ["list.txt", "post.tcl"]
+
+
+def test_names_of_machine_axes_alone_are_letters(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = (FILES / "nck.arc").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "nck.arc").write_text("\n".join(each for each in lines if "CHANAX" not in each), encoding="utf-8")
+    found = read_machine_data(tmp_path / "nck.arc")
+    assert found.rotary == (("C", "part"), ("B", "part"))
+    monkeypatch.chdir(tmp_path)
+    assert main(["import", "nck.arc", "--output", "ours", "--json", "ours.json"]) == 0
+    report = json.loads((tmp_path / "ours.json").read_text(encoding="utf-8"))
+    text = (tmp_path / "ours.toml").read_text(encoding="utf-8")
+    assert len(report["taken"]) == report["numbers_to_measure"] == text.count("# measure: $M")
+    assert "not taken" in text
+
+
+def test_what_the_shipped_machine_has_no_axis_for_is_not_called_taken(tmp_path: Path) -> None:
+    written = written_definition(read_nx_post(POST), "ucp800", "ours")
+    assert not [key for key in written.taken if key[:2] == ("axis", "B")]
+    assert [each.why for each in written.left if each.what == "axis.B.limits_deg = [-30, 120]"] == ["ucp800 has no axis B"]

@@ -25,6 +25,15 @@ _SAME: Final = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
+class Written:
+    """A definition as text, the values of the files that are in it, and those that are not."""
+
+    text: str
+    taken: Mapping[Key, Stated]
+    left: tuple[Left, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Difference:
     """A value that a definition has otherwise than a file of others; None where it states none."""
 
@@ -60,8 +69,8 @@ def nearest_machine(found: ForeignMachine) -> str:
     return min(ranked)[2]
 
 
-def written_definition(found: ForeignMachine, base: str, name: str) -> str:
-    """Return the text of a definition that extends ``base`` and has what the files of others state, marked as
+def written_definition(found: ForeignMachine, base: str, name: str) -> Written:
+    """Return a definition that extends ``base`` and has what the files of others state, marked as
     unmeasured, with what is left at its end; one of its own where ``base`` is empty.
     """
     if not base:
@@ -82,11 +91,16 @@ def written_definition(found: ForeignMachine, base: str, name: str) -> str:
     for axis in machine.axes:
         lines += _axis(axis, {key[2]: value for key, value in taken.items() if key[:2] == ("axis", axis.name)})
     lines += _control(_control_of(machine), found.control, taken)
-    lines += [f"# not taken: {each.what} ({each.where}): {each.why}" for each in (*found.left, *outside.values())]
-    return "\n".join(_visible(line) for line in lines).rstrip() + "\n"
+    return _with_rest(lines, taken, (*found.left, *outside.values()))
 
 
-def _whole_definition(found: ForeignMachine, name: str) -> str:
+def _with_rest(lines: list[str], taken: Mapping[Key, Stated], left: tuple[Left, ...]) -> Written:
+    """Return a definition with what is left at its end."""
+    lines += [f"# not taken: {each.what} ({each.where}): {each.why}" for each in left]
+    return Written("\n".join(_visible(line) for line in lines).rstrip() + "\n", taken, left)
+
+
+def _whole_definition(found: ForeignMachine, name: str) -> Written:
     """Return a definition with all five axes: nothing says what the linear ones carry, so they carry the tool."""
     rotary = dict(found.rotary)
     linear = dict.fromkeys("XYZ", "tool")
@@ -107,8 +121,7 @@ def _whole_definition(found: ForeignMachine, name: str) -> str:
             axis += ["point_mm = [0, 0, 0] # measure: the files do not say where it lies"]
         lines.append("\n".join([*axis, *(_marked(key, value) for key, value in own.items()), ""]))
     lines += _control("", found.control, found.values)
-    lines += [f"# not taken: {each.what} ({each.where}): {each.why}" for each in found.left]
-    return "\n".join(_visible(line) for line in lines).rstrip() + "\n"
+    return _with_rest(lines, found.values, found.left)
 
 
 def _is_whole(found: ForeignMachine, name: str) -> bool:
@@ -199,7 +212,9 @@ def _axis(axis: Axis, own: Mapping[str, Stated]) -> Iterator[str]:
     lines = ["[[axis]]", f"name = {written(axis.name)}"]
     lines += [_marked(key, value) for key, value in own.items() if key != "direction" or not axis.is_rotary]
     if "limits_deg" in own and axis.endless:
-        lines += ["endless = false", *(['output = "none"'] if axis.output is not AngleOutput.NONE else [])]
+        why = f"# measure: {own['limits_deg'].source}"
+        lines += [f"endless = false {why}"]
+        lines += [f'output = "none" {why}'] if axis.output is not AngleOutput.NONE else []
     yield "\n".join([*lines, ""])
 
 

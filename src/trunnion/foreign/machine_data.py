@@ -59,6 +59,9 @@ def read_machine_data(file: Path) -> ForeignMachine:
             repeated.append(Left(f"{value.name} = {value.value}", value.place, f"line {known.line} counts"))
     if not any(name in ("POS_LIMIT_MINUS", "IS_ROT_AX", "MAX_AX_VELO") for name, _ in data):
         raise InputError(Problem(str(file), 0, Wording("DEF630", "no_data_of_axes")))
+    metric = data.get(("SCALING_SYSTEM_IS_METRIC", ""))
+    if metric is not None and str(metric.value).upper() in ("0", "FALSE"):
+        raise InputError(Problem(str(file), metric.line, Wording("DEF630", "inches")))
     names = _names(data)
     values = dict(_values(data, names))
     return ForeignMachine(_rotary(data, names), values, (*repeated, *_left(data, names)), "sinumerik_840d")
@@ -75,7 +78,12 @@ def _names(data: Mapping[tuple[str, str], Stated]) -> dict[int, str]:
             channel = data.get(("AXCONF_CHANAX_NAME_TAB", index))
             if channel is not None:
                 found[int(used.value)] = str(channel.value)
-    return {number: name.upper() for number, name in found.items() if re.fullmatch(r"[A-Za-z]\w{0,7}", name)}
+    return {number: _letter(name) for number, name in found.items() if re.fullmatch(r"[A-Za-z]\w{0,7}", name)}
+
+
+def _letter(name: str) -> str:
+    """Return the name of an axis in a definition: machine axes have a number behind their letter (X1)."""
+    return name[0].upper() if re.fullmatch(r"[A-Za-z]1", name) else name.upper()
 
 
 def _number(value: Stated | None) -> float | None:

@@ -134,7 +134,10 @@ def read_nx_post(files: Sequence[Path]) -> ForeignMachine:
     order = [(names[0], mounts[0]), (names[1], mounts[1])]
     values = dict(_values(post, names, kind.value))
     return ForeignMachine(
-        tuple(reversed(order) if mounts[2] else order), values, tuple(_left(post, names, values)), _control(post)
+        tuple(reversed(order) if mounts[2] else order),
+        values,
+        tuple(_left(post, names, mounts[:2], values)),
+        _control(post),
     )
 
 
@@ -295,8 +298,15 @@ def _offset(post: _Post, which: str, scale: float) -> Stated | None:
     return found[0].as_value([each.value * scale for each in found if each])
 
 
-def _left(post: _Post, names: Sequence[str], values: Mapping[Key, Stated]) -> Iterator[Left]:
+def _left(post: _Post, names: Sequence[str], mounts: Sequence[str], values: Mapping[Key, Stated]) -> Iterator[Left]:
     yield from post.left
+    for which, mount in zip(("4th", "5th"), mounts, strict=True):
+        kind = post.stated.get(f"mom_kin_{which}_axis_type")
+        if kind is not None and kind.value and str(kind.value).lower() != {"part": "table", "tool": "head"}[mount]:
+            yield Left(f"{kind.name} = {kind.value}", kind.place, "mom_kin_machine_type says otherwise, and counts")
+    pivot = _number(post, "mom_kin_pivot_gauge_offset")
+    if pivot is not None and pivot.value and ("spindle", "gauge_point_mm") not in values:
+        yield Left(f"{pivot.name} = {pivot.value}", pivot.place, "two tables have no pivot of a head")
     for which, name in zip(("4th", "5th"), names, strict=True):
         for keys, parts in _PARTS_OF_AXES:
             if not any(("axis", name, key) in values for key in keys):

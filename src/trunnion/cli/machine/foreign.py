@@ -10,7 +10,7 @@ from trunnion.cli.results import show
 from trunnion.definitions.value_marks import marked_values
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
-from trunnion.foreign.definition import Difference, differences, nearest_machine, written_definition
+from trunnion.foreign.definition import Difference, Written, differences, nearest_machine, written_definition
 from trunnion.foreign.machine import ForeignMachine
 from trunnion.foreign.machine_data import read_machine_data
 from trunnion.foreign.nx_post import read_nx_post
@@ -43,18 +43,18 @@ def run(given: Given) -> int:
         raise InputError(Problem(str(file), 0, Wording("FIL250", "definition_exists")))
     streams = [] if given.json in (None, "-") else [given.json]
     check_outputs([file, file.with_name(file_name("machine")), *streams], list(given.files))
-    text = written_definition(found, base, file.stem)
+    written = written_definition(found, base, file.stem)
     with atomic_file(file) as sink:
-        sink.write(text.encode())
+        sink.write(written.text.encode())
     put_beside(file, "machine")
-    marks = len(marked_values(text))
+    marks = len(marked_values(written.text))
     data = {
         "schema": 1, "file": str(file), "extends": base, "numbers_to_measure": marks,
         "taken": [{"key": ".".join(key), "value": value.value, "source": value.source}
-                  for key, value in found.values.items()],
-        "left": [to_data(each) for each in found.left],
+                  for key, value in written.taken.items()],
+        "left": [to_data(each) for each in written.left],
     }  # fmt: skip
-    show(given, lambda: data, _lines(found, file, base, marks))
+    show(given, lambda: data, _lines(written, file, base, marks))
     return 0
 
 
@@ -68,8 +68,8 @@ def _read(files: list[Path]) -> ForeignMachine:
     return read_machine_data(files[0])
 
 
-def _lines(found: ForeignMachine, file: Path, base: str, marks: int) -> Iterator[str]:
-    for key, value in found.values.items():
+def _lines(found: Written, file: Path, base: str, marks: int) -> Iterator[str]:
+    for key, value in found.taken.items():
         yield f"taken: {'.'.join(key)} = {value.value}  ({value.source})"
     for each in found.left:
         yield f"not taken: {each.what}  ({each.where}): {each.why}"

@@ -40,6 +40,8 @@ CURES: Final = (
     script("DEF620 one_letter", _POST.replace('5th_axis_leader "C"', '5th_axis_leader "B"'),
            '5th_axis_leader "B"', '5th_axis_leader "C"'),
     script("DEF630 no_data_of_axes", _DATA.replace("$MA_POS_LIMIT", "$MA_OTHER"), "$MA_OTHER", "$MA_POS_LIMIT"),
+    script("DEF630 inches", _DATA.replace("'$MA_POS", "'$MN_SCALING_SYSTEM_IS_METRIC=0\\n$MA_POS", 1),
+           "METRIC=0", "METRIC=1"),
     script("DEF640 no_such_machine", _POST.replace('4th_axis_leader "B"', '4th_axis_leader "W"'),
            " --output", " --like yl569 --output"),
     script("DEF650 unknown_files", _POST.replace("mill.tcl", "mill.pst"), "mill.pst", "mill.tcl"),
