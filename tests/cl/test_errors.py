@@ -174,3 +174,23 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(InputError, match="not a regular file"):
         read_cl(tmp_path / "pipe")
+
+
+@pytest.mark.parametrize(
+    ("statement", "what"),
+    [
+        ("TRANS/1,2,3", "TRANS/1,2,3 shifts or turns the points"),
+        ("COPY/1,TRANSL,1,0,0,2", "COPY repeats, shifts or turns motion"),
+        ("TRACUT/1,0,0,5,0,1,0,0,0,0,1,0", "TRACUT repeats, shifts or turns motion"),
+        ("TLON", "TLON is motion that cannot be read; output arcs"),
+        ("INDIRV/1,0,0", "INDIRV is motion that cannot be read; output arcs"),
+    ],
+)
+def test_a_shift_or_geometry_gets_its_own_cure(statement: str, what: str, body_fails: Fail) -> None:
+    told = str(body_fails(GO, statement)[0])
+    assert what in told
+    assert "turn off spline output" not in told
+
+
+def test_a_knot_behind_a_copy_is_named_too(body_fails: Fail) -> None:
+    assert [problem.line for problem in body_fails(GO, "COPY/1", "KNOT/0.5")] == [4, 5]

@@ -40,7 +40,8 @@ def written(folder: Path, *lines: str) -> Path:
         (("FEDRAT/MMPM,-1", "GOTO/5,0,5", "END-OF-PATH"), "CL710"),
         (("SPINDL/RPM,0,CLW", "GOTO/5,0,5", "END-OF-PATH"), "CL730"),
         (("CYCLE/DRILL,STEP", "GOTO/5,0,5", "END-OF-PATH"), "CL820"),
-        (("COPY/1,TRANSL,1,0,0", "GOTO/5,0,5", "END-OF-PATH"), "CL250"),
+        (("COPY/1,TRANSL,1,0,0", "GOTO/5,0,5", "END-OF-PATH"), "CL480"),
+        (("TLON", "GOTO/5,0,5", "END-OF-PATH"), "CL250"),
     ],
 )
 def test_a_statement_that_cannot_be_used_has_the_code_of_its_kind(

@@ -54,6 +54,8 @@ _OTHER_M_WORDS: Final = (
     "optional_stop",
     "call",
 )
+#: Coolants of which each has an M word of its own.
+_MEDIA: Final = ("FLOOD", "MIST", "THRU", "AIR")
 _M_OF_PROGRAMS: Final = {2: "the end of a program", 30: "the end of a program", 6: "a tool change"}
 
 
@@ -263,14 +265,18 @@ def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) 
 def _read_coolant(table: Table, codes: Mapping[str, int]) -> dict[str, int]:
     """Return the M codes of coolants; ``"none"`` takes away what the definition extends.
 
-    The reader takes the meaning of a coolant's number from here, so none may be that of a word with another effect.
+    The reader takes the meaning of a coolant's number from here, so none may be that of a word with another effect, or
+    of another coolant; ON and TAP are names for any of them.
     """
     stated = {name: table.integer(name, None, at_least=0, nothing="none") for name in COOLANTS}
     table.report_unread_keys()
     found = {name: code for name, code in stated.items() if code is not None}
     others = {codes[name]: name for name in _OTHER_M_WORDS if name in codes} | dict(_M_OF_PROGRAMS)
+    media = dict[int, str]()
     for name, code in found.items():
         other = "OFF" if name != "OFF" and code == found.get("OFF") else others.get(code)
+        if name in _MEDIA and media.setdefault(code, name) != name:
+            other = other or media[code]
         if other:
             table.add_problem(name, Wording("DEF330", "coolant_is_other_word", code=code, other=other))
     return found

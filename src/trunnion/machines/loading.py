@@ -154,6 +154,7 @@ def read_machine(table: Table, key: str) -> Machine:
         control=control.unread_copy(),
         files=tuple(table.files()),
         cl_words=cl_words,
+        cl_word_places={word: words.location(word) for word in cl_words},
         bodies=bodies,
         spindle_point_is_stated="gauge_point_mm" in spindle,
         unmeasured=tuple(marked_in(table.content, MARKS)),

@@ -200,6 +200,7 @@ class Machine:
     control             the ``[control]`` table of the definition, unread
     files               definition files that the machine comes from
     cl_words            words of the shop's own in its CL files, and the statements of CL files that they are
+    cl_word_places      file and line of each in the definition
     bodies              the iron on its links, as the simulation sees it; nothing else looks at it
     spindle_point_is_stated  the definition states the gauge point; else it is assumed to be in the machine's zero
     unmeasured          values that the definition marks as still to be measured or entered, with their places
@@ -226,6 +227,7 @@ class Machine:
     control: Table = field(default_factory=_no_control)
     files: tuple[str, ...] = ()
     cl_words: Mapping[str, str] = field(default_factory=dict)
+    cl_word_places: Annotated[Mapping[str, tuple[str, int]], NOT_DATA] = field(default_factory=dict)
     bodies: tuple[MachineBody, ...] = ()
     spindle_point_is_stated: bool = True
     unmeasured: tuple[MarkedValue, ...] = ()

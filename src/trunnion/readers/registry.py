@@ -14,6 +14,7 @@ from trunnion.model.diagnostics import Diagnostic
 from trunnion.model.run import Run, SkippedRun
 from trunnion.model.skip_switches import skip_combinations
 from trunnion.readers.control.setup_recorder import lengths_of_other_tools
+from trunnion.readers.program.coolant_words import check_coolant_words
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -98,7 +99,8 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
 
 @lru_cache(maxsize=8)
 def check_reading(machine: Machine) -> None:
-    """Check what the definition of a machine's control says to readers: ``[control.known]`` and ``[control.reading]``.
+    """Check what the definition of a machine's control says to readers: ``[control.known]``,
+    ``[control.reading]``, and the M codes of ``[control.coolant]``.
 
     Raises ``InputError`` with every mistake, each at its file and line.
     """
@@ -114,6 +116,7 @@ def check_reading(machine: Machine) -> None:
     problems: list[Problem] = []
     checks: tuple[Callable[[], object], ...] = (
         lambda: check_known_words(machine, is_own_word),
+        lambda: check_coolant_words(machine, is_own_word, reader.coolants),
         lambda: reader.check_reading(machine),
     )
     for check in checks:

@@ -5,7 +5,7 @@ Out:    the state with what the statement says, in units of the file.
 """
 
 from trunnion.cl.dialect import Handler
-from trunnion.cl.statements import apt_tools, cycles, events, motion, operations, splines
+from trunnion.cl.statements import apt_motion, apt_refused, apt_tools, cycles, events, motion, operations, splines
 
 __all__ = ["HANDLERS"]
 
@@ -36,11 +36,11 @@ HANDLERS: dict[str, Handler] = {
     "NURBS": splines.nurbs,
     "KNOT": splines.knot,
     "CNTRL": splines.cntrl,
-    "TLON": motion.unsupported,
-    "INDIRV": motion.unsupported,
-    "COPY": motion.unsupported,
-    "TRACUT": motion.unsupported,
-    "TRANS": motion.unsupported,
+    "TLON": motion.driven,
+    "INDIRV": motion.driven,
+    "COPY": apt_refused.refuse,
+    "TRACUT": apt_refused.refuse,
+    "TRANS": apt_motion.no_shift,
     "FEDRAT": events.fedrat,
     "SPINDL": events.spindl,
     "LOAD": events.load,

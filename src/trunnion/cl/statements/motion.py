@@ -138,12 +138,17 @@ def _count_turns(state: ReaderState, turns: int) -> None:
 
 
 def unsupported(state: ReaderState, statement: Statement) -> None:
-    """Refuse motion that is neither lines nor circles in the coordinates of the operation."""
+    """Refuse a spline of an APT dialect, once for all of its statements."""
     splines = state.own(SplineState)
     if statement.major in ("KNOT", "CNTRL", "MOVNRB") and splines.is_refused:
-        return  # part of a spline that was refused already
+        return
     splines.is_refused = True
     raise StatementError(Wording("CL250", "motion_cannot", major=statement.major))
+
+
+def driven(state: ReaderState, statement: Statement) -> None:
+    """Refuse motion along geometry, which only APT dialects have."""
+    raise StatementError(Wording("CL250", "motion_cannot_read", major=statement.major))
 
 
 def write_row(state: ReaderState, values: tuple[float, ...]) -> None:

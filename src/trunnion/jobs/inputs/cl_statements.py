@@ -42,7 +42,8 @@ _TEXT_STATEMENTS: Final = ("PPRINT", "DISPLY", "INSERT")
 def check_statements(machine: Machine) -> None:
     """Check that what a definition says of CL statements can count.
 
-    Raises ``InputError`` with each entry of ``[control.statements]`` and ``[cl.words]`` whose statement is always read.
+    Raises ``InputError`` with each entry of ``[control.statements]`` and ``[cl.words]`` whose statement is always read,
+    and each of ``[cl.words]`` that is no event, at its place in the definition.
     """
     table = resolve_extends(machine.control.unread_copy(), control_library()).table("statements")
     for name in [name for name in list(table.keys()) if not can_be_unknown(name)]:
@@ -54,12 +55,10 @@ def check_statements(machine: Machine) -> None:
             templates.add_problem(name, Wording("DEF590", "template_never_used", statements=_TEXT_STATEMENTS))
         elif word != word.upper():
             templates.add_problem(name, Wording("DEF590", "template_not_in_capitals", capitals=name.upper()))
-    file = machine.files[-1] if machine.files else machine.key
-    words = [word for word in machine.cl_words if not can_be_unknown(word)]
     problems = [
         *table.problems,
         *templates.problems,
-        *(Problem(file, 0, Wording("DEF550", "statement_always_read").of_key(f"cl.words.{word}")) for word in words),
+        *(problem for word in machine.cl_words for problem in _word_problems(machine, word)),
     ]
     if problems:
         raise InputError(problems)
@@ -139,5 +138,21 @@ def _events(machine: Machine, word: str, text: str) -> tuple[Event, ...]:
     try:
         return events_of(text)
     except StatementError as error:
-        file = machine.files[-1] if machine.files else machine.key
-        raise InputError(Problem(file, 0, error.wording.within("of", name=f"[cl.words] {word}"))) from None
+        raise InputError(_word_problem(machine, word, error.wording)) from None
+
+
+def _word_problems(machine: Machine, word: str) -> list[Problem]:
+    """Return what is wrong with an entry of ``[cl.words]``."""
+    if not can_be_unknown(word):
+        return [_word_problem(machine, word, Wording("DEF550", "statement_always_read"))]
+    try:
+        _events(machine, word, machine.cl_words[word])
+    except InputError as error:
+        return [*error.problems]
+    return []
+
+
+def _word_problem(machine: Machine, word: str, wording: Wording) -> Problem:
+    """Return a fault in an entry of ``[cl.words]``, at its place."""
+    file, line = machine.cl_word_places.get(word, (machine.key, 0))
+    return Problem(file, line, wording.of_key(f"cl.words.{word}"))

@@ -54,6 +54,7 @@ _NO_CONTENT: Final = {
     "length_sources",
     "control",
     "cl_words",
+    "cl_word_places",
     "bodies",
 }
 

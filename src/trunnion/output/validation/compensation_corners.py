@@ -1,5 +1,6 @@
 """Events within radius compensation across which the control would not see the next corner."""
 
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 import numpy as np
@@ -9,6 +10,7 @@ from trunnion.errors import Problem
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (
+    BlockSkip,
     Coolant,
     CutterComp,
     Dwell,
@@ -27,6 +29,9 @@ from trunnion.output.program import Program
 #: A smaller motion in the plane, mm, is none.
 _STILL: Final = 1e-6
 
+#: A motion no longer than this may be none once it is printed, mm.
+_NOT_PRINTED: Final = 1e-3
+
 #: A line that begins so is a comment.
 _COMMENT_SIGNS: Final = ("(", ";")
 
@@ -38,28 +43,41 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     operation = motion.as_written()
     across, rows = _moves_across(operation), len(operation.moves)
-    last = _last_row_across(operation, across)
-    ahead = program.control.blocks_in_compensation
-    ends = {event.row for event in events if isinstance(event, CutterComp) and event.side == "OFF"} | {rows}
+    control = program.control
+    ahead = control.blocks_in_compensation
+    sides = [event for event in events if isinstance(event, CutterComp)]
+    idle = _ends_without_motion(operation, sides)
+    offs = [event.row for event in sides if event.side == "OFF" and event not in idle]
+    ends, last = {*offs, rows}, _last_row_across(across, offs)
     problems = list[Problem]()
-    side, count, under_way, next_row = "OFF", 0, False, 0
+    side, count, under_way, next_row, ended = "OFF", 0, False, 0, False
 
     def add(line: int, blocks: int) -> None:
         """Count blocks without motion; the first one too many is a problem."""
         nonlocal count
-        if count <= ahead < count + blocks:
+        if count <= ahead < count + blocks and not ended:
             what = f"more than {ahead} block{'s' * (ahead != 1)} without motion between two motions within CUTCOM"
             problems.append(_problem(program, motion, line, what))
         count += blocks
 
     for event in (*operation.events, Event(rows, 0)):
-        for row in range(next_row, event.row) if side != "OFF" else ():
+        for row in range(next_row, event.row) if side != "OFF" and not ended else ():
             if across[row] > 0:
                 count, under_way = 0, True
             elif across[row] < 0 and under_way and row < last[row]:
                 add(int(operation.moves.line[row]), 1)
         next_row = max(next_row, event.row)
         if isinstance(event, CutterComp):
+            if side != "OFF" and event in idle:
+                ended, count = under_way, count + int(control.own_blocks)
+                continue
+            if ended and event.side != "OFF":
+                count += int(control.own_blocks)
+                if count > ahead and event.row <= last[event.row]:
+                    wording = Wording("CTL240", "sides_at_once", side=event.side, control=control.name)
+                    problems.append(Problem(program.file_of(motion.operation), event.line, wording))
+                side, ended = event.side, False
+                continue
             if event.side == "OFF" or side == "OFF":
                 side, count, under_way = event.side, 0, False
                 continue
@@ -67,7 +85,7 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
         # Before the first motion and behind the last one there is no corner.
         if side == "OFF" or not under_way or event.row in ends or event.row > last[event.row]:
             continue
-        if isinstance(event, Stop) and not program.control.stops_in_compensation:
+        if isinstance(event, Stop) and not control.stops_in_compensation and not ended:
             what = f"{'OPSTOP' if event.optional else 'STOP'} within CUTCOM, where the control reads no further"
             problems.append(_problem(program, motion, event.line, what))
         else:
@@ -93,11 +111,27 @@ def _moves_across(operation: Operation) -> Ints:
     return found
 
 
-def _last_row_across(operation: Operation, across: Ints) -> Ints:
-    """For each row (n,) the last one before the next CUTCOM/OFF that moves across the tool; -1 if there is none."""
+def _ends_without_motion(operation: Operation, sides: Sequence[CutterComp]) -> frozenset[CutterComp]:
+    """Return each CUTCOM/OFF behind which nothing moves before CUTCOM begins again, with blocks skipped or not."""
+    moves = operation.moves
+    moving = np.abs(np.diff(moves.tip, axis=0, prepend=moves.tip[:1])).max(axis=1, initial=0.0) > _NOT_PRINTED
+    moving |= moves.kind == Kind.ARC
+    skips = [(event.row, event.on) for event in operation.events if isinstance(event, BlockSkip)]
+    for (row, on), (end, _) in zip(skips, [*skips[1:], (len(moves), False)], strict=False):
+        moving[row:end] &= not on
+    begins, found = len(moves) + 1, list[CutterComp]()
+    for event in reversed(sides):
+        if event.side != "OFF":
+            begins = event.row
+        elif begins <= len(moves) and not moving[event.row : begins].any():
+            found.append(event)
+    return frozenset(found)
+
+
+def _last_row_across(across: Ints, offs: Iterable[int]) -> Ints:
+    """For each row (n,) the last one before the next of some rows that moves across the tool; -1 if there is none."""
     last = np.full(len(across), -1)
     first = 0
-    offs = [event.row for event in operation.events if isinstance(event, CutterComp) and event.side == "OFF"]
     for end in (*offs, len(across)):
         rows = np.flatnonzero(across[first:end] > 0)
         last[first:end] = first + rows[-1] if len(rows) else -1

@@ -15,6 +15,9 @@ EVENTS: Final = {
     19: ("spindle", "oriented"),
 }
 
+#: Codes that switch coolant, and its word in CL files.
+COOLANTS: Final = {code: str(value).upper() for code, (kind, value) in EVENTS.items() if kind == "coolant"}
+
 #: Codes that switch the spindle.
 SPINDLE: Final = frozenset(code for code, (kind, _) in EVENTS.items() if kind == "spindle")
 

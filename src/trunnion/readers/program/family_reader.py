@@ -8,6 +8,7 @@ from typing import Any
 
 from trunnion.compensation.styles import UNKNOWN_STYLE
 from trunnion.machines import Machine
+from trunnion.readers.control.iso_m_codes import COOLANTS
 from trunnion.readers.program.call_words import CallWords
 from trunnion.readers.program.interpreter import Interpreter
 from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
@@ -39,6 +40,7 @@ class FamilyReader:
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     variables            what variables are called of which values can be stated; None: there are none
     call_words           how programs call others; None: none does
+    coolants             M codes of coolants that all controls of the family have: ``OFF``, ``FLOOD`` or ``MIST``
     """
 
     interpreter: type[Interpreter[Any]]
@@ -56,6 +58,7 @@ class FamilyReader:
     check_reading: Callable[[Machine], object] = no_reading
     variables: re.Pattern[str] | None = None
     call_words: CallWords | None = None
+    coolants: Mapping[int, str] = field(default_factory=lambda: COOLANTS)
 
     def callable_files(self, files: Iterable[Path]) -> tuple[Path, ...]:
         """Return the files whose names programs can call, the first of each name."""

@@ -10,6 +10,7 @@ from trunnion.readers.families.heidenhain.settings import VARIABLE, variables_of
 from trunnion.readers.families.heidenhain.words import (
     M_CALL,
     M_CALL_MODAL,
+    M_COOLANTS,
     M_FEED_AT_TIP,
     M_FEED_IN_DEGREES,
     M_NOT_SHORTEST,
@@ -65,4 +66,5 @@ READER: Final = FamilyReader(
         rb"END[ \t]+PGM(?![A-Z])",
         programs=ENDS + rb"|TOOL[ \t]+CALL|BLK[ \t]+FORM",
     ),
+    coolants=M_COOLANTS,
 )

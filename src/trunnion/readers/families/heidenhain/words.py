@@ -64,6 +64,11 @@ M_EVENTS: Final = {
     19: (("spindle", "oriented"),),
 }
 
+#: M functions that switch coolant and nothing else, and its word in CL files.
+M_COOLANTS: Final = {
+    code: str(events[0][1]).upper() for code, events in M_EVENTS.items() if {kind for kind, _ in events} == {"coolant"}
+}
+
 #: M functions that act after the motion of their block.
 M_AFTER_MOTION: Final = M_PROGRAM_ENDS | {
     0, 1, 5, 9, M_TOOL_CHANGE, M_FEED_IN_DEGREES, M_NOT_SHORTEST, M_TCP_OFF, M_AT_ENDS_OFF, M_CALL,
