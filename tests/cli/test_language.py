@@ -2,14 +2,16 @@
 
 import io
 import json
+import logging
 import sys
 from pathlib import Path
 
 import pytest
 
 from tests.support.locations import TESTS
-from trunnion.cli import main
-from trunnion.cli.command_line.language import with_language
+from trunnion.cli import SpokenLog, main
+from trunnion.cli.command_line.language import speaking, with_language
+from trunnion.messages import phrase
 
 CHINESE = "有错误"
 
@@ -113,3 +115,32 @@ def test_a_comparison_is_said_in_the_language(capsys: pytest.CaptureFixture[str]
     program = str(TESTS / "golden" / "yl569" / "2_hub_rough.expected.mpf")
     assert main(["diff", program, program, "--machine", "yl569", "--language", "de"]) == 0
     assert capsys.readouterr().out.startswith("gleich: ")
+
+
+@pytest.mark.parametrize(
+    ("language", "unstated", "unknown"),
+    [("zh", "（未给出）", "无法理解"), ("de", "(nicht angegeben)", "nicht verstanden")],
+)
+def test_what_is_not_stated_or_understood_is_said_in_the_language(
+    language: str, unstated: str, unknown: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    program = tmp_path / "a.mpf"
+    program.write_text("G90 G17 G54\nT1 D1\nM6\nS1000 M3\nG0 X0 Y0 Z50 B0 C0\nG1 Z40 C5 F100\nWHO_KNOWS\nM30\n")
+    main(["verify", str(program), "--machine", "yl569", "--language", language])
+    told = "".join(capsys.readouterr())
+    assert unstated in told
+    assert "not stated" not in told
+    main(["diff", str(program), str(program), "--machine", "yl569", "--language", language])
+    told = "".join(capsys.readouterr())
+    assert f"a.mpf:7: {unknown}" in told
+    assert "not understood" not in told
+
+
+def test_what_is_logged_for_the_user_is_said_in_the_language() -> None:
+    def said(*logged: object) -> str:
+        return SpokenLog().format(logging.LogRecord("trunnion.jit", logging.INFO, "", 0, "%s", logged, None))
+
+    with speaking("zh"):
+        assert said(phrase("compiling_some", count=3)) == "正在为本机编译 3 个内核，只需一次，需要几秒钟"
+        assert said("as it is") == "as it is"
+    assert said(phrase("compiling")) == "compiling kernels for this computer, once; this takes some seconds"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.locations import GOLDEN, ROOT
+from tests.support.locations import GOLDEN, ROOT, TESTS
 from tests.support.published_work import PAGE, groups, page
 from trunnion.cli import main
 
@@ -18,6 +18,7 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("checkout")
     shutil.copytree(GOLDEN, folder / "tests" / "golden", ignore=shutil.ignore_patterns("results"))
     shutil.copytree(ROOT / "examples", folder / "examples")
+    shutil.copytree(TESTS / "data" / "foreign", folder / "tests" / "data" / "foreign")
     return folder
 
 
@@ -41,4 +42,6 @@ def test_every_command_does_what_its_row_says(
         code, told = main(row.words), capfdbinary.readouterr()
         if code or not (told.out or told.err) or row.prints.encode() not in told.out:
             wrong.append(f"{row.command}: exit code {code}, {told.err.decode()[-200:]}")
+        elif row.holds and row.holds[1] not in Path(row.holds[0]).read_text(encoding="utf-8"):
+            wrong.append(f"{row.command}: {row.holds[1]} is not in {row.holds[0]}")
     assert wrong == [], "\n".join(wrong)

@@ -15,8 +15,9 @@ _HEAD: Final = """# What published works do, and where it is here
 
 Five published works on five-axis post-processing are what Trunnion was measured by: their machines, controls, checks
 and the impeller that was cut. A row is a thing that one of them does, with the page that explains it and a command that
-shows it. The tests run every command, in the checkout. Rows that are out say why. The list follows what these works say
-of machines, controls, checks, impeller and twin; it is not a list of all their sentences.
+shows it. The tests run every command, in the checkout, and look for a text in what most of them print or write. Rows
+that are out say why. The list follows what these works say of machines, controls, checks, impeller and twin; it is not
+a list of all their sentences.
 """
 
 
@@ -28,6 +29,7 @@ class Row:
     where: str = ""
     command: str = ""
     prints: str = ""
+    holds: tuple[str, ...] = ()
     why: str = ""
     nightly: bool = False
 

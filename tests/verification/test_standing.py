@@ -57,7 +57,7 @@ def test_without_cl_files_the_checks_that_need_them_are_one_line(verified: Verif
 def test_the_line_of_the_program_counts_states_warnings_and_what_nobody_measured(verified: Verifier) -> None:
     found = verified(PROGRAM, CL_HEAD + CL_FOOT)
     travel = next(check for check in found.checks if check.key == "travel")
-    values = ("C point_mm (a.toml:3)", "Z home_mm (a.toml:9)")
+    values = (foreign("C point_mm (a.toml:3)"), foreign("Z home_mm (a.toml:9)"))
     others = [replace(check, stands_on=()) for check in found.checks if check is not travel]
     bare = replace(found, checks=(*others, replace(travel, stands_on=values)))
     standing = bare.standing
@@ -142,7 +142,7 @@ def test_a_remark_behind_a_value_marks_it_wherever_it_says_that_it_is_assumed() 
 
 
 def stands_on(found: Verification) -> dict[str, list[str]]:
-    return {check.key: [value.partition(" (")[0] for value in check.stands_on] for check in found.checks}
+    return {check.key: [str(value).partition(" (")[0] for value in check.stands_on] for check in found.checks}
 
 
 #: What a shop has still to measure.

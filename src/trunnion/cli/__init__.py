@@ -57,10 +57,25 @@ def run_and_exit() -> NoReturn:
     os._exit(code)
 
 
+class SpokenLog(logging.Formatter):
+    """Says what is logged in the language of the command."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line of a record."""
+        match record.args:
+            case (Wording() as wording,):
+                from trunnion.cli.wording import spoken
+
+                return record.msg % wording.text("what", spoken())
+        return super().format(record)
+
+
 def _show_log() -> None:
     """Have what the package logs for its user, such as that kernels are being compiled, printed to stderr."""
     log = logging.getLogger("trunnion")
-    log.addHandler(logging.StreamHandler())
+    handler = logging.StreamHandler()
+    handler.setFormatter(SpokenLog())
+    log.addHandler(handler)
     log.setLevel(logging.INFO)
     log.propagate = False
 

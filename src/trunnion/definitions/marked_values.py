@@ -7,6 +7,7 @@ from pathlib import Path
 
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.value_marks import marked_values
+from trunnion.messages import Wording, phrase
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,7 +15,7 @@ class MarkedValue:
     """A value with a mark.
 
     name        its key with the name of its table, such as ``C point_mm``
-    file, line  where it stands; no file: nowhere, and a default counts
+    file, line  where it stands; no file: it is not stated, and a default counts
     mark        the comment, without its sign
     table       the key of that table at the top of the definition, such as ``axis``; empty: it is there itself
     """
@@ -35,9 +36,15 @@ class MarkedValue:
         """The name of its own table."""
         return self.name.rpartition(" ")[0]
 
-    def __str__(self) -> str:
+    @property
+    def said(self) -> Wording:
         """Return it with its place."""
-        return f"{self.name} ({f'{Path(self.file).name}:{self.line}' if self.file else self.mark})"
+        if not self.file:
+            return phrase("value_not_stated", name=self.name)
+        return phrase("value_at", name=self.name, file=Path(self.file).name, line=self.line)
+
+    def __str__(self) -> str:
+        return self.said.what
 
 
 def marked_in(content: LocatedValue, mark: re.Pattern[str]) -> Iterator[MarkedValue]:

@@ -41,7 +41,7 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
     missing = [one for one in kernels if isinstance(one, Kernel) and not (one.announced or one.is_kept)]
     if not missing:
         return
-    say_once(f"{len(missing)} kernel{'s' if len(missing) > 1 else ''}")
+    say_once(len(missing))
     for one in missing:
         one.announced = True
     folder = cache_folder()

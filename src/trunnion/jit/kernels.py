@@ -13,6 +13,7 @@ from numba.extending import register_jitable
 from trunnion.jit.argument_types import as_readable, is_read, numba_types
 from trunnion.jit.digest import ingredients
 from trunnion.jit.store import Store, cache_folder
+from trunnion.messages import Wording, phrase
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -21,17 +22,17 @@ _log = logging.getLogger("trunnion.jit")
 _config: Any = numba.config
 
 #: What has been said of compiling in this process, which is one line.
-_said: list[str] = []
+_said: list[Wording] = []
 
 #: Held while ``numba.config.CACHE_DIR``, which is the process's, is that of one kernel.
 _enabling = threading.Lock()
 
 
-def say_once(what: str) -> None:
-    """Say that kernels are compiled: the first time in this process only."""
+def say_once(count: int = 0) -> None:
+    """Say that kernels are compiled, and how many if that is known: the first time in this process only."""
     if not _said:
-        _said.append(what)
-        _log.info("compiling %s for this computer, once; this takes some seconds", what)
+        _said.append(phrase("compiling_some", count=count) if count else phrase("compiling"))
+        _log.info("%s", _said[0])
 
 
 def inner(function: Function) -> Function:
@@ -152,7 +153,7 @@ class Kernel:
     def _announce(self) -> None:
         if not self.announced:
             self.announced = True
-            say_once("kernels")
+            say_once()
 
     @cached_property
     def _store(self) -> Store | None:

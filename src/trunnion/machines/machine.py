@@ -242,11 +242,11 @@ class Machine:
         unstated.
         """
         homes = (
-            MarkedValue(f"{axis.name} home_{'deg' if axis.is_rotary else 'mm'}", "", 0, "not stated", "axis")
+            MarkedValue(f"{axis.name} home_{'deg' if axis.is_rotary else 'mm'}", "", 0, "", "axis")
             for axis in self.axes
             if not axis.home_is_stated
         )
-        gauge = MarkedValue("spindle gauge_point_mm", "", 0, "not stated", "spindle")
+        gauge = MarkedValue("spindle gauge_point_mm", "", 0, "", "spindle")
         marked = (*self.unmeasured, *self.assumed)
         told = {value.name for value in marked} | {f"{value.of} shape" for value in marked if value.table == "body"}
         others = (value for value in self.inherited if value.name not in told)

@@ -143,7 +143,7 @@ class Check:
     places: tuple[Place, ...] = ()
     missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
     coverage: Coverage | None = None
-    stands_on: Annotated[tuple[str, ...], Figure(after="missing")] = ()
+    stands_on: Annotated[tuple[Wording, ...], Figure(take=_texts, after="missing")] = ()
 
     @property
     @Figure(after="key")
@@ -254,7 +254,7 @@ class Verification:
             failed=states.count(State.FAIL),
             not_checked=states.count(State.NOT_CHECKED),
             warnings=severities.count(Severity.WARNING),
-            not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
+            not_measured=tuple(dict.fromkeys(str(value) for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
             stated=stated_texts(self.run),
             turns_before_offset=str(turns_before_offset(self.run) or ""),

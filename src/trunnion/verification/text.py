@@ -30,11 +30,11 @@ def check_lines(verification: Verification, words: Words = LIBRARY) -> Iterator[
 
 def stand_lines(asked: Sequence[Check], words: Words = LIBRARY) -> Iterator[str]:
     """One line for values that nobody has measured, and the checks that stand on them."""
-    checks: dict[str, list[str]] = {}
+    checks: dict[Wording, list[str]] = {}
     for check in asked:
         for value in check.stands_on:
             checks.setdefault(value, []).append(check.key)
-    alike: dict[tuple[str, ...], list[str]] = {}
+    alike: dict[tuple[str, ...], list[Wording]] = {}
     for value, keys in checks.items():
         alike.setdefault(tuple(keys), []).append(value)
     for on_them, values in alike.items():

@@ -2,7 +2,7 @@
 
 In:     a project whose checks simulate nothing, and its posted programs.
 Out:    warnings of rapids on the way to the first cut that go through the box of the stock, which nothing has cut yet;
-        and of what is not looked at.
+        and of what is not looked at: fixtures, and stock that is clamped turned or that an earlier set-up has cut.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,8 +34,11 @@ def unsimulated_problems(
     for setup in project.simulation.setups:
         if setup.fixtures:
             wording = Wording("PRJ240", "fixtures_not_checked", count=len(setup.fixtures))
-            yield warning(str(project.path), 0, wording.within("in_setup", setup=setup.name) if setup.name else wording)
+            yield _of_setup(project, setup, wording)
     first = project.simulation.setups[0]
+    for setup in project.simulation.setups:
+        if project.simulation.stock and (setup is not first or _is_placed_anew(setup)):
+            yield _of_setup(project, setup, Wording("PRJ240", "stock_not_checked"))
     if not (project.simulation.stock and posted and posted[0][0] is project.posted[0]) or _is_placed_anew(first):
         return
     result = posted[0][1][0]
@@ -48,6 +51,11 @@ def unsimulated_problems(
     if row is not None:
         name, line = str(project.place_of(result.output)), result.run.lines[row]
         yield warning(name, line, Wording("PRJ240", "rapid_through_stock", stock=str(project.simulation.stock)))
+
+
+def _of_setup(project: Project, setup: SetupInput, wording: Wording) -> Problem:
+    """Return a warning of a set-up."""
+    return warning(str(project.path), 0, wording.within("in_setup", setup=setup.name) if setup.name else wording)
 
 
 def _is_placed_anew(setup: SetupInput) -> bool:

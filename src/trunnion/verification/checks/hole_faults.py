@@ -78,6 +78,8 @@ def hole_faults(
         return
     from_aside = bool(aside[0] > hole.tolerance) and not comes_from_home(run, match.first)
     yield from _approach_faults(hole, motions, float(height[0]), from_aside, clearance)
+    if _comes_at_feed(hole, motions):
+        kind[0] = Kind.RAPID  # that is named; its feed and height are not those of the hole
     if len(motions.row) < 3 or (kind == Kind.RAPID).all():
         yield motions.fault(0, 0.0, Wording("holes", "not_drilled"))
         return
@@ -105,9 +107,16 @@ def _approach_faults(
         yield motions.fault(0, clearance, Wording("holes", "too_low", low=-clearance))
     lowest = hole.cycle.clearance - hole.tolerance
     slanted = clearance is None and from_aside and start_height < lowest
-    if motions.kind[0] != Kind.RAPID or motions.height[0] < lowest or slanted:
+    if _comes_at_feed(hole, motions):
+        yield motions.fault(0, 0.0, Wording("holes", "comes_at_feed"))
+    if motions.height[0] < lowest or slanted:
         low = min(float(motions.height[0]), start_height)
         yield motions.fault(0, low, Wording("holes", "low_approach", low=low, wanted=hole.cycle.clearance))
+
+
+def _comes_at_feed(hole: Hole, motions: DrillMotions) -> bool:
+    """Whether the way to the hole ends above it, and is a cut."""
+    return bool(motions.kind[0] != Kind.RAPID and motions.height[0] >= hole.cycle.clearance - hole.tolerance)
 
 
 def _height_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:

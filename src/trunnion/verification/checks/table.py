@@ -97,11 +97,11 @@ class CheckEntry:
         """Make the check, as far as what it needs is there; ``unmeasured`` values matter to the program."""
         if isinstance(seen, self.needs):
             missing = missing_of(self.bases, seen.context.run)
-            values = [value for value in unmeasured if kind_of(value) in self.kinds]
+            values = tuple(value.said for value in unmeasured if kind_of(value) in self.kinds)
             for check in self.run(seen):
                 answer = replace(check, missing=(*missing, *check.missing))
                 # What was not answered stands on nothing.
-                yield replace(answer, stands_on=tuple(map(str, values))) if check.answer else answer
+                yield replace(answer, stands_on=values) if check.answer else answer
         elif self.is_named:
             yield Check(self.key, True, None, missing=(phrase("no_cl_file"),))
 

@@ -16,7 +16,7 @@ from trunnion.verification.comparison.control_rules import ControlRules
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
 from trunnion.verification.comparison.path_events import PathEvents
-from trunnion.verification.comparison.result import Alignment, Comparison, Difference, DifferentRows
+from trunnion.verification.comparison.result import Alignment, Comparison, Difference, DifferentRows, UnknownWord
 from trunnion.verification.comparison.rotary_ways import RotaryWays
 from trunnion.verification.comparison.row_states import compared_states
 from trunnion.verification.comparison.states import DifferentStretch, StateComparison
@@ -319,16 +319,11 @@ def _row(program: MovingRows, motion: int) -> int:
 
 def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:
     """Words that are not understood: what they do may depend on all that comes before, so that they prove nothing."""
-    return tuple(_word_line(each.file, each.line, each.text) for run in (one, two) for each in run.errors)
+    return tuple(UnknownWord(each.file, each.line, each.wording).line_of() for run in (one, two) for each in run.errors)
 
 
-def _first_unknown(one: Run, two: Run) -> tuple[tuple[str, ...], int]:
+def _first_unknown(one: Run, two: Run) -> tuple[tuple[UnknownWord, ...], int]:
     """Return the first of each kind of words that are not understood, and how many there are of further kinds."""
     errors = [Problem(each.file, each.line, each.wording) for run in (one, two) for each in run.errors]
     shown, left = first_of_kinds(errors, _MOST_KINDS)
-    return tuple(_word_line(each.file, each.line, each.wording.with_cure().what) for each in shown), left
-
-
-def _word_line(file: str, line: int, text: str) -> str:
-    begin = Wording("comparison", "not_understood", word="").what  # as most of them do
-    return f"{file}:{line}: {Wording('comparison', 'not_understood', word=text.removeprefix(begin))}"
+    return tuple(UnknownWord(each.file, each.line, each.wording) for each in shown), left

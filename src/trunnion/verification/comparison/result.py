@@ -55,6 +55,21 @@ class Alignment:
 
 
 @dataclass(frozen=True, slots=True)
+class UnknownWord:
+    """A word of a program that is not understood, where it stands, and why."""
+
+    file: str
+    line: int
+    why: Wording
+
+    def line_of(self, words: Words = LIBRARY) -> str:
+        """Return it in one line for a terminal."""
+        begin = Wording("comparison", "not_understood", word="").text("what", words)  # as most reasons do
+        word = self.why.with_cure().text("what", words).removeprefix(begin)
+        return f"{self.file}:{self.line}: {Wording('comparison', 'not_understood', word=word).text('what', words)}"
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """How two programs compare.
 
@@ -78,7 +93,7 @@ class Comparison:
     first: Difference | None
     worst: Difference | None
     unknown_words: tuple[str, ...] = ()
-    first_unknown: Annotated[tuple[tuple[str, ...], int], NOT_DATA] = ((), 0)
+    first_unknown: Annotated[tuple[tuple[UnknownWord, ...], int], NOT_DATA] = ((), 0)
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
     not_needed: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
 
@@ -99,7 +114,7 @@ class Comparison:
     def lines(self, words: Words = LIBRARY) -> Iterator[str]:
         """Yield the result for a terminal."""
         if not self.same:
-            yield from self.first_unknown[0]
+            yield from (word.line_of(words) for word in self.first_unknown[0])
         yield from (wording.text("what", words) for wording in self._wordings())
 
     def _wordings(self) -> Iterator[Wording]:

@@ -86,10 +86,19 @@ def _project(message: str, old: str, new: str, text: str = _DIVIDED, **cl: str) 
 _OVER: Final = CL.replace("GOTO/-20,0,20,0,0,1", "GOTO/20,0,20,0,0,1")
 _THICK: Final = f'{_OVER}#END\nstock = "box:50,40,90,0,-20,-10"\n{_POSTED}'
 _CLAMPED: Final = _WHOLE.replace("part =", 'fixtures = ["beside.stl"]\npart =')
+_TWO: Final = f'[[setup]]\nname = "one"\n{_POSTED}[[setup]]\nname = "two"\n{_POSTED.replace("part.nc", "two.nc")}'
+_TWICE: Final = _WHOLE.replace(_POSTED, _TWO)
 _JUDGED: Final = '[checks]\nsimulate = "refuse"\n'
 
 CURES: Final = (
     Cure("PRJ240", "rapid_through_stock", _post, _THICK, (("box:50,40,90", "box:50,40,10"),)),
+    Cure(
+        "PRJ240",
+        "stock_not_checked",
+        _post,
+        f"{CL.replace(_LOW, _HIGH)}#END\n{_TWICE.replace(_JUDGED, '')}",
+        ((_TWO, _TWO + _JUDGED),),
+    ),
     Cure("PRJ240", "rapid_through_stock", _post, _THICK, (("GOTO/20,0,20", "GOTO/20,0,90"),)),
     Cure(
         "PRJ240",
