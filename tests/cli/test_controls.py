@@ -43,7 +43,9 @@ def test_what_a_control_can_do_follows_from_its_definition() -> None:
     assert "TCP: yes" in told["fanuc_31i"]
     assert "TCP: no" in told["fanuc_31i_basic"]
     assert "tilted planes: cycle800, frames" in told["sinumerik_840d"]
-    assert "tilted planes: spatial, vector, cycle19" in told["heidenhain_tnc640"]
+    assert (
+        "tilted planes: spatial, vector, euler, points, relativ, axial, projected, cycle19" in told["heidenhain_tnc640"]
+    )
     assert "tilted planes: no" in told["linuxcnc"]
     assert "five axes without TCP: no: what F counts there is not known" in told["fidia_nc15"]
     assert "surface normals: yes" in told["heidenhain_tnc640"]

@@ -245,4 +245,14 @@ def test_names_of_machine_axes_alone_are_letters(tmp_path: Path, monkeypatch: py
 def test_what_the_shipped_machine_has_no_axis_for_is_not_called_taken(tmp_path: Path) -> None:
     written = written_definition(read_nx_post(POST), "ucp800", "ours")
     assert not [key for key in written.taken if key[:2] == ("axis", "B")]
-    assert [each.why for each in written.left if each.what == "axis.B.limits_deg = [-30, 120]"] == ["ucp800 has no axis B"]
+    assert [each.why for each in written.left if each.what == "axis.B.limits_deg = [-30, 120]"] == [
+        "ucp800 has no axis B"
+    ]
+
+
+def test_a_line_of_rotation_that_points_the_other_way_is_written(tmp_path: Path) -> None:
+    lines = "\n".join(f'set mom_kin_5th_axis_vector({k}) "{value}"' for k, value in enumerate((0, 0, -1)))
+    files = changed_post(tmp_path, ('set mom_kin_5th_axis_plane "XY"', f'set mom_kin_5th_axis_plane "Other"\n{lines}'))
+    found = read_nx_post(files)
+    machine = loaded(written_definition(found, nearest_machine(found), "ours").text, tmp_path)
+    assert next(axis for axis in machine.axes if axis.name == "C").direction == (0.0, 0.0, -1.0)

@@ -66,6 +66,8 @@ def line_with(job: Job, given: dict[str, str]) -> list[str]:
         words.insert(2, "part.mpf")
     if job.name == "post" and "machine" not in given:
         words += ["--machine", "yl569"]
+    if job.name == "import" and "machine" not in given:
+        words += ["--output", "ours"]
     if job.name == "convert" and not {"to_cl", "to_machine"} & given.keys():
         words += ["--to-cl"]
     return words

@@ -36,14 +36,17 @@ def cl_file(folder: Path) -> Path:
     return file
 
 
-def test_a_plane_in_which_the_length_counts_aside_is_a_fault_without_a_length(tmp_path: Path) -> None:
+def test_a_plane_in_which_the_length_counts_aside_is_refused_and_is_a_fault_of_a_program(tmp_path: Path) -> None:
     cl, machine = cl_file(tmp_path), own_machine(tmp_path, "yl569", "after_approach")
-    with pytest.raises(trunnion.ProofFailedError, match=r"4 points off, first in N\d+ \(tip\)") as failed:
+    with pytest.raises(trunnion.RefusedError, match="template after_approach writes G18"):
         trunnion.post(cl, machine=machine)
-    tip = next(check for check in failed.value.result.checks if check.key == "tip")
+    program = tmp_path / "p.mpf"
+    trunnion.post(cl, machine="yl569", output=program)
+    first = next(line for line in program.read_text(encoding="utf-8").splitlines() if "G1 " in line)
+    found = trunnion.verify(changed(program, first, f"G18\n{first}"), machine="yl569", cl=cl)
+    tip = next(check for check in found.checks if check.key == "tip")
+    assert not tip.passed
     assert "its length counts along Y here, and the tool lies along Z" in tip.places[0].text
-    with pytest.raises(trunnion.ProofFailedError, match="110"):
-        trunnion.post(cl, machine=machine, settings={"zero": (0, 0, -160), "tool_length": 110})
 
 
 def test_a_plane_after_the_length_that_is_put_back_is_none(tmp_path: Path) -> None:

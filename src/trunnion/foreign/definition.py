@@ -78,11 +78,11 @@ def written_definition(found: ForeignMachine, base: str, name: str) -> Written:
     machine = load_machine(base)
     names = {axis.name for axis in machine.axes}
     outside = dict((*_homes_outside(found, machine), *_endless_against_limits(found, machine)))
-    taken = {
-        key: value
-        for key, value in found.values.items()
-        if (key[0] != "axis" or key[1] in names) and key not in outside
-    }
+    for key, value in found.values.items():
+        if key[0] == "axis" and key[1] not in names:
+            what = f"{'.'.join(key)} = {written(value.value)}"
+            outside[key] = Left(what, value.source, f"{base} has no axis {key[1]}")
+    taken = {key: value for key, value in found.values.items() if key not in outside}
     lines = [
         first_line("machine") + _HEAD.format(sources=_sources(taken), like=f", like {base} where these say nothing")
     ]
@@ -210,7 +210,7 @@ def _axis(axis: Axis, own: Mapping[str, Stated]) -> Iterator[str]:
     if not own:
         return
     lines = ["[[axis]]", f"name = {written(axis.name)}"]
-    lines += [_marked(key, value) for key, value in own.items() if key != "direction" or not axis.is_rotary]
+    lines += [_marked(key, value) for key, value in own.items()]
     if "limits_deg" in own and axis.endless:
         why = f"# measure: {own['limits_deg'].source}"
         lines += [f"endless = false {why}"]

@@ -3,8 +3,11 @@
 Units:  mm and degrees, as definitions have them.
 """
 
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
@@ -66,6 +69,13 @@ class ForeignMachine:
     values: Mapping[Key, Stated]
     left: tuple[Left, ...]
     control: str = ""
+
+
+@cache
+def marks_of_controls() -> dict[str, Any]:
+    """Return by what files of others show the control that they are for."""
+    data: dict[str, Any] = tomllib.loads(files(__package__).joinpath("controls.toml").read_text(encoding="utf-8"))
+    return data
 
 
 def read_text(file: Path) -> str:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, read_text
+from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, marks_of_controls, read_text
 from trunnion.messages import Wording
 
 _LINE: Final = re.compile(
@@ -64,7 +64,9 @@ def read_machine_data(file: Path) -> ForeignMachine:
         raise InputError(Problem(str(file), metric.line, Wording("DEF630", "inches")))
     names = _names(data)
     values = dict(_values(data, names))
-    return ForeignMachine(_rotary(data, names), values, (*repeated, *_left(data, names)), "sinumerik_840d")
+    return ForeignMachine(
+        _rotary(data, names), values, (*repeated, *_left(data, names)), marks_of_controls()["machine_data"]["control"]
+    )
 
 
 def _names(data: Mapping[tuple[str, str], Stated]) -> dict[int, str]:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, read_text
+from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, marks_of_controls, read_text
 from trunnion.messages import Wording
 
 _SET: Final = re.compile(
@@ -72,14 +72,6 @@ _BLOCKS: Final = {
 #: Addresses -> the number format of a definition that they use.
 _ADDRESSES: Final = {"X": "coordinate", "fourth_axis": "angle", "F": "feed", "S": "speed"}
 
-#: Controls, and words in a post that only theirs have.
-_WORDS_OF_CONTROLS: Final = (
-    ("heidenhain_itnc530", ("TOOL CALL", "BEGIN PGM", "PLANE SPATIAL")),
-    ("sinumerik_840d", ("TRAORI", "TRAFOOF", "CYCLE800", "CYCLE832", "SUPA", "MCALL")),
-    ("fidia_nc15", ("FIDIA", "M242")),
-    ("haas_ngc", ("HAAS", "G234", "G254")),
-    ("fanuc_31i", ("FANUC", "G43.4", "G68.2", "G05.1", "G54.2")),
-)
 #: Keys of a rotary axis, and the variables of which they are made.
 _PARTS_OF_AXES: Final = (
     (("limits_deg", "endless"), ("min_limit", "max_limit")),
@@ -155,7 +147,7 @@ def _read(file: Path, text: str, post: _Post) -> None:
                 Left(f"{found[1]} = {found[2].strip()}", where, "it is computed, and nothing of a post is run")
             )
             continue
-        for control, words in _WORDS_OF_CONTROLS:
+        for control, words in marks_of_controls()["words"].items():
             if any(word in line for word in words):
                 post.words[control] = post.words.get(control, 0) + 1
         if line.startswith("}"):

@@ -19,6 +19,8 @@ WORDS: tuple[str, ...] = (
 )  # fmt: skip
 CODES: tuple[str, ...] = ("spindle_clockwise", "spindle_counterclockwise", "spindle_off", "stop", "optional_stop")
 PLANE_COMMANDS: tuple[str, ...] = ()
+PLANE_TEMPLATES_OF: dict[str, str] = {}
+SETTING_FIELDS: dict[str, tuple[str, ...]] = {}
 SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 COMPENSATES_WITH_TCP = True
 SETTING_MEANINGS: Mapping[str, str] = {}

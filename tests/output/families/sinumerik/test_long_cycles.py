@@ -10,8 +10,8 @@ from tests.support.proof import unproven
 from trunnion import diff
 from trunnion.cli import main
 
-CL = YL569 / "long_cycles.cls"
-GOLDEN = YL569 / "long_cycles.expected.mpf"
+CL = YL569.with_name("yl569_cycles") / "long_cycles.cls"
+GOLDEN = CL.with_name("long_cycles.expected.mpf")
 
 
 def test_the_long_form_is_the_one_that_it_was(capfdbinary: pytest.CaptureFixture[bytes]) -> None:

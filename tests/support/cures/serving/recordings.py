@@ -71,7 +71,9 @@ def _listening(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 
 _READ: Final = file_of("run.csv", reading.read_recording)
-_NODE_LIST: Final = file_of("nodes.toml", lambda file: nodes.read_nodes(load_table(file, file.parent, kind="list")))
+_NODE_LIST: Final = file_of(
+    "nodes.toml", lambda file: nodes.read_nodes(load_table(file, file.parent, kind="list of nodes"))
+)
 _file: Final = whole("TWN320", _READ)
 _cell: Final = whole("TWN321", _READ)
 _column: Final = whole("TWN320", _parquet)
