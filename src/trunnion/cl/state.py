@@ -70,6 +70,7 @@ class ReaderState:
     first_mm_feed    line of the first feed in mm, 0 if there is none
     first_inch_feed  line of the first feed in inches, 0 if there is none
     spindle, cycle   last ones of the operation, which SPINDL/ON and CYCLE/ON repeat
+    turned_left      the operation before, if its spindle turned counter-clockwise last; else empty
     cycle_line       line where the cycle began that is on, 0 if none is
     tool             the last LoadTool of the file
     no_axis          the tool axis of a point that gives none
@@ -100,6 +101,7 @@ class ReaderState:
     first_mm_feed: int = 0
     first_inch_feed: int = 0
     spindle: SpindleOn | SurfaceSpeed | None = None
+    turned_left: str = ""
     cycle: CycleOn | None = None
     cycle_line: int = 0
     tool: LoadTool | None = None

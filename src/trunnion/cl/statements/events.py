@@ -144,6 +144,8 @@ def _sense(state: ReaderState, words: set[str]) -> Sense:
     for sense in Sense:
         if sense.value in words:
             return sense
+    if state.spindle is None and state.turned_left:
+        raise StatementError(Wording("CL730", "spindl_without_sense", operation=state.turned_left))
     return state.spindle.sense if state.spindle else Sense.CLW
 
 

@@ -10,7 +10,7 @@ from trunnion.cl.state import COORDINATE_SYSTEM, LENGTH_REGISTER, MM_PER_INCH, T
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.messages import Wording
 from trunnion.model.apt_cutter import stated_centre
-from trunnion.model.toolpath import Frame, Tool
+from trunnion.model.toolpath import Frame, Sense, Tool
 
 #: Names of length units, in mm.
 LENGTH_UNITS = {"MM": 1.0, "INCHES": MM_PER_INCH, "INCH": MM_PER_INCH, "IN": MM_PER_INCH}
@@ -58,6 +58,9 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
         outside.stated.pop(what, None)
     state.builder.tool = replace(outside.tool, name=tool.strip() or outside.tool.name)
     state.in_operation = True
+    if state.spindle is not None:
+        before = state.builders[-1].name if state.builders else ""
+        state.turned_left = (before or "1") if state.spindle.sense is Sense.CCLW else ""
     state.spindle = None
     state.cycle = None
     state.cycle_line = 0

@@ -115,6 +115,12 @@ CURES: Final = (
     _within("CL730", "spindl_without_speed", "SPINDL/", "SPINDL/RPM,1000,CLW"),
     _said(
         "CL730",
+        "spindl_without_sense",
+        _CUT.replace("CLW", "CCLW") + _CUT[_CUT.index("TOOL PATH") :].replace(",CLW", "").replace("OP1", "OP2"),
+        ("SPINDL/RPM,4000.0000\n", "SPINDL/RPM,4000.0000,CLW\n"),
+    ),
+    _said(
+        "CL730",
         "spindl_turns_spindle",
         _CUT.replace("SPINDL/RPM,4000.0000,CLW", "SPINDL/ON"),
         ("SPINDL/ON", "SPINDL/RPM,4000,CLW"),
