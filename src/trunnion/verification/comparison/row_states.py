@@ -109,17 +109,25 @@ def _orientations(one: Run, two: Run) -> Iterator[ComparedState]:
 
 
 def _tips_between(one: Run, two: Run, most: float) -> ComparedState:
-    """How far the tip leaves its line in cuts in which one program holds it there, and the other turns without TCP."""
+    """How far the tip leaves its line in cuts that turn without TCP, where the other program holds it there, or has
+    other points before.
+    """
 
     def off(a: Ints, b: Ints) -> Floats:
-        tcp = one.state.tcp.at(a)
-        away = np.empty(len(a))
-        away[tcp], away[~tcp] = _off_line(two, b[tcp]), _off_line(one, a[~tcp])
+        away = np.zeros(len(a))
+        for run, rows in ((one, a), (two, b)):
+            free = ~run.state.tcp.at(rows)
+            away[free] = np.maximum(away[free], _off_line(run, rows[free]))
         return away
 
     def counts(a: Ints, b: Ints) -> Flags:
         cuts = (one.kind[a] == Kind.LINEAR) & (two.kind[b] == Kind.LINEAR)
-        return np.asarray(cuts & (one.state.tcp.at(a) != two.state.tcp.at(b)))
+        tcp, other = one.state.tcp.at(a), two.state.tcp.at(b)
+        found = cuts & (tcp != other)
+        free = np.flatnonzero(cuts & ~tcp & ~other)
+        apart = one.positions(a[free] - 1).tip - two.positions(b[free] - 1).tip
+        found[free] = np.abs(apart).max(axis=1, initial=0.0) > most
+        return np.asarray(found)
 
     return ComparedState(
         counts,

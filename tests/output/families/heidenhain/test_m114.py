@@ -94,6 +94,18 @@ def _spiral(folder: Path) -> Path:
     return source
 
 
+@pytest.mark.parametrize("way", ["m114", "off"])
+def test_points_between_that_only_one_of_two_programs_has_are_another_path(way: str, tmp_path: Path) -> None:
+    """Both turn without holding the tip: where points lie less densely the tip leaves its line."""
+    lines = (CAP / WAYS[way]).read_text(encoding="utf-8").splitlines()
+    cuts = [number for number, line in enumerate(lines) if re.search(r"^\d+ L X.* B-", line)]
+    thin = [line for number, line in enumerate(lines) if number not in cuts[1:12]]
+    (tmp_path / "thin.h").write_text("\n".join(thin), encoding="utf-8")
+    found = trunnion.diff(CAP / WAYS[way], tmp_path / "thin.h", machine="mikron_600u")
+    assert not found.same
+    assert "its tip leaves its line by" in str(found.first) or way == "off"
+
+
 @pytest.mark.parametrize("name", shipped_machines())
 def test_each_shape_of_machine_goes_where_it_goes_without_tcp(name: str, tmp_path: Path) -> None:
     """Heads and tables, with the control of an iTNC 530: axis positions row by row, and the proof of both."""

@@ -318,9 +318,12 @@ def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]
 
 
 def _tap_chuck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:
-    """CYCLE840: tapping with a compensating chuck; the feed follows from the pitch, or is the one in force."""
+    """CYCLE840: tapping with a compensating chuck; with an encoder of the spindle (ENC 0 or 20) the feed follows from
+    the pitch, without one it may be the one in force.
+    """
     size, pitch = _get(arguments, 10), _get(arguments, 11)
-    feed = rpm * _pitch(size, pitch, _or(arguments, 13)) if size or pitch else None
+    has_encoder = _or(arguments, 9) in (0.0, 20.0)
+    feed = rpm * _pitch(size, pitch, _or(arguments, 13)) if size or pitch or has_encoder else None
     return [
         HoleMotion(False, heights.depth, feed=feed, dwell=_or(arguments, 6)),
         HoleMotion(False, heights.start, feed=feed),
