@@ -219,7 +219,7 @@ EXTENDS = 'extends = "yl569"\nname = "Ours"\n'
         (EXTENDS + "[control.settings]\nwork_offset = [55]\n", False),
         (EXTENDS + '[[control.format]]\nname = "coordinate"\ndecimals = 4\n', True),
         (EXTENDS + '[[control.format]]\nname = "coordinate"\ndecimals = 14\n', False),
-        (EXTENDS + "[control.coolant]\nON = \"none\"\nAIR = 17\n", True),
+        (EXTENDS + "[control.coolant]\nON = \"none\"\nAIR = 127\n", True),
         (EXTENDS + '[control.coolant]\nON = "off"\n', False),
         (EXTENDS + "[control]\nno_such_key = 1\n", False),
         (EXTENDS + '[control]\nextends = "fanuc_31i"\n', True),

@@ -13,7 +13,10 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError
 
 MACHINE = "haas_umc750"
-SAMPLES = sorted(path.relative_to(GOLDEN).as_posix() for path in GOLDEN.rglob("*.cls"))
+#: All but the cycles of a Sinumerik, some of which a Haas does not have.
+SAMPLES = sorted(
+    path.relative_to(GOLDEN).as_posix() for path in GOLDEN.rglob("*.cls") if path.parent.name != "yl569_cycles"
+)
 
 
 @pytest.mark.third
