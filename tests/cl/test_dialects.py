@@ -20,7 +20,7 @@ from trunnion.model.toolpath import (
 def test_a_dialect_is_told_by_its_lines(dialect: str) -> None:
     found = recognize_dialect("\n".join(HEADS[dialect]).encode())
     assert found.dialect.name == dialect
-    assert re.search(r" in line \d+$", found.why)
+    assert re.search(r" in line \d+$", str(found.why))
 
 
 @pytest.mark.parametrize(

@@ -210,7 +210,7 @@ def test_the_pieces_in_which_a_file_is_read_change_nothing(tmp_path: Path, chunk
 
 def test_it_is_recognized_beside_the_others(tmp_path: Path) -> None:
     found = recognize_dialect(PAIRED.encode())
-    assert (found.dialect.name, found.why) == ("pairs", "1050 in line 1")
+    assert (found.dialect.name, str(found.why)) == ("pairs", "1050 in line 1")
     for dialect, head in HEADS.items():
         assert recognize_dialect("\n".join(head).encode()).dialect.name == dialect
     assert is_cl_file(file_of(tmp_path, PAIRED))

@@ -43,7 +43,7 @@ def test_every_setting_of_a_post_is_explained() -> None:
     assert unexplained({key: setting.meaning for key, setting in RUN_SETTINGS.items()}) == []
     for setting in RUN_SETTINGS.values():
         assert setting.default
-        assert setting.allowed.strip(" ,")
+        assert str(setting.allowed).strip(" ,")
 
 
 def test_a_setting_without_a_meaning_would_be_noticed() -> None:

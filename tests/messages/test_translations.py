@@ -16,7 +16,8 @@ from tests.support.translations import (
     wrong_fields,
 )
 from trunnion import messages
-from trunnion.messages import LANGUAGES, Wording, Words, catalogue, said_in
+from trunnion.jobs.describe.controls import describe_control
+from trunnion.messages import DECLARED, LANGUAGES, Wording, Words, catalogue, declared, said_in
 
 
 class Spoken(Words):
@@ -31,7 +32,7 @@ def test_parameters_are_those_of_the_english_text(language: str) -> None:
 
 @pytest.mark.parametrize("language", TRANSLATED)
 def test_files_are_named_as_in_english(language: str) -> None:
-    assert set(rooms(language)) <= set(rooms())
+    assert set(rooms(language)) <= {*rooms(), DECLARED}
 
 
 def lag(language: str) -> dict[str, list[str]]:
@@ -47,7 +48,7 @@ def test_completed_rooms_lag_by_few_texts(language: str) -> None:
     sizes = Counter(key.room for key in english())
     far = {room: paths for room, paths in lag(language).items() if len(paths) > max(5, sizes[room] // 20)}
     assert not far, f"python -m tests.support.translations {language}\n{far}"
-    assert set(completed()[language]) <= set(rooms())
+    assert set(completed()[language]) <= {*rooms(), DECLARED}
 
 
 @pytest.mark.nightly
@@ -98,3 +99,11 @@ def test_parts_are_said_in_the_language_of_the_whole(language: str) -> None:
     inner = Wording("FIL130", "folder_not", subject="x")
     outer = Wording("", "with_cure", fault=inner)
     assert inner.text("what", Spoken(language)) in outer.text("what", Spoken(language))
+
+
+def test_what_stands_where_it_is_declared_is_said_in_the_language_and_what_anybody_else_declares_as_it_is() -> None:
+    control = describe_control("linuxcnc")
+    tool = next(setting for setting in control.settings if setting.name == "tool")
+    assert tool.meant.text("what", Spoken("en")) == tool.meaning
+    assert "LOAD/TOOL" in tool.meant.text("what", Spoken("zh")) != tool.meaning
+    assert declared("Ours.", "meanings", "tool").text("what", Spoken("zh")) == "Ours."

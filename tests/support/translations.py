@@ -4,7 +4,6 @@
 ``--taken`` as well it keeps the digests of the English texts that the translations have now been compared with.
 """
 
-import hashlib
 import json
 import re
 import sys
@@ -18,8 +17,13 @@ from typing import Any, NamedTuple
 from tests.support.locations import TESTS
 from trunnion import messages
 from trunnion.explanations import SUBJECTS
+from trunnion.jobs.capability.fitting import FitStatus
+from trunnion.jobs.describe.controls import describe_controls
 from trunnion.jobs.registry import GROUPS, JOBS
-from trunnion.messages import ENGLISH, LANGUAGES
+from trunnion.machines import load_machine, shipped_machines
+from trunnion.messages import DECLARED, ENGLISH, LANGUAGES, digest
+from trunnion.simulation.finding import What
+from trunnion.simulation.tools.profile import Role
 
 FOLDER = Path(messages.__file__).parent
 DATA = TESTS / "data" / "translated"
@@ -29,6 +33,13 @@ TRANSLATED = tuple(language for language in LANGUAGES if language != ENGLISH)
 
 #: Fields that are what a user may set: a translation has them letter for letter.
 SETTABLE = {"setting", "argument", "switch"}
+
+
+#: Words of the library that results print: kinds of operations and tools, and outcomes.
+WORDS = (
+    "three-axis", "3+2", "simultaneous", "empty", "tilted", "tcp",
+    "bed", *FitStatus, *What, "stock", "part", "fixture", "hub", *Role,
+)  # fmt: skip
 
 
 class Key(NamedTuple):
@@ -81,21 +92,33 @@ def _of_declarations() -> Iterator[tuple[str, str]]:
             yield (f"options.{option.name}" if alone else f"command.{job.name}.options.{option.name}"), option.help
 
 
+def _of_definitions() -> Iterator[tuple[str, str]]:
+    """English texts that stand where they are declared: what settings mean and are, what machines and controls are."""
+    controls = describe_controls()
+    for setting in (setting for control in controls for setting in (*control.settings, *control.run_settings)):
+        for wording in (setting.meant, setting.default_said, setting.allowed_said):
+            subject = wording.parameter("declared")
+            if isinstance(subject, tuple) and (subject[0] != "defaults" or " " in wording.what):
+                yield ".".join((*subject, digest(wording.what))), wording.what
+    descriptions = [control.description for control in controls]
+    for description in (*descriptions, *(load_machine(key).description for key in shipped_machines())):
+        if description:
+            yield f"descriptions.{digest(description)}", description
+    for word in WORDS:
+        yield f"words.{digest(word)}", word
+
+
 @cache
 def english() -> dict[Key, str]:
     """Every text in English."""
-    return _of_files(ENGLISH) | {Key("help", path): text for path, text in _of_declarations()}
+    helps = {Key("help", path): text for path, text in _of_declarations()}
+    return _of_files(ENGLISH) | helps | {Key(DECLARED, path): text for path, text in _of_definitions()}
 
 
 @cache
 def translated(language: str) -> dict[Key, str]:
     """Every text of a language."""
     return _of_files(language)
-
-
-def digest(text: str) -> str:
-    """What tells one English text from another."""
-    return hashlib.sha256(text.encode()).hexdigest()[:6]
 
 
 def taken(language: str) -> dict[Key, str]:
@@ -143,8 +166,12 @@ def fields(template: str) -> set[tuple[str, str]]:
 
 
 def is_filled_in(key: Key) -> bool:
-    """Whether a text has parameters: explanations and the declared help have none, and may have braces."""
-    return not key.room.startswith("explanations/") and (key.room != "help" or key.path.startswith("words."))
+    """Whether a text has parameters: explanations and what is declared have none, and may have braces."""
+    return (
+        not key.room.startswith("explanations/")
+        and key.room != DECLARED
+        and (key.room != "help" or key.path.startswith("words."))
+    )
 
 
 def wrong_fields(language: str) -> list[str]:

@@ -26,7 +26,7 @@ from trunnion.cl.splines import with_spline_points
 from trunnion.cl.text_format import TextFormat
 from trunnion.cl.unknown import unknown_statement_remarks
 from trunnion.encoding import EncodingDetector
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time, with what is made of them no more than the processor keeps near.
@@ -127,7 +127,7 @@ def read_source(
         if dialect is None:
             recognized = recognize_dialect(survey.head)
         else:
-            recognized = Recognition(DIALECTS[dialect], "as it was asked for")
+            recognized = Recognition(DIALECTS[dialect], phrase("recognized_as_asked"))
         columns = MoveColumns.allocate(survey.rows)
         interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, strict=how.strict)
         interpreter.take_points_for(how.cutcom)
@@ -152,7 +152,7 @@ def read_source(
     toolpath = Toolpath(
         source.name, operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units),
         dialect=recognized.dialect.name,
-        recognized=f"{recognized.dialect.title}: {recognized.why}",
+        recognized_by=phrase("recognized_by", title=recognized.dialect.title, why=recognized.why),
         states_system=interpreter.states_system,
         clamping=interpreter.clamping(),
         reopen=source.open if source.packed else None,

@@ -67,7 +67,7 @@ def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Pro
             )
         ]
     if found.dialect != dialect:
-        return [Problem(expected.file, 0, Wording("CL920", "would_taken", title=title, recognized=found.recognized))]
+        return [Problem(expected.file, 0, Wording("CL920", "would_taken", title=title, recognized=found.recognized_by))]
     if expected.dialect == dialect and not _same_system(expected.system, found.system):
         return [Problem(expected.file, 0, Wording("CL920", "would_read_back_another", title=title))]
     names = {name for each in (expected, found) for operation in each.operations for name in operation.joined}

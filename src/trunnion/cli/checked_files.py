@@ -8,13 +8,17 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
+from trunnion.cli.wording import part
 from trunnion.definitions import LocatedValue, load_table, own_keys
 from trunnion.errors import InputError, Problem
 from trunnion.machines.loading import machine_library
+from trunnion.messages import Wording
 from trunnion.results import to_data
-from trunnion.wording import counted
+
+#: What a file has, and warnings.
+_Checked: TypeAlias = tuple[Wording, tuple[Problem, ...]]
 
 #: The line by which a file names its schema.
 _SCHEMA: Final = re.compile(r"\s*#:schema \S*trunnion-([a-z]+)\.schema\.json\s*$", re.MULTILINE)
@@ -25,25 +29,25 @@ _LIBRARIES: Final = (".json", ".fctb", ".fctl", ".tbl", ".tools")
 
 @dataclass(frozen=True, slots=True)
 class CheckedFile:
-    """A file that was read: of which ``kind`` it is, what it has in words, and warnings."""
+    """A file that was read: of which ``kind`` it is, what it has, and warnings."""
 
     file: str
     kind: str
-    text: str
+    said: Wording
     remarks: tuple[Problem, ...] = ()
 
 
-def _project(path: Path) -> tuple[str, tuple[Problem, ...]]:
+def _project(path: Path) -> _Checked:
     from trunnion.jobs.project.file import load_project, read_project
 
     table = load_table(path, machine_library(), kind="project")
     posts = _has_key(table.content, "cl") and not _has_key(table.content, "programs")  # a typo of output is a mistake
     if not (posts or _has_key(table.content, "output")):
         simulated = read_project(path)
-        return f"a project: {counted(len(simulated.setups), 'set-up')} to simulate", ()
+        return part("checked_simulated_project", count=len(simulated.setups)), ()
     found = load_project(path)
     programs = ", ".join(posted.output.name for posted in found.posted if posted is not None)
-    return f"a project: {counted(len(found.posted), 'set-up')}; it posts {programs}", ()
+    return part("checked_project", count=len(found.posted), programs=programs), ()
 
 
 def _has_key(content: LocatedValue, key: str) -> bool:
@@ -53,35 +57,36 @@ def _has_key(content: LocatedValue, key: str) -> bool:
     return isinstance(inner, list) and any(_has_key(each, key) for each in inner if isinstance(each, LocatedValue))
 
 
-def _tools(path: Path) -> tuple[str, tuple[Problem, ...]]:
+def _tools(path: Path) -> _Checked:
     from trunnion.simulation.tools.library import read_tools
 
     found = read_tools(path)
-    unusable = f"; {len(found.unusable)} of no form that is known" if found.unusable else ""
-    return f"a tool library: {counted(len(found.tools), 'tool')}{unusable}", ()
+    if found.unusable:
+        return part("checked_tools_some", count=len(found.tools), unusable=len(found.unusable)), ()
+    return part("checked_tools", count=len(found.tools)), ()
 
 
-def _impeller(path: Path) -> tuple[str, tuple[Problem, ...]]:
+def _impeller(path: Path) -> _Checked:
     from trunnion.jobs.impeller.models import load_impeller
 
     found = load_impeller(path)
-    return f"an impeller: {counted(found.definition.number, 'blade')}", found.remarks
+    return part("checked_impeller", count=found.definition.number), found.remarks
 
 
-def _nodes(path: Path) -> tuple[str, tuple[Problem, ...]]:
+def _nodes(path: Path) -> _Checked:
     from trunnion.twin.recording.nodes import load_nodes
 
-    return f"a list of nodes: {counted(len(load_nodes(path).columns), 'column')}", ()
+    return part("checked_nodes", count=len(load_nodes(path).columns)), ()
 
 
-def _batch(path: Path) -> tuple[str, tuple[Problem, ...]]:
+def _batch(path: Path) -> _Checked:
     from trunnion.batch.jobs_file import load_batch
 
-    return f"a file of jobs: {counted(len(load_batch(path).jobs), 'job')}", ()
+    return part("checked_batch", count=len(load_batch(path).jobs)), ()
 
 
 #: How each kind is read, and keys at the top of which one tells it; of the first that has one.
-_KINDS: Final[dict[str, tuple[Callable[[Path], tuple[str, tuple[Problem, ...]]], frozenset[str]]]] = {
+_KINDS: Final[dict[str, tuple[Callable[[Path], _Checked], frozenset[str]]]] = {
     "impeller": (_impeller, frozenset({"hub", "blade"})),
     "batch": (_batch, frozenset({"job"})),
     "nodes": (_nodes, frozenset({"columns", "namespace"})),
@@ -101,8 +106,8 @@ def checked_file(name: str) -> CheckedFile | None:
     kind = _kind(Path(name))
     if kind is None:
         return None
-    text, remarks = _KINDS[kind][0](Path(name))
-    return CheckedFile(name, kind, text, remarks)
+    said, remarks = _KINDS[kind][0](Path(name))
+    return CheckedFile(name, kind, said, remarks)
 
 
 def _kind(path: Path) -> str | None:
@@ -124,6 +129,6 @@ def _kind(path: Path) -> str | None:
 
 def checked_data(found: CheckedFile) -> dict[str, Any]:
     """Return it as data."""
-    return {"schema": 1, "file": Path(found.file).as_posix(), "kind": found.kind, "text": found.text} | {
+    return {"schema": 1, "file": Path(found.file).as_posix(), "kind": found.kind, "text": found.said.what} | {
         "remarks": to_data(found.remarks)
     }

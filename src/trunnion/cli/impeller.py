@@ -7,6 +7,7 @@ from typing import Final
 from trunnion.cli.results import show
 from trunnion.cli.simulate import simulation_lines
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import in_words, line
 from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.model import ImpellerModel
@@ -19,7 +20,7 @@ from trunnion.jobs.job import Given
 from trunnion.messages import Wording
 from trunnion.results import to_data
 from trunnion.simulation.meshes import STEP_ENDINGS, TriangleMesh, check_mesh_name, save_mesh
-from trunnion.wording import counted, format_duration
+from trunnion.wording import format_duration
 
 #: Width of the facets' errors where none is stated, mm.
 _TOLERANCE: Final = 0.01
@@ -58,8 +59,8 @@ def model(given: Given) -> int:
     facets = len(found.mesh.faces)
     lines = (
         _head(impeller, found.mesh),
-        f"volume {found.volume:.1f} mm³, {facets} facets, a closed solid",
-        f"facets are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
+        line("closed_solid", volume=found.volume, facets=facets),
+        line("facets_off", deviation=found.deviation, tolerance=tolerance),
     )
     show(given, lambda: _model_data(impeller, found), lines)
     return 0
@@ -73,9 +74,8 @@ def _solid(given: Given) -> int:
     found = write_impeller_step(impeller, given.output, tolerance=tolerance)
     lines = (
         _head(impeller, found.mesh),
-        f"volume {found.volume:.1f} mm³, {found.faces} faces, a valid closed solid; its mesh has "
-        f"{found.mesh.volume:.1f} mm³",
-        f"faces are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
+        line("valid_solid", volume=found.volume, faces=found.faces, mesh=found.mesh.volume),
+        line("faces_off", deviation=found.deviation, tolerance=tolerance),
     )
     show(given, lambda: _model_data(impeller, found), lines)
     return 0
@@ -89,10 +89,10 @@ def _model_data(impeller: Impeller, found: ImpellerModel | ImpellerSolid) -> dic
 def _head(impeller: Impeller, mesh: TriangleMesh) -> str:
     """Return what it is, and how large."""
     definition = impeller.definition
-    splitters = "" if impeller.splitter is None else f" and {definition.number} splitters"
     low, high = mesh.bounds.tolist()
     size = " x ".join(f"{b - a:.3f}" for a, b in zip(low, high, strict=True))
-    return f"{definition.name}: {definition.number} blades{splitters}, {size} mm"
+    variant = "blades_and_size" if impeller.splitter is None else "blades_splitters_and_size"
+    return line(variant, name=definition.name, count=definition.number, size=size)
 
 
 def cut(given: Given) -> int:
@@ -117,7 +117,8 @@ def _cut_lines(found: ImpellerCut) -> Iterator[str]:
     for step in found.steps:
         yield _step_line(step)
         yield from _explained_time(step)
-    yield f"{found.result.output}: {counted(sum(step.points for step in found.steps), 'point')}"
+    points = sum(step.points for step in found.steps)
+    yield line("points_of_file", file=str(found.result.output), count=points)
     if found.simulation is not None:
         yield from simulation_lines(found.simulation)
 
@@ -126,27 +127,34 @@ def _explained_time(step: CutStep) -> Iterator[str]:
     """Yield where the time goes, and what would give the published one."""
     times = step.times
     leads, rest = (format_duration(60.0 * minutes) for minutes in (times.leads, times.rest))
-    passes = f" in {times.passes} passes" if times.passes > 1 else ""
-    yield (
-        f"  of it {format_duration(60.0 * times.cuts)} for {times.cut / 1000.0:.1f} m of cuts at "
-        f"{step.step.feed:g} mm/min{passes}, {leads} for leads and links, {rest} for rapids and all else"
+    cuts, metres = format_duration(60.0 * times.cuts), times.cut / 1000.0
+    told = {"cuts": cuts, "metres": metres, "feed": step.step.feed, "leads": leads, "rest": rest}
+    yield "  " + (
+        line("time_explained_in_passes", **told, passes=times.passes)
+        if times.passes > 1
+        else line("time_explained", **told)
     )
     if other := setting_for_published(step.step, times):
         minutes = format_duration(60.0 * other.minutes)
-        yield f"  with stepover_mm = {other.stepover:g}: {other.passes} passes, which take about {minutes}"
+        yield "  " + line("with_stepover", stepover=other.stepover, passes=other.passes, time=minutes)
 
 
 def _step_line(step: CutStep) -> str:
     """Return a step: its operations, its time, and how near the tool comes to the part."""
     count = len(step.seconds)
     time = format_duration(60.0 * step.minutes)
-    parts = [f"{step.step.name}: {counted(step.points, 'point')}, {f'{count} x ' if count > 1 else ''}{time}"]
+    time = f"{count} x {time}" if count > 1 else time
+    parts = [line("step_time", name=step.step.name, count=step.points, time=time)]
     if step.step.published_minutes:
-        parts.append(f"published {format_duration(60.0 * step.step.published_minutes)}")
-    parts += map(str, step.clearance)
+        parts.append(line("published_time", time=format_duration(60.0 * step.step.published_minutes)))
+    parts += [in_words(each.said) for each in step.clearance]
     for over, under in step.flanks:
-        parts.append(f"a flank {over:.4f} mm too deep and {under:.4f} mm left at most")
+        parts.append(line("flank_off", over=over, under=under))
     if step.programs:
         names = list(dict.fromkeys((step.programs[0].name, step.programs[-1].name)))
-        parts.append(f"in {' to '.join(names)}")
-    return ", ".join(parts)
+        parts.append(
+            line("in_program", program=names[0])
+            if len(names) == 1
+            else line("in_programs", first=names[0], last=names[1])
+        )
+    return line("listed", parts=tuple(parts))

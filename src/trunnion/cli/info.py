@@ -5,11 +5,20 @@ from typing import Final
 
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.jobs.describe.cl_files import ClDescription, OperationDescription, ToolDescription, Vector, describe_cl
+from trunnion.cli.wording import in_words, line, part, together
+from trunnion.jobs.describe.cl_files import (
+    ClDescription,
+    ClFileDescription,
+    OperationDescription,
+    ToolDescription,
+    Vector,
+    describe_cl,
+)
 from trunnion.jobs.describe.plot import write_plot
 from trunnion.jobs.job import Given
+from trunnion.messages import Wording, phrase, word_said
 from trunnion.model.toolpath import Frame
-from trunnion.wording import counted, format_duration
+from trunnion.wording import format_duration
 
 _INDENT: Final = "  "
 
@@ -31,103 +40,123 @@ def info(given: Given) -> int:
 def info_lines(found: ClDescription) -> Iterator[str]:
     """Yield a description in lines."""
     for file in found.files:
-        unit = file.units if file.states_units else f"{file.units}, which it does not state"
-        part = f"; part {file.part}" if file.part else ""
-        yield f"{file.file}: {file.title} ({file.recognized}); lengths in {unit}{part}"
+        yield _file_line(file)
         if file.system:
-            yield f"{_INDENT}coordinate system of the points: {' '.join(f'{number:g}' for number in file.system)}"
-    yield f"{counted(len(found.operations), 'operation')}: {_motions(found.operations)}"
-    yield f"cutting {_lengths(found)}; rapids {found.rapid_length:.0f} mm"
-    if found.extents is not None:
-        yield f"points from {_vector(found.extents[0])} to {_vector(found.extents[1])} mm"
-    yield from ("", "Operations")
-    for number, operation in enumerate(found.operations, 1):
+            numbers = " ".join(f"{number:g}" for number in file.system)
+            yield _INDENT + line("system_of_points", numbers=numbers)
+    operations = found.operations
+    yield line("operations_with_motions", count=len(operations), motions=_motions(operations))
+    yield line("cutting_and_rapids", cutting=_lengths(found), length=found.rapid_length)
+    yield from _extents(found.extents)
+    yield from ("", line("operations"))
+    for number, operation in enumerate(operations, 1):
         yield from _operation_lines(number, operation, found)
-    yield from ("", "Tools")
+    yield from ("", line("tools"))
     yield from (_INDENT + _tool_line(tool) for tool in found.tools)
     if found.systems != (Frame(),):
-        yield from ("", "Coordinate systems: origin, X, Y in the CAM's absolute system")
+        yield from ("", line("coordinate_systems"))
         for number, frame in enumerate(found.systems, 1):
             yield f"{_INDENT}{number}  {_vector(frame.origin)}  {_vector(frame.x)}  {_vector(frame.y)}"
     if found.unknown:
-        yield from ("", "Statements that are not known")
-        for unknown in found.unknown:
-            becomes = "post refuses it" if unknown.acts else "nothing becomes of it"
-            what = f"{counted(unknown.count, 'time')}: {unknown.what}; {becomes}"
-            yield f"{_INDENT}{unknown.file}:{unknown.line}: {unknown.statement}  {what}"
+        yield from ("", line("statements_not_known"))
+        for each in found.unknown:
+            yield _INDENT + line(
+                "statement_refused" if each.acts else "statement_left_out",
+                file=each.file,
+                line=each.line,
+                statement=each.statement,
+                count=each.count,
+                what=each.what,
+            )
+
+
+def _file_line(file: ClFileDescription) -> str:
+    units = file.units if file.states_units else part("units_not_stated", units=file.units)
+    about = {"file": file.file, "title": file.title, "why": file.why, "units": units}
+    return line("cl_file_of_part", **about, part=file.part) if file.part else line("cl_file", **about)
+
+
+def _extents(extents: tuple[Vector, Vector] | None) -> Iterator[str]:
+    if extents is not None:
+        yield line("points_from_to", low=_vector(extents[0]), high=_vector(extents[1]))
 
 
 def _operation_lines(number: int, operation: OperationDescription, found: ClDescription) -> Iterator[str]:
     tool = found.tools[operation.tool]
-    motions = _motions([operation])
+    motions, kind = in_words(_motions([operation])), in_words(word_said(operation.kind))
     names = " + ".join((operation.name, *operation.joined))
-    yield f"{_INDENT}{number}  {names}  {operation.kind}  {_tool_name(tool)}  {motions}"
-    details = [f"cutting {_lengths(operation)}", *operation.cycles, *_rates(operation)]
+    yield f"{_INDENT}{number}  {names}  {kind}  {_tool_name(tool)}  {motions}"
+    details = [in_words(_lengths(operation)), *operation.cycles, *_rates(operation)]
     if len(found.systems) > 1:
-        details.append(f"coordinate system {operation.system + 1}")
-    yield _INDENT * 3 + "; ".join(details)
+        details.append(line("in_coordinate_system", number=operation.system + 1))
+    yield _INDENT * 3 + together(*details)
     if operation.planes:
         shown = ", ".join(map(_vector, operation.planes[:_MOST_PLANES]))
         more = len(operation.planes) - _MOST_PLANES
-        yield f"{_INDENT * 3}planes {shown}{f' and {more} more' if more > 0 else ''}"
-    if operation.extents is not None:
-        yield f"{_INDENT * 3}points from {_vector(operation.extents[0])} to {_vector(operation.extents[1])} mm"
+        yield _INDENT * 3 + (
+            line("planes_shown_and_more", planes=shown, more=more) if more > 0 else line("planes_shown", planes=shown)
+        )
+    yield from (_INDENT * 3 + extents for extents in _extents(operation.extents))
 
 
-def _motions(operations: Sequence[OperationDescription]) -> str:
+def _motions(operations: Sequence[OperationDescription]) -> Wording:
     """How many motions of each kind operations have together."""
     points, arcs, holes, splines = (
         sum(getattr(operation, name) for operation in operations) for name in ("points", "arcs", "holes", "splines")
     )
-    of_splines = f" (some for {counted(splines, 'spline')})" if splines else ""
-    return f"{counted(points, 'point')}{of_splines}, {counted(arcs, 'arc')}, {counted(holes, 'hole')}"
+    counted = (
+        phrase("points_with_splines", count=points, splines=splines)
+        if splines
+        else phrase("points_counted", count=points)
+    )
+    return part("motions", points=counted, arcs=arcs, holes=holes)
 
 
-def _lengths(found: ClDescription | OperationDescription) -> str:
-    time = f"{found.cutting_length:.0f} mm in {format_duration(found.cutting_seconds)} at the programmed feeds"
+def _lengths(found: ClDescription | OperationDescription) -> Wording:
+    known = {"length": found.cutting_length, "time": format_duration(found.cutting_seconds)}
     unknown = found.moves_without_time
-    return time if not unknown else f"{time}, without the time of {counted(unknown, 'move')} of unknown feed"
+    return part("cutting_without_some", **known, count=unknown) if unknown else part("cutting", **known)
 
 
 def _rates(operation: OperationDescription) -> Iterator[str]:
-    for name, values, unit in (
-        ("feed", operation.feed, "mm/min"),
-        ("feed", operation.feed_per_rev, "mm/rev"),
-        ("speed", operation.rpm, "rev/min"),
+    for variant, values in (
+        ("rate_feed", operation.feed),
+        ("rate_feed_per_rev", operation.feed_per_rev),
+        ("rate_speed", operation.rpm),
     ):
         if values is not None:
-            low, high = values
-            yield f"{name} {low:g} {unit}" if low == high else f"{name} {low:g} to {high:g} {unit}"
+            low, high = (f"{value:g}" for value in values)
+            yield line(variant, range=low if low == high else part("range", low=low, high=high))
 
 
 def _tool_name(tool: ToolDescription) -> str:
-    number = "no number" if tool.number is None else f"T{tool.number}"
+    number = line("tool_without_number") if tool.number is None else f"T{tool.number}"
     return f"{number} {tool.name}".strip()
 
 
 def _tool_line(tool: ToolDescription) -> str:
     sizes = [
-        f"{title} {value:g}"
-        for title, value in (
-            ("d", tool.diameter),
-            ("r", tool.corner_radius),
-            ("upper r", tool.upper_radius),
-            ("length", tool.length),
-            ("flute length", tool.flute_length),
-            ("taper", tool.taper_angle),
-            ("tip angle", tool.tip_angle),
-            ("stands out", tool.extension),
-            ("length in the spindle", tool.set_length),
+        line(variant, value=value)
+        for variant, value in (
+            ("size_diameter", tool.diameter),
+            ("size_corner", tool.corner_radius),
+            ("size_upper", tool.upper_radius),
+            ("size_length", tool.length),
+            ("size_flutes", tool.flute_length),
+            ("size_taper", tool.taper_angle),
+            ("size_tip", tool.tip_angle),
+            ("size_out", tool.extension),
+            ("size_set", tool.set_length),
         )
         if value
     ]
     if tool.apt and tool.apt[1] and tool.apt[2:4] != (0.5 * tool.diameter - tool.corner_radius, tool.corner_radius):
-        sizes.append(f"corner centre {tool.apt[2]:g} from the axis, {tool.apt[3]:g} above the tip")
-    register = [f"length register {tool.register}"] if tool.register else []
+        sizes.append(line("size_corner_centre", across=tool.apt[2], above=tool.apt[3]))
+    register = [line("length_register", register=tool.register)] if tool.register else []
     if tool.holder:
-        register.append(f"holder {tool.holder}")
-    where = "operations " + ", ".join(str(place + 1) for place in tool.operations)
-    return "; ".join([f"{_tool_name(tool)}  {tool.kind} {' '.join(sizes)}".rstrip(), *register, where])
+        register.append(line("holder", holder=tool.holder))
+    where = line("of_operations", numbers=", ".join(str(place + 1) for place in tool.operations))
+    return together(f"{_tool_name(tool)}  {tool.kind} {' '.join(sizes)}".rstrip(), *register, where)
 
 
 def _vector(values: Vector | Sequence[float]) -> str:

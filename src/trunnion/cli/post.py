@@ -129,7 +129,7 @@ def print_dialects(toolpaths: Sequence[Toolpath]) -> None:
     """Say what the toolpaths of a file or an archive are written in, where that is not NX's CLSF."""
     for toolpath in toolpaths:
         if toolpath.dialect != "clsf" or len(toolpaths) > 1:
-            tell(f"{toolpath.file}: {said('read_as', dialect=toolpath.recognized)}")
+            tell(f"{toolpath.file}: {said('read_as', dialect=toolpath.recognized_by)}")
 
 
 def print_summary(target: str, result: PostResult) -> None:

@@ -6,6 +6,7 @@ from trunnion.cli.post import old_files_told, print_dialects, print_summary
 from trunnion.cli.printing import tell
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import line, spoken
 from trunnion.files import check_outputs
 from trunnion.jobs.job import Given
 from trunnion.jobs.post_project.operation_programs import programs_of_operations
@@ -54,4 +55,4 @@ def _print_files(result: ProjectResult) -> None:
     for program in result.results:
         print_summary(str(program.output), program)
     if result.simulation is not None:
-        tell(f"simulation: {result.simulation.told}")
+        tell(line("simulation_line", told=result.simulation.line(spoken())))

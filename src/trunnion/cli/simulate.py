@@ -5,10 +5,12 @@ from typing import Final
 
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import in_words, line, part, spoken, together
 from trunnion.jobs.job import Given
 from trunnion.jobs.simulate.report import write_simulation_report
 from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines, travel_lines
 from trunnion.jobs.simulate.simulating import simulate
+from trunnion.messages import word_said
 from trunnion.model.clamping import Clamping, number
 from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
@@ -34,11 +36,16 @@ def run(given: Given) -> int:
 def simulation_lines(found: SimulationResult) -> Iterator[str]:
     """Yield a simulation in lines."""
     for operation in found.operations:
-        air = f", {operation.air:.0f} mm in air" if operation.air else ""
-        yield (
-            f"{_of_setup(operation.setup)}{operation.file}:{operation.line}: tool {operation.tool}:"
-            f" {operation.removed:.1f} mm³ removed in {format_duration(operation.seconds)}{air}"
+        removed = line(
+            "removed_in",
+            file=operation.file,
+            line=operation.line,
+            tool=operation.tool,
+            volume=operation.removed,
+            time=format_duration(operation.seconds),
         )
+        air = line("of_it_in_air", length=operation.air) if operation.air else ""
+        yield f"{_of_setup(operation.setup)}{removed}{air}"
     shown = dict[str, int]()
     for finding in found.findings:
         shown[finding.kind] = shown.get(finding.kind, 0) + 1
@@ -46,25 +53,25 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             yield _line(finding)
     for kind, count in shown.items():
         if count > _MOST:
-            yield f"and {count - _MOST} more: {kind}"
+            yield line("and_more_of_kind", count=count - _MOST, kind=word_said(kind))
     for miss in found.near[:_MOST]:
         yield _line(miss)
     for each in found.setups or (found,):
         if each.left is not None and each.simulation is found.simulation:
-            yield _of_setup(each.setup) + _excess_line("left on the part", each.left)
+            yield _of_setup(each.setup) + _excess_line("left_on_part", each.left)
         if each.gouge is not None:
-            doubt = "; not checked under radius compensation" if each.cuts_not_checked else ""
-            yield f"{_of_setup(each.setup)}{_excess_line('missing from the part', each.gouge)}{doubt}"
+            doubt = line("not_under_compensation") if each.cuts_not_checked else ""
+            yield _of_setup(each.setup) + together(_excess_line("missing_from_part", each.gouge), doubt)
     for each in found.setups or (found,):
         if Clamping(each.turn, each.tilt).is_turned:
-            tilted = f"tilted {number(each.tilt)} degrees about X, then " if each.tilt else ""
-            how = f"clamped {tilted}turned {number(each.turn)} degrees about Z"
-            yield f"{_of_setup(each.setup)}places are those of the part as it is drawn; it is {how}"
+            variant = "clamped_tilted" if each.tilt else "clamped_turned"
+            told = line(variant, tilt=number(each.tilt), turn=number(each.turn))
+            yield f"{_of_setup(each.setup)}{told}"
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
-    yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
-    yield from not_measured_lines(found)
-    yield from travel_lines(found)
-    yield found.told
+    yield line("removed_in_all", volume=found.removed, cell=cell, accuracy=found.accuracy)
+    yield from not_measured_lines(found, spoken())
+    yield from travel_lines(found, spoken())
+    yield found.line(spoken())
 
 
 def _of_setup(name: str) -> str:
@@ -74,11 +81,13 @@ def _of_setup(name: str) -> str:
 
 def _line(each: SimulationFinding | NearMiss) -> str:
     block = f" N{each.block}" if each.block >= 0 else ""
-    said = ", ".join(filter(None, (str(each), each.stretch)))
+    said = in_words(each.said)
+    if each.among is not None:
+        said = line("in_stretch", finding=each.said, stretch=each.among)
     return f"{_of_setup(each.setup)}{each.file}:{each.line}:{block} {said}"
 
 
-def _excess_line(what: str, excess: Excess) -> str:
+def _excess_line(variant: str, excess: Excess) -> str:
     at = excess.places[0].at if excess.places else None
-    where = f" at {position(at)}" if at else ""
-    return f"{what}: {excess.largest:.3f} mm at most{where}, {excess.volume:.2f} mm³"
+    where = part("at_place", place=position(at)) if at else ""
+    return line(variant, most=excess.largest, where=where, volume=excess.volume)

@@ -76,6 +76,21 @@ def said(variant: str, /, **parameters: object) -> str:
     return in_words(Wording("terminal", variant, **parameters))
 
 
+def line(variant: str, /, **parameters: object) -> str:
+    """Return a line of a result, of the catalogue ``results``."""
+    return in_words(Wording("results", variant, **parameters))
+
+
+def part(variant: str, /, **parameters: object) -> Wording:
+    """Return what stands in such a line: a wording of the catalogue ``results``."""
+    return Wording("results", variant, **parameters)
+
+
+def together(*texts: str) -> str:
+    """Return parts of a line, one behind the other; none for those that say nothing."""
+    return said("joined", texts=tuple(filter(None, texts)))
+
+
 def in_words(wording: Wording) -> str:
     """Return a wording in the language and the words of the command that runs."""
     return in_command_words(wording.text("what", spoken()))

@@ -13,9 +13,11 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import Final
+from typing import Annotated, Final
 
 from trunnion.machines.machine import Axis, Machine, Mount, PositiveDirection, PreferredSign, Vector
+from trunnion.messages import Wording, phrase
+from trunnion.results import Figure
 
 #: How far slides and rotary axes are jogged, mm and degrees.
 STEP: Final = 10.0
@@ -34,18 +36,28 @@ class AxisJog:
 
     axis       as the definition has it
     step       how far it is jogged, mm or degrees
-    tool       where the tool goes as seen from the workpiece, in words
-    iron       what the table or the head does, in words, directions of the machine
+    tool_said  where the tool goes as seen from the workpiece; ``tool`` in English
+    iron_said  what the table or the head does, in directions of the machine; ``iron`` in English
     tool_step  of a slide: where the tip goes in workpiece coordinates, mm; of a rotary axis: the tool axis after it
     iron_turn  of a rotary axis: the direction about which the iron turns right-handed; of a slide: where it goes
     """
 
     axis: Axis
     step: float
-    tool: str
-    iron: str
+    tool_said: Annotated[Wording, Figure("tool", take=str)]
+    iron_said: Annotated[Wording, Figure("iron", take=str)]
     tool_step: Vector
     iron_turn: Vector
+
+    @property
+    def tool(self) -> str:
+        """Where the tool goes as seen from the workpiece, in words."""
+        return str(self.tool_said)
+
+    @property
+    def iron(self) -> str:
+        """What the table or the head does, in words."""
+        return str(self.iron_said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +84,19 @@ class JogTable:
     axes          in that order
     poses         single rotary axes first, then both
     same_axis     two poses with the same tool axis
-    preferred     which of two such poses cuts begin in, in words
+    prefers       which of two such poses cuts begin in; ``preferred`` in English
     """
 
     order: tuple[str, ...]
     axes: tuple[AxisJog, ...]
     poses: tuple[RotaryPose, ...]
     same_axis: tuple[RotaryPose, RotaryPose]
-    preferred: str
+    prefers: Annotated[Wording, Figure("preferred", take=str)]
+
+    @property
+    def preferred(self) -> str:
+        """Which of two poses with one tool axis cuts begin in, in words."""
+        return str(self.prefers)
 
 
 def order_of_axes(machine: Machine) -> tuple[str, ...]:
@@ -98,7 +115,7 @@ def jog_table(machine: Machine) -> JogTable:
         axes=tuple(_jog(machine, axis) for axis in machine.axes),
         poses=poses,
         same_axis=(tilted, rotary_pose(machine, _other_values(machine, tilted.values))),
-        preferred=_preferred(machine),
+        prefers=_preferred(machine),
     )
 
 
@@ -134,7 +151,7 @@ def number_text(value: float, decimals: int) -> str:
 
 
 def _jog(machine: Machine, axis: Axis) -> AxisJog:
-    carried = "table" if axis.mount is Mount.PART else "head"
+    carried = phrase("the_table" if axis.mount is Mount.PART else "the_head")
     if not axis.is_rotary:
         at_zero = _in_workpiece(machine, machine.spindle_point, {})
         step = _minus(_in_workpiece(machine, machine.spindle_point, {axis.name: STEP}), at_zero)
@@ -142,8 +159,8 @@ def _jog(machine: Machine, axis: Axis) -> AxisJog:
         return AxisJog(
             axis,
             STEP,
-            f"the tool goes {STEP:g} mm to {named_direction(step)} of the workpiece",
-            f"the {carried} goes {STEP:g} mm to {named_direction(iron)}",
+            phrase("tool_goes", step=STEP, direction=named_direction(step)),
+            phrase("iron_goes", carried=carried, step=STEP, direction=named_direction(iron)),
             step,
             iron,
         )
@@ -153,7 +170,7 @@ def _jog(machine: Machine, axis: Axis) -> AxisJog:
         axis,
         STEP,
         _tool_words(machine, tool_axis),
-        f"the {carried} turns {_turn_words(machine, axis, turn)}",
+        phrase("iron_turns", carried=carried, turn=_turn_words(machine, axis, turn)),
         tool_axis,
         turn,
     )
@@ -168,47 +185,47 @@ def _iron_step(axis: Axis) -> Vector:
     return along if axis.mount is Mount.TOOL else _negative(along)
 
 
-def _tool_words(machine: Machine, tool_axis: Vector) -> str:
+def _tool_words(machine: Machine, tool_axis: Vector) -> Wording:
     if _length(_minus(tool_axis, machine.spindle_direction)) < 1e-6:
-        return f"the tool axis stays at {_vector_text(tool_axis)} of the workpiece"
+        return phrase("tool_axis_stays", direction=_vector_text(tool_axis))
     leans = _minus(tool_axis, _times(machine.spindle_direction, _dot(tool_axis, machine.spindle_direction)))
-    return f"the tool axis points to {_vector_text(tool_axis)} of the workpiece, leaning to {named_direction(leans)}"
+    return phrase("tool_axis_leans", direction=_vector_text(tool_axis), to=named_direction(leans))
 
 
-def _turn_words(machine: Machine, axis: Axis, turn: Vector) -> str:
+def _turn_words(machine: Machine, axis: Axis, turn: Vector) -> Wording:
     """How a table or a head turns: seen from outside, and where what can be seen goes."""
     largest = max(range(3), key=lambda k: (round(abs(axis.direction[k]), 6), k))
     seen_from = axis.direction if axis.direction[largest] > 0 else _negative(axis.direction)
-    sense = "counter-clockwise" if _dot(turn, seen_from) > 0 else "clockwise"
-    text = f"{STEP:g}° {sense} seen from {named_direction(seen_from)}"
+    sense = "turn_counter_clockwise" if _dot(turn, seen_from) > 0 else "turn_clockwise"
+    return phrase(sense, step=STEP, side=named_direction(seen_from), then=_seen_motion(machine, axis, turn))
+
+
+def _seen_motion(machine: Machine, axis: Axis, turn: Vector) -> Wording:
+    """Where what can be seen of a turning table or head goes."""
     if axis.mount is Mount.TOOL:
         swing = _cross(turn, _negative(machine.spindle_direction))
-        return (
-            f"{text}; the tip of the tool swings to {named_direction(swing)}"
-            if _length(swing) > 0.1
-            else (f"{text}; the tip stays, and {_swing_of_mark(turn, 'the head')}")
-        )
+        if _length(swing) > 0.1:
+            return phrase("tip_swings", direction=named_direction(swing))
+        return phrase("tip_stays", mark=_swing_of_mark(turn, phrase("at_head")))
     rising = _cross(_Z, turn)
     if _length(rising) < 0.1:
-        return f"{text}; {_swing_of_mark(turn, 'it')}"
-    return f"{text}; its {named_direction(rising)} edge goes to +Z, its {named_direction(_negative(rising))} edge to -Z"
+        return _swing_of_mark(turn, phrase("at_table"))
+    return phrase("edges_go", rises=named_direction(rising), falls=named_direction(_negative(rising)))
 
 
-def _swing_of_mark(turn: Vector, what: str) -> str:
+def _swing_of_mark(turn: Vector, what: Wording) -> Wording:
     """Where a mark goes that is not on the axis: at +X, or at +Y of what turns about X."""
     mark = _X if _length(_cross(turn, _X)) > 0.1 else _Y
-    return f"what is at {named_direction(mark)} of {what} goes to {named_direction(_cross(turn, mark))}"
+    return phrase("mark_goes", side=named_direction(mark), what=what, direction=named_direction(_cross(turn, mark)))
 
 
-def _preferred(machine: Machine) -> str:
-    told = [
-        f"{axis.name} {'positive' if axis.prefer is PreferredSign.POSITIVE else 'negative'}"
+def _preferred(machine: Machine) -> Wording:
+    told = tuple(
+        phrase("sign_positive" if axis.prefer is PreferredSign.POSITIVE else "sign_negative", axis=axis.name)
         for axis in machine.axes
         if axis.is_rotary and axis.prefer is not PreferredSign.EITHER
-    ]
-    if told:
-        return f"the one with {' and '.join(told)}, where that needs no more rewinds"
-    return "the one on the side where most cuts of the operation would begin: the definition prefers neither"
+    )
+    return phrase("prefers_signs", signs=told) if told else phrase("prefers_neither")
 
 
 def _pose_values(machine: Machine) -> Iterator[dict[str, float]]:

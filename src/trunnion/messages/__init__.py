@@ -11,6 +11,10 @@ A text is a template:
     {switch:force}
 
 A file is read when a text of it is asked for, never before.
+
+What definitions and the code say in English where it stands, such as what a setting means, is in the catalogue
+``declared`` of other languages: by its subject and a digest of the English text, since anybody's definition may say
+something else of the same subject.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -41,6 +45,7 @@ CATALOGUES: Final = {
     "SIM": "simulation",
     "TWN": "twin",
     "comparison": "comparison",
+    "results": "results",
     "terminal": "terminal",
 }
 
@@ -52,6 +57,9 @@ ENGLISH: Final = LANGUAGES[0]
 CHECKS: Final = "checks"
 AROUND: Final = "around"
 PHRASES: Final = "phrases"
+
+#: The file of what stands in English where it is declared.
+DECLARED: Final = "declared"
 
 Part: TypeAlias = Literal["what", "cure"]
 Parameters: TypeAlias = tuple[tuple[str, object], ...]
@@ -194,6 +202,27 @@ class _Collected(Words):
         return ""
 
 
+def declared(english: str, *subject: str) -> Wording:
+    """Return a text that stands in English where it is declared; other languages have it in the catalogue
+    ``declared``.
+
+    subject  where it is there, such as ``meanings``, ``tool``
+    """
+    return Wording("", "", what=english, cure="", declared=subject) if english else foreign("")
+
+
+def word_said(text: str) -> Wording:
+    """Return a word of the library that results print, such as a kind or an outcome."""
+    return declared(text, "words")
+
+
+def digest(text: str) -> str:
+    """Return what tells one English text from another."""
+    from hashlib import sha256  # who reads English does without it
+
+    return sha256(text.encode()).hexdigest()[:6]
+
+
 def settings_in_cure(wording: Wording) -> tuple[tuple[str, str], ...]:
     """Return the settings that a cure names, in their order: names and values, such as ``OPERATION:RPM``."""
     words = _Collected()
@@ -263,15 +292,19 @@ def _text(wording: Wording, part: Part, words: Words) -> str:
 def _inner_text(wording: Wording, part: Part, words: Words) -> str:
     parameters = dict(wording.parameters)
     if not wording.variant:
-        return str(parameters[part])
+        text = str(parameters[part])
+        subject = parameters.get("declared")
+        if not (text and isinstance(subject, tuple)) or words.language == ENGLISH:
+            return text
+        return said_in(words.language, DECLARED, *map(str, subject), digest(text), english=text)
     if wording.code:
         file = CATALOGUES.get(wording.code.rstrip("0123456789"), CHECKS)
-        text = _filled_entry(words, file, (wording.code, wording.variant, part), parameters)
+        found = _filled_entry(words, file, (wording.code, wording.variant, part), parameters)
     else:
-        text = _filled_entry(words, PHRASES, (wording.variant,), parameters)
-    if text is None:
+        found = _filled_entry(words, PHRASES, (wording.variant,), parameters)
+    if found is None:
         return _unfilled(wording.variant, wording.parameters) if part == "what" else ""
-    return text
+    return found
 
 
 def _filled_entry(words: Words, name: str, path: tuple[str, ...], parameters: Mapping[str, object]) -> str | None:

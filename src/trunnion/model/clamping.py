@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.messages import Wording, phrase
 from trunnion.model.rotations import about_x, about_z
 
 #: Angles and lengths that differ by less are the same: they are printed in thousandths.
@@ -55,12 +56,19 @@ class Clamping:
             return Clamping(turn, round(self.tilt + tilt, 3))
         return None
 
+    @property
+    def said(self) -> Wording:
+        """What is said behind *the part is*."""
+        if self.is_as_drawn:
+            return phrase("clamped_as_drawn")
+        turn = number(self.turn % 360.0)
+        if are_one_angle(self.tilt, 0.0):
+            return phrase("turned_by", turn=turn)
+        return phrase("tilted_and_turned_by", tilt=number(self.tilt), turn=turn)
+
     def __str__(self) -> str:
         """Return it in words, behind *the part is*."""
-        if self.is_as_drawn:
-            return "clamped as it is drawn"
-        tilted = "" if are_one_angle(self.tilt, 0.0) else f"tilted by {number(self.tilt)} degrees about X and "
-        return f"{tilted}turned by {number(self.turn % 360.0)} degrees about Z"
+        return str(self.said)
 
 
 def are_one_angle(one: float, other: float) -> bool:

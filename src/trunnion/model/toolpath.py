@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines, make_read_only
 from trunnion.errors import Problem
+from trunnion.messages import Wording, foreign
 from trunnion.model.clamping import Clamping
 from trunnion.model.splines import Splines
 from trunnion.results import Figure
@@ -374,7 +375,7 @@ class Toolpath:
     unit        length unit of the file, mm
     states_unit  the file says its unit, or its feeds do; else mm are assumed
     dialect     what the file is written in, a key of ``trunnion.cl.dialects.DIALECTS``
-    recognized  the title of the dialect, and by what it was recognized
+    recognized_by  the title of the dialect, and by what it was recognized; ``recognized`` in English
     system      of the points, in that of the model, where the file gives it and its meaning is open: 3 rows of 4, mm
     states_system  each operation states where its coordinate system lies in the absolute one of the CAM system
     clamping    how the part is clamped, as comments in the head of the file say; None: they say nothing
@@ -388,11 +389,16 @@ class Toolpath:
     unit: float = 1.0
     states_unit: bool = True
     dialect: str = "clsf"
-    recognized: str = ""
+    recognized_by: Wording = field(default=foreign(""))
     system: tuple[float, ...] = ()
     states_system: bool = True
     clamping: Clamping | None = None
     reopen: Callable[[], BinaryIO] | None = None
+
+    @property
+    def recognized(self) -> str:
+        """The title of the dialect, and by what it was recognized."""
+        return str(self.recognized_by)
 
     def __repr__(self) -> str:
         """Return what matters in a notebook: the columns would fill pages."""

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
 from trunnion.machines.machine import Vector
+from trunnion.messages import Wording, foreign
 from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
@@ -136,7 +137,7 @@ class TurnMargin:
     margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, or the table is too
                small, as ``obstacle`` says
     zero_mm    the best place there
-    obstacle   why there is none; empty where there is one
+    why        why there is none; says nothing where there is one. ``obstacle`` is that in English
     value      of the goal there, as in ``PartPlace``
     is_asked   it is one of those that were asked for; else it was tried between them, around the best
     table_is_too_small  that is the obstacle
@@ -145,11 +146,16 @@ class TurnMargin:
     turn_deg: float
     margin_mm: float | None
     zero_mm: Vector | None = None
-    obstacle: Annotated[str, Figure(after="value")] = ""
+    why: Annotated[Wording, Figure("obstacle", after="value", take=str)] = field(default=foreign(""))
     value: float | None = None
     tilt_deg: Annotated[float, Figure(after="turn_deg")] = 0.0
     is_asked: Annotated[bool, Figure("asked", after="tilt_deg")] = True
     table_is_too_small: Annotated[bool, NOT_DATA] = False
+
+    @property
+    def obstacle(self) -> str:
+        """Why there is none; empty where there is one."""
+        return str(self.why)
 
     @property
     @Figure(after="asked")

@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
+from trunnion.messages import Wording, phrase
 from trunnion.placing.path_rows import PathRows
 from trunnion.placing.placement import AxisUse, Limit, PartPlace, RotaryUse
 from trunnion.placing.rotary_angles import Obstacle
@@ -25,9 +26,9 @@ _CORNERS: Final = np.array(list(product((0.0, 1.0), repeat=3)))
 _AS_NEAR: Final = 1e-3
 
 
-def larger_than_table(machine: Machine, outline: tuple[float, float]) -> str:
+def larger_than_table(machine: Machine, outline: tuple[float, float]) -> Wording:
     """Why no place is on the table, for an outline (2,) along X and Y, mm."""
-    return f"seen from above it is {outline[0]:.1f} x {outline[1]:.1f} mm, and the table is {ClampingArea.of(machine)}"
+    return phrase("larger_than_table", x=outline[0], y=outline[1], table=str(ClampingArea.of(machine)))
 
 
 def limit_of_table(machine: Machine, edge: TableEdge) -> Limit:
@@ -37,16 +38,16 @@ def limit_of_table(machine: Machine, edge: TableEdge) -> Limit:
     return Limit("table", str(edge), area.edge_position(edge), "", 0)
 
 
-def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:
+def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> Wording:
     """Why a turn is impossible, with the line."""
     if obstacle.outline is not None:
         return larger_than_table(machine, obstacle.outline)
     stretch = rows.stretch_of(obstacle.row)
-    what = "no rotary positions give its tool axis"
-    if obstacle.axis >= 0:
-        axis = machine.axes[obstacle.axis]
-        what = f"{axis.name} would have to leave its travel, {axis.low:g} to {axis.high:g} degrees"
-    return f"{stretch.file}:{rows.line[obstacle.row]}: {what}"
+    place = {"file": stretch.file, "line": int(rows.line[obstacle.row])}
+    if obstacle.axis < 0:
+        return phrase("no_rotary_positions", **place)
+    axis = machine.axes[obstacle.axis]
+    return phrase("axis_leaves_travel", **place, axis=axis.name, low=axis.low, high=axis.high)
 
 
 def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn: float) -> PartPlace:

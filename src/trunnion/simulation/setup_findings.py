@@ -8,6 +8,7 @@ from typing import Annotated, Any, Final, TypeVar
 import numpy as np
 
 from trunnion.arrays import Floats, Lines
+from trunnion.messages import Wording, phrase, word_said
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.results import NOT_DATA, BlockNumber, CubicMillimetres, Figure, Millimetres, OptionalLine, OptionalText
@@ -43,7 +44,7 @@ class SimulationFinding:
     depth     how deep, mm
     place     where, workpiece frame, mm
     setup     name of the set-up; empty where there is only one
-    skipped   which blocks must be skipped (``/``) for it; empty: none
+    when      which blocks must be skipped (``/``) for it; None: none. ``skipped`` is that in English
     row       of the worst block in the run of its program
     """
 
@@ -60,7 +61,7 @@ class SimulationFinding:
     place: tuple[float, float, float]
     cl_file: Annotated[str, Figure(none="", after="cl_line")] = ""
     setup: OptionalText = ""
-    skipped: OptionalText = ""
+    when: Annotated[Wording | None, Figure("skipped", take=str)] = None
     row: Annotated[int, NOT_DATA] = -1
     first_line: Annotated[int, Figure(after="block")] = 0
     first_block: Annotated[int, Figure(none=-1, after="first_line")] = -1
@@ -68,12 +69,28 @@ class SimulationFinding:
     @property
     def stretch(self) -> str:
         """Which blocks do it besides the worst one; empty where there are none."""
+        return str(self.among or "")
+
+    @property
+    def among(self) -> Wording | None:
+        """Which blocks do it besides the worst one; None where there are none."""
         return _stretch(self)
+
+    @property
+    def skipped(self) -> str:
+        """Which blocks must be skipped for it; empty: none."""
+        return str(self.when or "")
+
+    @property
+    def said(self) -> Wording:
+        """What does what, how deep and where."""
+        one, other = map(word_said, self.between)
+        where = {"kind": word_said(self.kind), "one": one, "other": other, "place": position(self.place)}
+        return _when_skipped(self, phrase("finding_deep", **where, depth=self.depth))
 
     def __str__(self) -> str:
         """Return what does what, how deep and where."""
-        what = f"{self.kind}: {self.between[0]}, {self.between[1]}: {self.depth:.3f} mm deep at {position(self.place)}"
-        return f"{self.skipped}: {what}" if self.skipped else what
+        return str(self.said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +107,7 @@ class NearMiss:
     distance: Millimetres
     place: tuple[float, float, float]
     setup: OptionalText = ""
-    skipped: OptionalText = ""
+    when: Annotated[Wording | None, Figure("skipped", take=str)] = None
     row: Annotated[int, NOT_DATA] = -1
     first_line: Annotated[int, Figure(after="block")] = 0
     first_block: Annotated[int, Figure(none=-1, after="first_line")] = -1
@@ -98,12 +115,28 @@ class NearMiss:
     @property
     def stretch(self) -> str:
         """Which blocks do it besides the nearest one; empty where there are none."""
+        return str(self.among or "")
+
+    @property
+    def among(self) -> Wording | None:
+        """Which blocks do it besides the nearest one; None where there are none."""
         return _stretch(self)
+
+    @property
+    def skipped(self) -> str:
+        """Which blocks must be skipped for it; empty: none."""
+        return str(self.when or "")
+
+    @property
+    def said(self) -> Wording:
+        """What comes near what, how near and where."""
+        one, other = map(word_said, self.between)
+        place = position(self.place)
+        return _when_skipped(self, phrase("finding_near", one=one, other=other, distance=self.distance, place=place))
 
     def __str__(self) -> str:
         """Return what comes near what, how near and where."""
-        what = f"near: {' and '.join(self.between)}: {self.distance:.3f} mm apart at {position(self.place)}"
-        return f"{self.skipped}: {what}" if self.skipped else what
+        return str(self.said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -292,11 +325,19 @@ def _near(run: Run, each: Finding, seconds: float) -> NearMiss:
     )  # fmt: skip
 
 
-def _stretch(each: SimulationFinding | NearMiss) -> str:
+def _when_skipped(each: SimulationFinding | NearMiss, what: Wording) -> Wording:
+    return what if each.when is None else phrase("with_skipped", skipped=each.when, what=what)
+
+
+def _stretch(each: SimulationFinding | NearMiss) -> Wording | None:
     if each.first_line == each.line == each.last_line:
-        return ""
-    first = f"N{each.first_block} (line {each.first_line})" if each.first_block >= 0 else f"line {each.first_line}"
-    return f"from {first} to line {each.last_line}"
+        return None
+    first = (
+        phrase("block_in_line", block=each.first_block, line=each.first_line)
+        if each.first_block >= 0
+        else phrase("line_number", line=each.first_line)
+    )
+    return phrase("from_to_line", first=first, last=each.last_line)
 
 
 def _air(run: Run, one: OperationCut, lengths: Any) -> Iterable[AirCut]:

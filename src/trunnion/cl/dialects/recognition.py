@@ -2,9 +2,11 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Final
 
 from trunnion.cl.dialect import Dialect
+from trunnion.messages import Wording, phrase
 
 #: Bytes of a line that marks are looked for in: the same line comes often.
 _COMPARED: Final = 48
@@ -18,7 +20,7 @@ class Recognition:
     """The dialect of a file, and why; ``marked``: a line has a mark of it, so that it is no mere default."""
 
     dialect: Dialect
-    why: str
+    why: Wording
     marked: bool = True
 
 
@@ -31,22 +33,23 @@ def recognize(head: bytes, dialects: Iterable[Dialect], default: Dialect) -> Rec
     for number, line in enumerate(head.splitlines(), 1):
         if not line.lstrip()[:7].upper().startswith(_NO_MARKS):
             seen.setdefault(line[:_COMPARED], number)
-    best, why, most = default, "no line shows which CAM system wrote it", 0
+    best, why, most = default, phrase("recognized_by_nothing"), 0
     for dialect in sorted(dialects, key=lambda dialect: dialect.is_general):
         if dialect.is_general and most:
             break
         found = _marks(dialect, seen)
         if len(found) > most:
-            best, why, most = dialect, min(found)[1], len(found)
+            best, why, most = dialect, min(found, key=itemgetter(0))[1], len(found)
     return Recognition(best, why, most > 0)
 
 
-def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, str]]:
+def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, Wording]]:
     """Return the first line with each mark of a dialect, and the mark as it stands there."""
     found = []
     for mark in dialect.marks:
         for line, number in lines.items():
             if matched := mark.match(line):
-                found.append((number, f"{matched[0].strip().decode('ascii', 'replace')} in line {number}"))
+                text = matched[0].strip().decode("ascii", "replace")
+                found.append((number, phrase("recognized_in_line", mark=text, line=number)))
                 break
     return found

@@ -9,7 +9,7 @@ from trunnion.cli.controls import control_lines
 from trunnion.cli.machine.machine_text import machine_data, machine_lines, machine_list
 from trunnion.cli.printing import print_result, tell_problem
 from trunnion.cli.results import show
-from trunnion.cli.wording import problem_line
+from trunnion.cli.wording import line, problem_line
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
@@ -74,13 +74,13 @@ def check(given: Given) -> int:
     other = checked_file(given.file)
     if other is not None:
         _tell(other.remarks)
-        show(given, lambda: checked_data(other), [f"{given.file}: good: {other.text}"])
+        show(given, lambda: checked_data(other), [line("file_good_as", file=given.file, what=other.said)])
         return 0
     if given.file in shipped_controls() or is_control_file(Path(given.file)):
         _check_control_file(given.file)
         control = describe_control(given.file)
         _tell(control.remarks)
-        good = f"{given.file}: good"
+        good = line("file_good", file=given.file)
         show(given, lambda: control, [good, "", *control_lines(control)])
         return 0
     _check_is_known(given.file)
@@ -88,7 +88,7 @@ def check(given: Given) -> int:
     _raise(machine_problems(load_table(given.file, machine_library(), kind="machine"), key))
     found = describe_machine(given.file)
     _tell(found.remarks)
-    good = f"{given.file}: good"
+    good = line("file_good", file=given.file)
     if given.program is None:
         show(given, lambda: machine_data(found), [good, "", *machine_lines(found)])
         return 0

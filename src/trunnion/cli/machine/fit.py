@@ -2,14 +2,19 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Final
 
+from trunnion.cli.columns import columns_of, padded
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.cli.wording import in_command_words
+from trunnion.cli.wording import in_words, line, together
 from trunnion.jobs.capability.fitting import AxisMargin, FitStatus, MachineFit, fit
 from trunnion.jobs.job import Given
-from trunnion.messages import phrase
+from trunnion.messages import phrase, word_said
 from trunnion.wording import format_duration
+
+#: Columns that a status has at least.
+_OF_STATUS: Final = 12
 
 
 def run(given: Given) -> int:
@@ -22,14 +27,16 @@ def run(given: Given) -> int:
 def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
     """Yield the machines in their order, each with what it makes of it."""
     wide = max(len(each.key) for each in found)
+    words = {status: in_words(word_said(status)) for status in FitStatus}
+    of_status = max(_OF_STATUS, *map(columns_of, words.values()))
     if any(each.zero_mm is not None and each.status is not FitStatus.NOT for each in found):
-        yield "zero: of the workpiece in the machine frame, X,Y,Z in mm with all axes at zero; left: to the limits"
+        yield line("fit_legend")
     for each in found:
-        yield f"{each.key:<{wide}}  {each.status:<12}  {_facts(each)}".rstrip()
-        for reason in each.reasons:
-            yield f"{'':<{wide}}  {in_command_words(reason)}"
+        yield f"{each.key:<{wide}}  {padded(words[each.status], of_status)}  {_facts(each)}".rstrip()
+        for reason in each.why:
+            yield f"{'':<{wide}}  {in_words(reason)}"
         if each.not_measured:
-            yield f"{'':<{wide}}  {phrase('stands_on', values=each.not_measured)}"
+            yield f"{'':<{wide}}  {in_words(phrase('stands_on', values=each.not_measured))}"
 
 
 def _facts(each: MachineFit) -> str:
@@ -37,11 +44,13 @@ def _facts(each: MachineFit) -> str:
     facts = [] if each.seconds is None else [format_duration(each.seconds)]
     if each.zero_mm is not None and each.status is not FitStatus.NOT:
         zero = ",".join(f"{part:.3f}" for part in each.zero_mm)
-        facts.append(f"zero {zero}" + (f" turned {each.turn_deg:g}°" if each.turn_deg else ""))
+        facts.append(
+            line("fit_zero_turned", zero=zero, turn=each.turn_deg) if each.turn_deg else line("fit_zero", zero=zero)
+        )
     if each.status is not FitStatus.NOT:
-        left = [_margin(margin) for margin in each.margins if math.isfinite(margin.margin)]
-        facts += [f"left {', '.join(left)}"] if left else []
-    return "; ".join([*facts, *(["an example, no builder's machine"] if each.is_example else [])])
+        left = tuple(_margin(margin) for margin in each.margins if math.isfinite(margin.margin))
+        facts += [line("fit_left", margins=left)] if left else []
+    return together(*facts, line("fit_example") if each.is_example else "")
 
 
 def _margin(margin: AxisMargin) -> str:

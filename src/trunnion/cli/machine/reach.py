@@ -8,15 +8,23 @@ import numpy as np
 from trunnion.capability.part_reach import PartReach
 from trunnion.capability.path_reach import PathReach
 from trunnion.capability.reach import Reach, TiltReach
+from trunnion.cli.columns import padded
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import line, part, together
 from trunnion.jobs.capability.reach_report import write_reach_plot
 from trunnion.jobs.capability.reaching import reach
 from trunnion.jobs.job import Given
 from trunnion.machines.reach import ReachedVolume
-from trunnion.wording import counted, position
+from trunnion.messages import Wording
+from trunnion.wording import position
 
 _DM3: Final = 1e6
+
+#: Columns of the table over tilts, and their widths.
+_HEADS: Final = (
+    ("tilt", 11), ("azimuths", 10), ("positions", 11), ("one_position", 18), ("every", 27), ("some", 27),
+)  # fmt: skip
 
 #: Facets that the text shows; the data has all.
 _MOST: Final = 12
@@ -40,30 +48,31 @@ def reach_lines(found: Reach) -> Iterator[str]:
         yield from _part_lines(found.part, found)
     for path in found.paths:
         yield _path_line(path, found)
-    machine = found.machine
-    length = "no tool" if not machine.tool_length else f"a tool of {machine.tool_length:g} mm"
-    yield f"{machine.name} with {length}: {100.0 * found.sphere:.1f} % of all tool axes"
-    yield "tilt from Z  azimuths  positions  one position dm³       at every azimuth dm³        at some azimuth dm³"
+    machine, share = found.machine, 100.0 * found.sphere
+    if machine.tool_length:
+        yield line("machine_with_tool", machine=machine.name, length=machine.tool_length, share=share)
+    else:
+        yield line("machine_without_tool", machine=machine.name, share=share)
+    yield "".join(padded(line(f"head_{head}"), width, right=True) for head, width in _HEADS)
     for each in found.tilts:
         if each.share:
             yield _tilt_line(each)
     none = [each.tilt for each in found.tilts if not each.share]
     if none:
-        yield f"no tool axis with a tilt of {_ranges(none, found.step)}"
+        yield line("no_axis_with_tilts", tilts=_ranges(none, found.step))
     between = max(each.between for each in found.tilts)
     if between:
-        yield (
-            f"bounds allow for tool axes between those tried, every {found.step:g}°: half-way points move by up to"
-            f" {between:.0f} mm; a smaller --step narrows them"
-        )
+        yield line("bounds_between", step=found.step, most=between)
 
 
 def _tilt_line(each: TiltReach) -> str:
     low, high = min(each.branches), max(each.branches)
-    positions = f"{low}" if low == high else f"{low} to {high}"
+    positions = f"{low}" if low == high else line("range", low=str(low), high=str(high))
     pose = "" if each.one_pose is None else _dm3(each.one_pose[1])
     volumes = f"{_volume(each.every):>26}{_volume(each.some):>26}"
-    return f"{each.tilt:>10g}°{100.0 * each.share:>8.1f} %{positions:>11}{pose:>17}{volumes}".rstrip()
+    return (
+        f"{each.tilt:>10g}°{100.0 * each.share:>8.1f} %{padded(positions, 11, right=True)}{pose:>17}{volumes}".rstrip()
+    )
 
 
 def _volume(volume: ReachedVolume | None) -> str:
@@ -84,63 +93,65 @@ def _ranges(tilts: list[float], step: float) -> str:
     for k in range(1, len(tilts) + 1):
         if k == len(tilts) or tilts[k] - tilts[k - 1] > step * 1.001:
             one = tilts[start] == tilts[k - 1]
-            parts.append(f"{tilts[start]:g}°" if one else f"{tilts[start]:g}° to {tilts[k - 1]:g}°")
+            parts.append(f"{tilts[start]:g}°" if one else line("tilt_range", low=tilts[start], high=tilts[k - 1]))
             start = k
     return ", ".join(parts)
 
 
-def _not_judged(found: Reach) -> str:
-    """Return what is not known of linear axes, in words, with what to give; empty where all are judged."""
+def _not_judged(found: Reach) -> Wording | None:
+    """Return what is not known of linear axes, with what to give; None where all are judged."""
     slides, machine = found.unjudged_axes, found.machine
     if not slides:
-        return ""
+        return None
     free = [k for k in machine.linear if not machine.axes[k].has_limits]
-    cure = "give --zero" if machine.workpiece_zero is None else "give --tool-length"
-    cure = "the machine states no limits" if len(free) == len(slides) else cure
-    names = "linear axes are" if len(slides) == len(machine.linear) else f"{' and '.join(slides)} {_is(len(slides))}"
-    return f"{names} not judged ({cure})"
+    cure = part("give_zero") if machine.workpiece_zero is None else part("give_length")
+    cure = part("no_limits_stated") if len(free) == len(slides) else cure
+    if len(slides) == len(machine.linear):
+        return part("not_judged_all", cure=cure)
+    if len(slides) == 1:
+        return part("not_judged_one", axis=slides[0], cure=cure)
+    return part("not_judged_some", axes=tuple(slides), cure=cure)
 
 
-def _is(count: int) -> str:
-    return "is" if count == 1 else "are"
-
-
-def _part_lines(part: PartReach, found: Reach) -> Iterator[str]:
-    near = "along its normal" if not part.lean else f"within {part.lean:g}° of its normal"
-    missed = part.missed
-    share = f"{100.0 * part.share:.1f} % of the surface is reached {near} ({counted(len(part.area), 'facet')})"
-    if unknown := _not_judged(found):
-        share += f" as far as it is known: {unknown}"
-    yield f"{part.name}: {share}"
+def _part_lines(found: PartReach, whole: Reach) -> Iterator[str]:
+    near = part("within_of_normal", lean=found.lean) if found.lean else part("along_normal")
+    missed = found.missed
+    share = {"part": found.name, "share": 100.0 * found.share, "near": near, "count": len(found.area)}
+    unknown = _not_judged(whole)
+    yield (
+        line("share_reached", **share) if unknown is None else line("share_reached_as_known", **share, unknown=unknown)
+    )
     for which, why in (
-        (~part.axis, "no such tool axis"),
-        (part.axis & ~part.travel, "beyond the travel of the linear axes"),
+        (~found.axis, part("no_such_axis")),
+        (found.axis & ~found.travel, part("beyond_linear_travel")),
     ):
         if which.any():
-            tilts = np.degrees(np.arccos(np.clip(part.normal[which, 2], -1.0, 1.0)))
-            lost = 100.0 * float(part.area[which].sum() / part.area.sum())
-            yield f"  {why}: {lost:.1f} %, normals tilted from {tilts.min():.1f}° to {tilts.max():.1f}°"
+            tilts = np.degrees(np.arccos(np.clip(found.normal[which, 2], -1.0, 1.0)))
+            lost = 100.0 * float(found.area[which].sum() / found.area.sum())
+            yield "  " + line("lost_share", why=why, lost=lost, low=tilts.min(), high=tilts.max())
     for k in missed[:_MOST].tolist():
-        i, j, n = part.normal[k] + 0.0
-        why = "beyond the travel of the linear axes" if part.axis[k] else "no such tool axis"
-        yield (
-            f"  facet {k + 1}: {part.area[k]:.1f} mm² at {position(part.centre[k])},"
-            f" normal {i:.3f} {j:.3f} {n:.3f}: {why}"
+        i, j, n = found.normal[k] + 0.0
+        yield "  " + line(
+            "facet_missed",
+            number=k + 1,
+            area=found.area[k],
+            place=position(found.centre[k]),
+            normal=f"{i:.3f} {j:.3f} {n:.3f}",
+            why=part("beyond_linear_travel" if found.axis[k] else "no_such_axis"),
         )
     if len(missed) > _MOST:
-        yield f"  and {len(missed) - _MOST} more"
+        yield "  " + line("and_more", count=len(missed) - _MOST)
 
 
 def _path_line(path: PathReach, found: Reach) -> str:
-    tilts = f"tilts from {path.tilts[0]:.2f}° to {path.tilts[1]:.2f}°"
     faults = []
     if path.no_axis:
-        faults.append(
-            f"the tool axis of {counted(path.no_axis, 'point')} cannot be had, first in line {path.no_axis_line}"
-        )
+        faults.append(line("axis_not_had", count=path.no_axis, line=path.no_axis_line))
     if path.no_travel:
-        faults.append(f"{counted(path.no_travel, 'point')} beyond the travel, first in line {path.no_travel_line}")
+        faults.append(line("points_beyond", count=path.no_travel, line=path.no_travel_line))
     unknown = _not_judged(found)
-    fine = "every tool axis can be had" if len(found.unjudged_axes) == len(found.machine.linear) else "all reached"
-    told = "; ".join(faults) or fine
-    return f"{path.file}: {counted(path.points, 'point')}, {tilts}: {told}{'; but ' if unknown else ''}{unknown}"
+    fine = "every_axis_had" if len(found.unjudged_axes) == len(found.machine.linear) else "all_reached"
+    low, high = path.tilts
+    told = {"file": path.file, "count": path.points, "low": low, "high": high}
+    told["told"] = together(*faults) if faults else line(fine)
+    return line("path_reached", **told) if unknown is None else line("path_reached_but", **told, unknown=unknown)

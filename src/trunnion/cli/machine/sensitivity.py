@@ -8,16 +8,15 @@ from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sens
 from trunnion.cli.columns import table, width_of
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.cli.wording import spoken
+from trunnion.cli.wording import in_words, line, part, spoken
 from trunnion.jobs.capability.sensitivity import sensitivity
 from trunnion.jobs.capability.sensitivity_report import (
     amount_text,
-    place_text,
+    place_said,
+    pose_text,
     write_sensitivity_report,
-    zero_text,
 )
 from trunnion.jobs.job import Given
-from trunnion.wording import counted
 
 
 def run(given: Given) -> int:
@@ -33,23 +32,18 @@ def run(given: Given) -> int:
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     """Yield a sensitivity as a table."""
-    yield f"{found.run.files[0]}: {counted(found.motions, 'motion')} at feed; workpiece zero {_zero_words(found)}"
-    yield (
-        "errors of the tip in mm: the largest, with its block (at), and the root of the mean square over all motions"
-        " (rms); axis deg: the largest of the tool axis"
-    )
+    zero = part("zero_not_set") if found.zero_at is None else part("zero_set_at", place=pose_text(found.zero_at))
+    yield line("sensitivity_of", file=found.run.files[0], count=found.motions, zero=zero)
+    yield line("error_heads")
     if found.zero_at is not None:
-        yield "zero set: what is on the part after the workpiece zero was set with the same error; as it is: all of it"
-    zeroed = ("zero set: mm", "at", "rms") if found.zero_at is not None else ()
-    heads = ("number", "off by", *zeroed, "as it is: mm", "at", "rms", "axis deg")
+        yield line("zero_set_heads")
+    zeroed = ("zero_set", "at", "rms") if found.zero_at is not None else ()
+    heads = ("number", "off_by", *zeroed, "as_it_is", "at", "rms", "axis")
     numbers = frozenset(column for column, head in enumerate(heads) if head not in ("number", "at"))
-    yield from table([heads, *(_cells(each, found) for each in found.numbers)], width_of(sys.stdout), numbers)
+    titles = tuple(line(f"column_{head}") for head in heads)
+    yield from table([titles, *(_cells(each, found) for each in found.numbers)], width_of(sys.stdout), numbers)
     if found.idle:
-        yield "without effect: " + ", ".join(number.name for number in found.idle)
-
-
-def _zero_words(found: Sensitivity) -> str:
-    return "not set" if found.zero_at is None else f"set {zero_text(found.zero_at)}"
+        yield line("without_effect", names=tuple(number.name for number in found.idle))
 
 
 def _cells(each: NumberSensitivity, found: Sensitivity) -> tuple[str, ...]:
@@ -59,4 +53,4 @@ def _cells(each: NumberSensitivity, found: Sensitivity) -> tuple[str, ...]:
 
 
 def _extent(extent: ErrorExtent, found: Sensitivity) -> tuple[str, str, str]:
-    return f"{extent.largest:.5f}", place_text(extent, found.run), f"{extent.rms:.5f}"
+    return f"{extent.largest:.5f}", in_words(place_said(extent, found.run)), f"{extent.rms:.5f}"

@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.impeller.paths.clearance import Obstacles, ToolBody, distances_of
+from trunnion.messages import Wording, phrase, word_said
 from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.tools.profile import Role
 
@@ -39,11 +40,17 @@ class PartClearance:
     centre: Annotated[tuple[float, float, float], Figure("at")]
     axis: Annotated[tuple[float, float, float], NOT_DATA]
 
-    def __str__(self) -> str:
-        """Return the distance in words, such as ``shank 2.500 mm from blade 1``."""
+    @property
+    def said(self) -> Wording:
+        """The distance, such as ``shank 2.500 mm from blade 1``."""
+        part = word_said(self.part)
         if self.distance >= FAR:
-            return f"{self.part} {FAR:g} mm or more from all blades and the hub"
-        return f"{self.part} {self.distance:.3f} mm from {self.body}"
+            return phrase("part_far", part=part, far=FAR)
+        return phrase("part_from_body", part=part, distance=self.distance, body=word_said(self.body))
+
+    def __str__(self) -> str:
+        """Return the distance in words."""
+        return str(self.said)
 
 
 def least_clearances(

@@ -321,7 +321,7 @@ def _beyond(asked: MachineLike, machine: Machine, found: Placement) -> MachineFi
     """Return a machine whose axes do not reach it at any place."""
     tried = _turns_tried(found)
     if found.best is None:
-        obstacles = tuple(phrase("said", text=turn.obstacle) for turn in found.turns if turn.obstacle)
+        obstacles = tuple(turn.why for turn in found.turns if turn.obstacle)
         return MachineFit(machine.key, FitStatus.NOT, (*obstacles[:1], tried))
     beyond = [each for each in found.best.axes if each.margin_mm < 0.0]
     reasons = (*map(_travel_reason, beyond), tried, *_length_reasons(machine))

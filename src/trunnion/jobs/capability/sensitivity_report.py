@@ -16,7 +16,7 @@ from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sens
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
-from trunnion.messages import LIBRARY, Words
+from trunnion.messages import LIBRARY, Wording, Words, foreign, phrase
 from trunnion.model.run import Run
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, SingleFloats
 from trunnion.reporting.sensitivity_page import ErrorCells, NumberRow, SensitivityContent, render_sensitivity_page
@@ -51,17 +51,31 @@ def amount_text(each: NumberSensitivity) -> str:
 
 
 def place_text(extent: ErrorExtent, run: Run) -> str:
+    """Return the same in English."""
+    return str(place_said(extent, run))
+
+
+def place_said(extent: ErrorExtent, run: Run) -> Wording:
     """Return the block of the largest error as programmers call it; empty where there is none."""
     place = extent.place
     if extent.largest < _NONE:
-        return ""
-    block = f"N{place.block} (line {place.line})" if place.block >= 0 else f"line {place.line}"
-    return block if place.file == run.files[0] else f"{Path(place.file).name} {block}"
+        return foreign("")
+    block = (
+        phrase("block_in_line", block=place.block, line=place.line)
+        if place.block >= 0
+        else phrase("line_number", line=place.line)
+    )
+    return block if place.file == run.files[0] else phrase("block_of_file", file=Path(place.file).name, block=block)
 
 
 def zero_text(pose: Mapping[str, float] | None) -> str:
     """Where the zero was set, in words."""
-    return "not set" if pose is None else "at " + " ".join(f"{name}{value:g}" for name, value in pose.items())
+    return "not set" if pose is None else f"at {pose_text(pose)}"
+
+
+def pose_text(pose: Mapping[str, float]) -> str:
+    """Return the values of axes."""
+    return " ".join(f"{name}{value:g}" for name, value in pose.items())
 
 
 def _content(found: Sensitivity, words: Words) -> SensitivityContent:

@@ -5,7 +5,7 @@ Out:    sentences for a person beside the machine.
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Final
 
@@ -16,15 +16,15 @@ from trunnion.machines import Axis, Machine
 from trunnion.machines.loading import machine_library
 from trunnion.messages import Wording, phrase
 
-#: Keys of what no two machines of a type share for certain, and what it is.
+#: Keys of what no two machines of a type share for certain, and the phrase of what it is.
 _MEASURED: Final = {
-    "point_mm": "the lines about which axes turn", "limits_mm": "travel", "limits_deg": "travel",
-    "endless": "which axes turn endlessly", "output": "how a program writes their angles",
-    "positive": "which way axes go",
-    "home_mm": "home", "home_deg": "home", "rapid_mm_min": "rapid traverse", "rapid_deg_min": "rapid traverse",
-    "acceleration_mm_s2": "acceleration", "acceleration_deg_s2": "acceleration",
-    "gauge_point_mm": "gauge point", "max_rpm": "highest spindle speed", "zero_mm": "workpiece zero",
-    "shape": "bodies of the simulation",
+    "point_mm": "measured_lines", "limits_mm": "measured_travel", "limits_deg": "measured_travel",
+    "endless": "measured_endless", "output": "measured_angles", "positive": "measured_senses",
+    "home_mm": "measured_home", "home_deg": "measured_home",
+    "rapid_mm_min": "measured_rapid", "rapid_deg_min": "measured_rapid",
+    "acceleration_mm_s2": "measured_acceleration", "acceleration_deg_s2": "measured_acceleration",
+    "gauge_point_mm": "measured_gauge_point", "max_rpm": "measured_speed", "zero_mm": "measured_zero",
+    "shape": "measured_bodies",
 }  # fmt: skip
 
 
@@ -32,7 +32,7 @@ _MEASURED: Final = {
 _PLACES: Final = (" point_mm", " limits_mm", " gauge_point_mm")
 
 
-def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
+def assumptions(machine: Machine, table: Table | None) -> tuple[Wording, ...]:
     """Return what is assumed of a machine.
 
     machine  the machine
@@ -41,9 +41,9 @@ def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
     own = None if table is None else table.unread_copy()
     if own is None:
         return tuple(_left_open(machine))
-    assumed = _marked(own, ASSUMED, "Assumed by the shipped definition")
+    assumed = _marked(own, ASSUMED, "assumed_by_shipped")
     # What is still to be done comes last, where it is seen.
-    return (*assumed, *_inherited(machine), *_left_open(machine), *_marked(own, MARKS, "Still to enter"))
+    return (*assumed, *_inherited(machine), *_left_open(machine), *_marked(own, MARKS, "still_to_enter"))
 
 
 def assumed_places(machine: Machine, table: Table | None) -> Wording | None:
@@ -58,17 +58,17 @@ def assumed_places(machine: Machine, table: Table | None) -> Wording | None:
     return phrase("places_assumed", names=tuple(names)) if names else None
 
 
-def _marked(table: Table, mark: re.Pattern[str], what: str) -> Iterator[str]:
+def _marked(table: Table, mark: re.Pattern[str], variant: str) -> Iterator[Wording]:
     """Values whose comments say that they are none of the machine's."""
     library = str(machine_library())
-    found: dict[str, list[str]] = {}
+    found: dict[str, list[Wording]] = {}
     for value in marked_in(table.content, mark):
-        found.setdefault(value.file, []).append(str(value))
+        found.setdefault(value.file, []).append(value.said)
     for file in sorted(found, key=lambda each: not each.startswith(library)):
-        yield f"{what}: {', '.join(found[file])}."
+        yield phrase(variant, values=tuple(found[file]))
 
 
-def _inherited(machine: Machine) -> Iterator[str]:
+def _inherited(machine: Machine) -> Iterator[Wording]:
     """Measured things that another machine's definition says."""
     found: dict[str, dict[str, list[str]]] = {}
     for value in machine.inherited:
@@ -76,36 +76,31 @@ def _inherited(machine: Machine) -> Iterator[str]:
         if value.table == "axis":
             axes.append(value.of)
     for name, things in found.items():
-        told = [f"{what} ({', '.join(dict.fromkeys(axes))})" if axes else what for what, axes in things.items()]
-        yield f"From {name}, which is another machine until you have compared it with yours: {', '.join(told)}."
+        told = tuple(
+            phrase("of_axes", what=phrase(what), axes=tuple(dict.fromkeys(axes))) if axes else phrase(what)
+            for what, axes in things.items()
+        )
+        yield phrase("from_another_machine", name=name, things=told)
 
 
-def _left_open(machine: Machine) -> Iterator[str]:
+def _left_open(machine: Machine) -> Iterator[Wording]:
     """Yield what the definition does not state, and what that means."""
     if machine.workpiece_zero is None:
-        yield (
-            "Workpiece zero: not stated, and taken for the origin. Linear axes are checked for whether the program "
-            "fits their travel anywhere; programs without TCP need setting zero=X,Y,Z."
-        )
-    yield "Tool lengths: not known, for no definition has them. Programs without TCP want setting tool_length=MM."
+        yield phrase("zero_not_stated")
+    yield phrase("lengths_not_known")
     if not machine.spindle_point_is_stated:
         heads = [axis.name for axis in machine.axes if axis.is_rotary and axis.mount == "tool"]
-        pivot = f" The pivot length of {heads[-1]} counts from there." if heads else ""
-        yield f"Gauge point: not stated, and taken for the origin of the frame.{pivot}"
-    checks: tuple[tuple[str, Callable[[Axis], bool], str], ...] = (
-        ("Travel", lambda axis: not axis.endless and not axis.has_limits, "and not checked"),
-        ("Home", lambda axis: not axis.home_is_stated, "and taken for 0"),
-        ("Rapid traverse", lambda axis: axis.rapid is None, "so that rapids take no time"),
-        ("Acceleration", lambda axis: axis.acceleration is None, "so that times are estimates that are too short"),
+        yield phrase("gauge_point_open_with_head", axis=heads[-1]) if heads else phrase("gauge_point_open")
+    checks: tuple[tuple[str, Callable[[Axis], bool]], ...] = (
+        ("travel_open", lambda axis: not axis.endless and not axis.has_limits),
+        ("home_open", lambda axis: not axis.home_is_stated),
+        ("rapid_open", lambda axis: axis.rapid is None),
+        ("acceleration_open", lambda axis: axis.acceleration is None),
     )
-    for what, is_open, means in checks:
-        if names := _names(axis for axis in machine.axes if is_open(axis)):
-            yield f"{what} of {names}: not stated, {means}."
+    for variant, is_open in checks:
+        if names := tuple(axis.name for axis in machine.axes if is_open(axis)):
+            yield phrase(variant, axes=names)
     if machine.spindle_max_rpm is None:
-        yield "Highest spindle speed: not stated, and not checked."
+        yield phrase("highest_speed_open")
     if machine.facts.tool_change_s is None:
-        yield "Tool change: not stated, so that times count none."
-
-
-def _names(axes: Iterable[Axis]) -> str:
-    return ", ".join(axis.name for axis in axes)
+        yield phrase("tool_change_open")

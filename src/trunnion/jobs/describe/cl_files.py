@@ -11,7 +11,7 @@ from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.messages import Wording
+from trunnion.messages import Wording, foreign
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import (
@@ -29,7 +29,7 @@ from trunnion.model.toolpath import (
 from trunnion.planning.holes.cycles import SpindleState
 from trunnion.planning.holes.operations import hole_rows
 from trunnion.planning.path_measures import Range, extents, kind_and_planes, measure
-from trunnion.results import NOT_DATA
+from trunnion.results import NOT_DATA, Figure
 
 Vector = tuple[float, float, float]
 
@@ -43,7 +43,7 @@ class ClFileDescription:
 
     dialect       ``clsf``, ``ncl``, ``solidworks``, ``clt``, ``catia``, ``fusion`` or ``apt``
     title         its name in words
-    recognized    by what the dialect was recognized
+    why           by what the dialect was recognized; ``recognized`` in English
     units         ``mm`` or ``inch``
     states_units  the file says its unit, or its feeds do; else mm are assumed
     part          name of the part, empty if there is none
@@ -54,11 +54,16 @@ class ClFileDescription:
     file: str
     dialect: str
     title: str
-    recognized: str
+    why: Annotated[Wording, Figure("recognized", take=str)]
     units: str
     states_units: bool
     part: str
     system: tuple[float, ...]
+
+    @property
+    def recognized(self) -> str:
+        """By what the dialect was recognized."""
+        return str(self.why)
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,12 +271,12 @@ def describe_cl(
 
 
 def _file(toolpath: Toolpath) -> ClFileDescription:
-    title, _, why = toolpath.recognized.partition(": ")
+    why = toolpath.recognized_by.parameter("why")
     return ClFileDescription(
         file=toolpath.file,
         dialect=toolpath.dialect,
-        title=title or DIALECTS[toolpath.dialect].title,
-        recognized=why,
+        title=DIALECTS[toolpath.dialect].title,
+        why=why if isinstance(why, Wording) else foreign(""),
         units=_UNITS[toolpath.unit],
         states_units=toolpath.states_unit,
         part=toolpath.part,

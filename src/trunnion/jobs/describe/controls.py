@@ -1,8 +1,9 @@
 """What the definition of a control means, as records: what it can do, its words, its texts and its settings."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Annotated, Final
 
 from trunnion.controls import Control, load_control, shipped_controls
 from trunnion.controls.definition_files import is_control_file, load_control_table
@@ -21,17 +22,21 @@ from trunnion.jobs.describe.template_motions import motions_in_branches
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.reading import FilePath, load_machine
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
+from trunnion.messages import Wording, declared, foreign, phrase
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import Sense
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
+from trunnion.results import Figure
 
 #: What F counts without TCP while rotary axes turn.
 _FEEDS: Final = {
-    "inverse_time": "inverse time (G93)",
-    "all_axes": "the path of all axes, a degree as a millimetre",
-    "slides": "the path of the linear axes",
+    "inverse_time": phrase("feed_is_inverse_time"),
+    "all_axes": phrase("feed_is_of_all_axes"),
+    "slides": phrase("feed_is_of_linear_axes"),
 }
 
+#: What becomes of a hole, by what a control has for it.
+_CYCLES: Final = ("ability_cycles", "ability_holes_as_motion", "ability_cycles_refused")
 
 #: A value that no setting with a form of its own can have: what is said of it tells the form.
 _IMPOSSIBLE: Final = "?"
@@ -42,17 +47,34 @@ class SettingDescription:
     """A setting, for people.
 
     name           as it is written
-    meaning        what it changes, in sentences; empty if its definition does not say it
-    default        what holds where it is not given
-    allowed        what it may be, in words
+    meant          what it changes, in sentences; empty if its definition does not say it
+    default_said   what holds where it is not given
+    allowed_said   what it may be, in words
     by_operation   operations of one program can have different values
+
+    ``meaning``, ``default`` and ``allowed`` are these in English.
     """
 
     name: str
-    meaning: str
-    default: str
-    allowed: str
+    meant: Annotated[Wording, Figure("meaning", take=str)]
+    default_said: Annotated[Wording, Figure("default", take=str)]
+    allowed_said: Annotated[Wording, Figure("allowed", take=str)]
     by_operation: bool = False
+
+    @property
+    def meaning(self) -> str:
+        """What it changes, in sentences."""
+        return str(self.meant)
+
+    @property
+    def default(self) -> str:
+        """What holds where it is not given."""
+        return str(self.default_said)
+
+    @property
+    def allowed(self) -> str:
+        """What it may be, in words."""
+        return str(self.allowed_said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +101,10 @@ class TemplateDescription:
     lines: tuple[str, ...]
 
 
+def _sentences(said: Iterable[Wording]) -> tuple[str, ...]:
+    return tuple(map(str, said))
+
+
 @dataclass(frozen=True, slots=True)
 class ControlDescription:
     """What a control's definition means.
@@ -88,7 +114,7 @@ class ControlDescription:
     family        whose writer and reader it has
     description   a sentence about it; may be empty
     extension     of its program files
-    abilities     what it can do, and what it cannot, in sentences
+    able          what it can do, and what it cannot; ``abilities`` are the sentences
     words         of motion blocks, in their order
     texts         templates in the order in which a program has them
     settings      its own
@@ -101,12 +127,17 @@ class ControlDescription:
     family: str
     description: str
     extension: str
-    abilities: tuple[str, ...]
+    able: Annotated[tuple[Wording, ...], Figure("abilities", take=_sentences)]
     words: tuple[WordDescription, ...]
     texts: tuple[TemplateDescription, ...]
     settings: tuple[SettingDescription, ...]
     run_settings: tuple[SettingDescription, ...]
     remarks: tuple[Problem, ...] = ()
+
+    @property
+    def abilities(self) -> tuple[str, ...]:
+        """What it can do, and what it cannot, in sentences."""
+        return _sentences(self.able)
 
 
 def describe_control(control: FilePath) -> ControlDescription:
@@ -204,7 +235,7 @@ def _describe(key: str, control: Control) -> ControlDescription:
         family=control.family_name,
         description=control.description,
         extension=control.extension,
-        abilities=tuple(_abilities(control)),
+        able=tuple(_abilities(control)),
         words=words,
         texts=tuple(TemplateDescription(name, control.templates[name].lines) for name in names),
         settings=describe_settings(control),
@@ -221,7 +252,13 @@ def describe_settings(control: Control) -> tuple[SettingDescription, ...]:
 def run_settings() -> tuple[SettingDescription, ...]:
     """Return the settings that every control has."""
     return tuple(
-        SettingDescription(key, setting.meaning, setting.default, setting.allowed, key == "mode")
+        SettingDescription(
+            key,
+            declared(setting.meaning, "meanings", key),
+            _stated(setting.default, key),
+            setting.allowed,
+            key == "mode",
+        )
         for key, setting in RUN_SETTINGS.items()
     )
 
@@ -238,81 +275,101 @@ def _template_rank(name: str) -> int:
 def _control_setting(control: Control, name: str) -> SettingDescription:
     rule = control.setting_rule(name)
     of_family = dict(control.family.validate_settings({**control.settings, name: _IMPOSSIBLE}))
-    allowed = of_family.get(name, rule.allowed()).bare().what
+    allowed = of_family.get(name, rule.allowed()).bare()
     if name == "work_offset" and FAMILIES[control.family_name].reader:
-        allowed = load_reader(control.family_name).work_offsets.form
+        allowed = load_reader(control.family_name).work_offsets.form_said
     elif rule.kind is SettingKind.TOOL and control.allowed_instead(name, "NAME") is None:
-        allowed = "the number of a tool, such as 5, or its name"
-    default = control.settings[name] or _method_default(control, name) or "none"
+        allowed = phrase("number_or_name_of_tool")
+    stated = control.settings[name]
+    default = foreign(stated) if stated else _method_default(control, name)
     return SettingDescription(
         name,
-        control.setting_meanings.get(name) or PROGRAM_MEANINGS.get(name, ""),
+        declared(control.setting_meanings.get(name) or PROGRAM_MEANINGS.get(name, ""), "meanings", name),
         default,
         allowed,
         control.differs_by_operation(name),
     )
 
 
-def _method_default(control: Control, name: str) -> str:
+def _stated(default: str, name: str) -> Wording:
+    """Return a default: a value, or words."""
+    return phrase("no_default") if default == "none" else declared(default, "defaults", name)
+
+
+def _method_default(control: Control, name: str) -> Wording:
     rules = control.method_defaults.get(name, ())
-    told = [f"{value} for {part}" if part else f"else {value}" for part, value in rules]
-    return f"by the machining method: {', '.join(told)}" if told else ""
+    told = tuple(
+        phrase("default_for_method", value=value, method=part) if part else phrase("default_else", value=value)
+        for part, value in rules
+    )
+    return phrase("default_by_method", rules=told) if told else phrase("no_default")
 
 
-def _abilities(control: Control) -> list[str]:
-    """Return what a control can do with its own settings, and what it cannot, in sentences."""
+def _abilities(control: Control) -> Iterator[Wording]:
+    """Yield what a control can do with its own settings, and what it cannot, in sentences."""
     modes = control.modes({})
-    has = {mode: "yes" if mode in modes else "no" for mode in MachiningMode}
-    planes = [
+    planes = tuple(
         name.replace("_", ".") for name in control.family.PLANE_COMMANDS if f"approach_{name}" in control.templates
-    ]
+    )
     feed = _FEEDS.get(control.feed_without_tcp, "")
-    without = f"yes, F is {feed}" if has[MachiningMode.WITHOUT_TCP] == "yes" else "no"
-    if control.feed_without_tcp == UNKNOWN_FEED:
-        without = "no: what F counts there is not known"
+    without = (
+        phrase("feed_not_known")
+        if control.feed_without_tcp == UNKNOWN_FEED
+        else phrase("yes_with_feed", feed=feed)
+        if MachiningMode.WITHOUT_TCP in modes
+        else _yes(answer=False)
+    )
     arcs = control.arcs
-    about = "about Z of the plane only" if arcs.only_about_z else "about X, Y and Z"
     word_names = {word.name for word in control.words}
-    return [
-        f"three-axis: {has[MachiningMode.THREE_AXIS]}",
-        f"tilted planes: {', '.join(planes) if planes else has[MachiningMode.TILTED]}",
-        f"TCP: {has[MachiningMode.TCP]}",
-        *(["M114: yes"] if MachiningMode.M114 in modes else []),
-        f"five axes without TCP: {without}",
-        f"tool axis as a vector: {_yes(set(TOOL_VECTOR_WORDS) <= word_names)}",
-        f"surface normals: {_yes(set(SURFACE_NORMAL_WORDS) <= word_names)}",
-        f"circles: {about}, by {'radius where that is safe' if arcs.by_radius else 'centre'}; helices: "
-        f"{_yes(arcs.helices)}; several turns in a block: {_yes(arcs.multi_turn)}",
-        *_cycles(control),
-        f"coolant: {', '.join(word for word in control.coolant if word != 'OFF') or 'none'}",
-        f"subprograms: {_yes(all(name in control.templates for name in SUBPROGRAM_TEMPLATES))}",
-    ]
+    yield phrase("ability_three_axis", answer=_yes(MachiningMode.THREE_AXIS in modes))
+    tilted = phrase("these_words", words=planes) if planes else _yes(MachiningMode.TILTED in modes)
+    yield phrase("ability_tilted", answer=tilted)
+    yield phrase("ability_tcp", answer=_yes(MachiningMode.TCP in modes))
+    if MachiningMode.M114 in modes:
+        yield phrase("ability_m114", answer=_yes(answer=True))
+    yield phrase("ability_without_tcp", answer=without)
+    yield phrase("ability_tool_vector", answer=_yes(set(TOOL_VECTOR_WORDS) <= word_names))
+    yield phrase("ability_normals", answer=_yes(set(SURFACE_NORMAL_WORDS) <= word_names))
+    yield phrase(
+        "ability_circles",
+        about=phrase("circles_about_z" if arcs.only_about_z else "circles_about_all"),
+        by=phrase("circles_by_radius" if arcs.by_radius else "circles_by_centre"),
+        helices=_yes(arcs.helices),
+        turns=_yes(arcs.multi_turn),
+    )
+    yield from _cycles(control)
+    coolant = tuple(word for word in control.coolant if word != "OFF")
+    yield phrase("ability_coolant", words=phrase("these_words", words=coolant) if coolant else phrase("no_default"))
+    yield phrase("ability_subprograms", answer=_yes(all(name in control.templates for name in SUBPROGRAM_TEMPLATES)))
 
 
-def _yes(answer: bool) -> str:
-    return "yes" if answer else "no"
+def _yes(answer: bool) -> Wording:
+    return phrase("answer_yes" if answer else "answer_no")
 
 
-def _cycles(control: Control) -> list[str]:
-    """Return the hole-making cycles that a control has words for, those that become motion, and those that are
+def _cycles(control: Control) -> Iterator[Wording]:
+    """Yield the hole-making cycles that a control has words for, those that become motion, and those that are
     refused.
     """
     outcomes = {method: _outcome(control, method) for method in HoleMethod}
-    kinds = dict.fromkeys(kind for kind, _ in outcomes.values())
-    return [
-        f"{kind}: " + "; ".join(f"CYCLE/{method}{why}" for method, (each, why) in outcomes.items() if each == kind)
-        for kind in kinds
-    ]
+    for kind in dict.fromkeys(kind for kind, _ in outcomes.values()):
+        found = tuple(
+            phrase("cycle_because", method=str(method), why=why) if why else foreign(f"CYCLE/{method}")
+            for method, (each, why) in outcomes.items()
+            if each == kind
+        )
+        yield phrase(kind, cycles=found)
 
 
-def _outcome(control: Control, method: HoleMethod) -> tuple[str, str]:
+def _outcome(control: Control, method: HoleMethod) -> tuple[str, Wording | None]:
     """Return what becomes of a hole with the control's own settings, and why."""
     hole = Cycle(method, 2.0, 20.0, 10.0, (5.0, 0.0, 0.0), 0.0, False, 1.0, True, 0.0)
     spindle, formats = SpindleState(1000.0, Sense.CLW), control.number_formats(three_axis=True)
+    made, as_motion, refused = _CYCLES
     try:
         control.family.cycle_call(hole, 0.0, spindle, control.settings, formats)
     except UnsupportedCycleError as error:
-        return "no cycle, so that motion makes the hole if it can", f" ({error.wording.what})"
+        return as_motion, error.wording
     except HoleCycleError as error:
-        return "refused without the settings or words that it needs", f" ({error.wording.what}; {error.wording.cure})"
-    return "cycles", ""
+        return refused, error.wording.with_cure()
+    return made, None

@@ -15,6 +15,7 @@ from trunnion.jobs.inputs.reading import MachineLike, as_machine
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import JogTable, jog_table
 from trunnion.machines.loading import machine_library
+from trunnion.messages import Wording
 from trunnion.results import Figure
 
 
@@ -26,7 +27,8 @@ class MachineDescription:
     jogs     where tool and table go when its axes are jogged, and where the tool points
     control  name of its control
     texts    those of its control that a program with one tool has, in their order
-    assumed  what its definition leaves open, marks as not measured, or has from another machine, in sentences
+    taken    what its definition leaves open, marks as not measured, or has from another machine; ``assumed`` are the
+             sentences
     remarks  warnings of what the proof of a program may not see
     """
 
@@ -42,8 +44,13 @@ class MachineDescription:
     jogs: JogTable
     control: Annotated[str, Figure(after="assumed")]
     texts: Annotated[tuple[TemplateDescription, ...], Figure(after="control")]
-    assumed: tuple[str, ...] = ()
+    taken: Annotated[tuple[Wording, ...], Figure("assumed", take=lambda found: tuple(map(str, found)))] = ()
     remarks: tuple[Problem, ...] = ()
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What its definition leaves open, marks as not measured, or has from another machine, in sentences."""
+        return tuple(map(str, self.taken))
 
 
 def describe_machine(machine: MachineLike) -> MachineDescription:

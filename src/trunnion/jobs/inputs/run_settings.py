@@ -9,7 +9,7 @@ from typing import Final
 
 from trunnion.cl import DIALECTS
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, PROGRAM_MEANINGS
-from trunnion.messages import Wording
+from trunnion.messages import Wording, declared, phrase
 from trunnion.model.motion import PoleStrategy
 from trunnion.options.groups import POSTING
 from trunnion.options.kinds import Choice, Number
@@ -44,19 +44,22 @@ class RunSetting:
     example: str = ""
 
     @property
-    def allowed(self) -> str:
-        """What it may be, in words."""
+    def allowed(self) -> Wording:
+        """What it may be."""
         if self.choices:
-            return " or ".join(self.choices)
+            return phrase("either_of", words=self.choices)
+        form = phrase("either_of", words=tuple(self.form.split(" or ")))
         if self.bounds is None:
-            return f"{self.form}, such as {self.example}"
+            return phrase("form_such_as", form=form, example=self.example)
         low, high = self.bounds
-        limits = f"{low:g} to {high:g}" if high < _UNLIMITED else f"at least {low:g}"
-        return f"{self.form}, {limits}, such as {self.example}"
+        if high < _UNLIMITED:
+            return phrase("form_from_to_such_as", form=form, low=low, high=high, example=self.example)
+        return phrase("form_of_at_least_such_as", form=form, low=low, example=self.example)
 
     def fault(self, key: str, value: object) -> Wording:
         """Return the message about a value that cannot be; ``written`` says where it is no setting but an argument."""
-        shown, meaning, written = repr(value), self.meaning, f"{key}={self.form}"
+        shown, written = repr(value), f"{key}={self.form}"
+        meaning = declared(self.meaning, "meanings", key)
         if self.choices:
             choices = tuple(f"{key}={choice}" for choice in self.choices)
             return Wording("ARG220", "no_choice", value=shown, choices=choices, meaning=meaning)

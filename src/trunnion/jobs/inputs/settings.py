@@ -23,7 +23,7 @@ from trunnion.errors import InputError, Problem, argument_problem, setting_probl
 from trunnion.jobs.inputs.arguments import no_mapping
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.machines import Machine
-from trunnion.messages import Wording, phrase
+from trunnion.messages import Wording, declared, phrase
 
 #: A setting as text, as a number, as several numbers (``zero``), on or off, or None: it is not set.
 SettingValue: TypeAlias = (
@@ -108,15 +108,17 @@ def check_settings(settings: Mapping[str, str], control: Control, machine: Machi
         problems.append(setting_problem("preselect", Wording("ARG220", "never_preselected", control=control.name)))
     known = {**control.settings, **settings}
     problems += [
-        setting_problem(key, _of_control(known[key], remedy, control.setting_meanings.get(key, "")))
+        setting_problem(
+            key, _of_control(known[key], remedy, declared(control.setting_meanings.get(key, ""), "meanings", key))
+        )
         for key, remedy in control_setting_faults(settings, control, machine)
     ]
     if problems:
         raise InputError(problems)
 
 
-def _of_control(value: str, remedy: Wording, meaning: str) -> Wording:
-    if meaning:
+def _of_control(value: str, remedy: Wording, meaning: Wording) -> Wording:
+    if meaning.what:
         return Wording("ARG220", "not_of_control_with_meaning", value=repr(value), remedy=remedy, meaning=meaning)
     return Wording("ARG220", "not_of_control", value=repr(value), remedy=remedy)
 
@@ -131,7 +133,7 @@ def control_setting_faults(
     if "work_offset" in judged and readers.can_read(machine):
         offsets = readers.reader_of(machine).work_offsets
         if not offsets.value_of(settings["work_offset"]):
-            faults.append(("work_offset", phrase("write", allowed=offsets.form)))
+            faults.append(("work_offset", phrase("write", allowed=offsets.form_said)))
     effective = {**control.settings, **{key: value for key, value in settings.items() if value}}
     own = [key for key in judged if settings[key] not in ("", control.settings[key])]
     beside = {key: control.missing_beside(key, effective) for key in own}
@@ -306,6 +308,6 @@ def work_offset_setting(text: str, machine: Machine) -> int | None:
     offsets = readers.reader_of(machine).work_offsets
     value = offsets.value_of(" ".join(text.upper().split()))
     if value is None:
-        wording = Wording("ARG220", "no_work_offset", value=repr(text), form=offsets.form)
+        wording = Wording("ARG220", "no_work_offset", value=repr(text), form=offsets.form_said)
         raise InputError(argument_problem("work_offset", wording))
     return value

@@ -16,7 +16,7 @@ from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.jobs.inputs.settings import as_argument, as_texts
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector, tool_key
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 #: A workpiece zero: for all work offsets, or by their names.
 ZeroLike: TypeAlias = str | Iterable[float] | Mapping[str, Iterable[float]]
@@ -106,9 +106,8 @@ def _work_offset(name: str, machine: Machine, text: str) -> int:
     offsets = readers.reader_of(machine).work_offsets if readers.can_read(machine) else None
     value = None if offsets is None else offsets.value_of(" ".join(name.upper().split()))
     if value is None:
-        wording = Wording(
-            "ARG220", "no_work_offset", value=repr(name), form="a zero for all" if offsets is None else offsets.form
-        )
+        form = phrase("zero_for_all") if offsets is None else offsets.form_said
+        wording = Wording("ARG220", "no_work_offset", value=repr(name), form=form)
         raise InputError(setting_problem("zero", wording))
     return value
 

@@ -16,6 +16,7 @@ from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.setups import skipping_setup
+from trunnion.messages import Wording
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.verification.skip_meanings import other_meanings, words_of
@@ -35,7 +36,7 @@ def in_other_meanings(
     """
     runs = [run for _, own in setups for run in own.runs]
     for levels in other_meanings(*runs):
-        words, told = words_of(levels, *runs).what, [list[Problem]() for _ in setups]
+        words, told = words_of(levels, *runs), [list[Problem]() for _ in setups]
         wrong, found = tuple[Problem, ...](), list[SimulationResult]()
         try:
             others = [
@@ -51,11 +52,11 @@ def in_other_meanings(
         joined[0] = _with_remarks(joined[0], wrong, words)
         for before, after in zip(results, joined, strict=True):
             observer.problems(after.remarks[len(before.remarks) :])
-        results = [replace(each, meanings=(*each.meanings, words)) for each in joined]
+        results = [replace(each, skip_meanings=(*each.skip_meanings, words)) for each in joined]
     return results
 
 
-def _joined(one: SimulationResult, other: SimulationResult, words: str) -> SimulationResult:
+def _joined(one: SimulationResult, other: SimulationResult, words: Wording) -> SimulationResult:
     """Return the result of a set-up with what another meaning of its programs does besides."""
     gouges = [each for each in (one.gouge, other.gouge) if each is not None]
     result = replace(
@@ -63,19 +64,19 @@ def _joined(one: SimulationResult, other: SimulationResult, words: str) -> Simul
         findings=(*one.findings, *_new(one, one.findings, other.findings, words)),
         near=(*one.near, *_new(one, one.near, other.near, words)),
         gouge=max(gouges, key=lambda each: each.largest, default=None),
-        cuts_not_checked=tuple(dict.fromkeys((*one.cuts_not_checked, *other.cuts_not_checked))),
+        cuts_unknown=tuple(dict.fromkeys((*one.cuts_unknown, *other.cuts_unknown))),
     )
     return _with_remarks(result, other.remarks, words)
 
 
-def _new(one: SimulationResult, known: Sequence[_Found], others: Iterable[_Found], words: str) -> Iterator[_Found]:
+def _new(one: SimulationResult, known: Sequence[_Found], others: Iterable[_Found], words: Wording) -> Iterator[_Found]:
     """Yield what is found at another place, or is deeper or nearer there, with its row in the run of no skipped
     block.
     """
     for each in others:
         worst = max((_severity(own) for own in known if _place(own) == _place(each)), default=-np.inf)
         if _severity(each) > worst + one.limit:
-            yield replace(each, skipped=words, row=_row(one, each))
+            yield replace(each, when=words, row=_row(one, each))
 
 
 def _place(found: _Found) -> tuple[object, ...]:
@@ -98,7 +99,7 @@ def _row(one: SimulationResult, found: _Found) -> int:
     return -1
 
 
-def _with_remarks(result: SimulationResult, remarks: Iterable[Problem], words: str) -> SimulationResult:
+def _with_remarks(result: SimulationResult, remarks: Iterable[Problem], words: Wording) -> SimulationResult:
     """Return a result with the remarks that it has not, each with the blocks that are skipped."""
     known = set(result.remarks)
     new = [replace(each, wording=each.wording.within("of", name=words)) for each in remarks if each not in known]

@@ -25,7 +25,7 @@ from trunnion.jobs.project.named_files import library_files, project_files
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.machines import Machine
-from trunnion.messages import Wording, phrase
+from trunnion.messages import Wording, phrase, word_said
 from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -245,8 +245,8 @@ def _check(
         answer = broken[0].wording
     elif key == "removal":
         answer = Wording("removal", "good", volume=found.removed)
-        if found.meanings:
-            answer = Wording("removal", "with_note", answer=answer, note=found.meanings_line)
+        if found.skip_meanings:
+            answer = Wording("removal", "with_note", answer=answer, note=found.meanings_said)
     elif found.pairs:
         answer = Wording("collision", "good", pairs=found.pairs)
         if found.not_checked:
@@ -273,18 +273,19 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
 
 def _cuts_missing(found: SimulationResult) -> tuple[Wording, ...]:
     """Return that it is not known what is cut under radius compensation; nothing where it is."""
-    why = found.cuts_not_checked
+    why = found.cuts_unknown
     return (phrase("cuts_not_checked", why=why),) if why else ()
 
 
 def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
     for each in sorted(findings, key=lambda finding: -finding.depth)[:_MOST_PLACES]:
         said = Wording("removal", "finding", what=_words(each), depth=each.depth, place=position(each.place))
-        if each.stretch:
-            said = Wording("removal", "in_stretch", finding=said, stretch=each.stretch)
+        if each.among is not None:
+            said = Wording("removal", "in_stretch", finding=said, stretch=each.among)
         yield Place(each.line, each.block, each.depth, said, each.cl_file, each.cl_line if each.cl_file else 0)
 
 
-def _words(finding: SimulationFinding) -> str:
-    words = f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
-    return f"{finding.skipped}: {words}" if finding.skipped else words
+def _words(finding: SimulationFinding) -> Wording:
+    one, other = map(word_said, finding.between)
+    what = phrase("finding_between", kind=word_said(finding.kind), one=one, other=other)
+    return what if finding.when is None else phrase("with_skipped", skipped=finding.when, what=what)

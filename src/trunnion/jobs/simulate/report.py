@@ -15,6 +15,7 @@ from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import check_report_name
 from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines, travel_lines
+from trunnion.messages import joined
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.remarks import remark_groups
 from trunnion.reporting.simulation_content import (
@@ -83,8 +84,8 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         states=tuple(_state(each) for each in found.setups or (found,)),
         remarks=(*map(str, remark_groups(found.remarks)), *not_measured_lines(found), *travel_lines(found)),
         data=_cleaned(to_data(found)),
-        not_checked=found.not_checked_line,
-        stated=clean(found.stated_line),
+        not_checked=joined(found.not_judged),
+        stated=clean(str(found.stated_said or "")),
     )
 
 

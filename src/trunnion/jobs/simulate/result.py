@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.simulate.travel import ProgramTravel, judged_travel, travel_data
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
-from trunnion.messages import phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.model.run_samples import joint_samples
 from trunnion.reporting.remarks import remark_data
 from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
@@ -20,7 +20,6 @@ from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification import Verdict, stated_texts
-from trunnion.wording import counted
 
 #: Air cuts that are told, the longest ones.
 _MOST_AIR: Final = 20
@@ -38,6 +37,10 @@ _NOT_JUDGED: Final = ("SIM131", "SIM143", "SIM146", "SIM162", "SIM310")
 _OF_SETUP: Final = (
     "name", "machine", "programs", "passed", "cells_mm", "removed_mm3", "left", "gouge", "turn_deg", "tilt_deg",
 )  # fmt: skip
+
+
+def _sentences(said: Iterable[Wording]) -> tuple[str, ...]:
+    return tuple(map(str, said))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -59,11 +62,10 @@ class SimulationResult:
     gouge      what of the part is missing; None without a part. Both are those of the last set-up
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
-    not_checked  why collisions with the machine were not checked, in words; empty: they were
-    cuts_not_checked  why it is not known what is cut under radius compensation, in words; empty: it is
+    cuts_unknown  why it is not known what is cut under radius compensation; empty: it is
     not_measured  values of the definition that the distances of bodies stand on, though nobody has measured them
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
-    meanings   which blocks were skipped (``/``) in further runs, in words: what these found is among the findings; none
+    skip_meanings  which blocks were skipped (``/``) in further runs: what these found is among the findings; none
                where no block may be skipped. All other figures but ``gouge``, the worst, are those with none skipped
     stated     words and variables that the programs rely on, with what somebody has stated of them
     travel     of each program, as ``trunnion verify`` judges it
@@ -98,8 +100,8 @@ class SimulationResult:
     seconds: float
     simulation: Annotated[Simulation, NOT_DATA]
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
-    cuts_not_checked: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
-    meanings: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
+    cuts_unknown: Annotated[tuple[Wording, ...], Figure("cuts_not_checked", after="remarks", take=_sentences)] = ()
+    skip_meanings: Annotated[tuple[Wording, ...], Figure("meanings", after="remarks", take=_sentences)] = ()
     not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=(), after="remarks")] = ()
     travel: Annotated[tuple[ProgramTravel, ...], Figure(take=travel_data, after="remarks")] = ()
@@ -108,67 +110,94 @@ class SimulationResult:
     @property
     @Figure(after="remarks")
     def not_checked(self) -> tuple[str, ...]:
+        """Why collisions with the machine were not checked, in words; empty: they were."""
+        return _sentences(self.collisions_unknown)
+
+    @property
+    def cuts_not_checked(self) -> tuple[str, ...]:
+        """Why it is not known what is cut under radius compensation, in words; empty: it is."""
+        return _sentences(self.cuts_unknown)
+
+    @property
+    def meanings(self) -> tuple[str, ...]:
+        """Which blocks were skipped in further runs, in words."""
+        return _sentences(self.skip_meanings)
+
+    @property
+    def collisions_unknown(self) -> tuple[Wording, ...]:
         """Why collisions with the machine were not checked."""
         variants = [each.wording.variant for each in self.remarks if each.code == "SIM310"]
         why = dict.fromkeys(_WHY_NOT_CHECKED[each] for each in variants if each in _WHY_NOT_CHECKED)
-        return tuple(str(phrase(each)) for each in why)
+        return tuple(map(phrase, why))
 
     @property
     def outcome(self) -> Verdict:
         """``PASSED`` only where all that can be judged was."""
         if not self.passed:
             return Verdict.FAILED
-        return Verdict.IN_PART if self.not_checked_line else Verdict.PASSED
+        return Verdict.IN_PART if self.not_judged else Verdict.PASSED
+
+    def line(self, words: Words = LIBRARY) -> str:
+        """Return the last line that is said of a simulation, in the language of who asks."""
+        verdict = phrase("said_of", name=phrase(self.outcome.value), what=self.said_verdict(words))
+        return verdict.text("what", words)
 
     @property
     def told(self) -> str:
         """The last line that is said of a simulation."""
-        return f"{self.outcome.word}: {self.verdict}"
+        return self.line()
+
+    def said_verdict(self, words: Words = LIBRARY) -> str:
+        """Return what was found, and what nothing was found of because nobody could check it."""
+        stated = () if self.stated_said is None else (self.stated_said,)
+        meanings = () if self.meanings_said is None else (self.meanings_said,)
+        return joined((self._found_said(), *meanings, *self.not_judged, *stated), words)
+
+    def _found_said(self) -> Wording:
+        if self.passed:
+            return phrase("nothing_found")
+        errors = sum(remark.severity is Severity.ERROR for remark in self.remarks)
+        beyond = sum(not each.check.passed for each in self.travel)
+        parts = (
+            phrase("findings_counted", count=len(self.findings)),
+            *([phrase("errors_counted", count=errors)] if errors else []),
+            *([phrase("programs_beyond", count=beyond)] if beyond else []),
+        )
+        return phrase("must_not_run", found=parts)
 
     @property
     def verdict(self) -> str:
         """What was found, and what nothing was found of because nobody could check it."""
-        if self.passed:
-            found = "nothing found"
-        else:
-            errors = sum(remark.severity is Severity.ERROR for remark in self.remarks)
-            beyond = sum(not each.check.passed for each in self.travel)
-            parts = [
-                counted(len(self.findings), "finding"),
-                *([counted(errors, "error")] if errors else []),
-                *([f"{counted(beyond, 'program')} beyond the travel"] if beyond else []),
-            ]
-            found = f"{' and '.join(parts)}: the program must not run"
-        return "; ".join(filter(None, (found, self.meanings_line, self.not_checked_line, self.stated_line)))
+        return self.said_verdict()
 
     @property
-    def cuts_line(self) -> str:
-        """That it is not known what is cut under radius compensation, and why; empty: it is."""
-        return str(phrase("cuts_not_checked", why=self.cuts_not_checked)) if self.cuts_not_checked else ""
+    def cuts_said(self) -> Wording | None:
+        """That it is not known what is cut under radius compensation, and why; None: it is."""
+        return phrase("cuts_not_checked", why=self.cuts_unknown) if self.cuts_unknown else None
 
     @property
-    def meanings_line(self) -> str:
-        """In which meanings of blocks that may be skipped it was simulated; empty: there are none."""
-        return f"simulated with no block skipped and {', '.join(self.meanings)}" if self.meanings else ""
+    def meanings_said(self) -> Wording | None:
+        """In which meanings of blocks that may be skipped it was simulated; None: there are none."""
+        return phrase("simulated_with_skipped", meanings=self.skip_meanings) if self.skip_meanings else None
 
     @property
-    def collisions_line(self) -> str:
-        """That collisions with the machine were not checked, and why; empty: they were."""
-        return str(phrase("collisions_not_checked", why=self.not_checked)) if self.not_checked else ""
+    def collisions_said(self) -> Wording | None:
+        """That collisions with the machine were not checked, and why; None: they were."""
+        return phrase("collisions_not_checked", why=self.collisions_unknown) if self.collisions_unknown else None
 
     @property
-    def stated_line(self) -> str:
-        """What somebody has stated that it stands on; empty: nothing."""
-        return str(phrase("stands_on_stated", words=self.stated)) if self.stated else ""
+    def stated_said(self) -> Wording | None:
+        """What somebody has stated that it stands on; None: nothing."""
+        return phrase("stands_on_stated", words=self.stated) if self.stated else None
 
     @property
-    def not_checked_line(self) -> str:
-        """What was not checked, and why; empty: all was."""
+    def not_judged(self) -> tuple[Wording, ...]:
+        """What was not checked, and why."""
         codes = dict.fromkeys(each.code for each in self.remarks if each.code in _NOT_JUDGED)
         if self.not_checked:
             codes.pop("SIM310", None)
-        not_judged = str(phrase("not_all_judged", codes=tuple(codes))) if codes else ""
-        return "; ".join(filter(None, (self.cuts_line, self.collisions_line, not_judged)))
+        others = phrase("not_all_judged", codes=tuple(codes)) if codes else None
+        return tuple(each for each in (self.cuts_said, self.collisions_said, others) if each is not None)
 
     @property
     @Figure("remarks", after="operations")
@@ -214,7 +243,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
         simulation=found,
         setup=cut.setup.name,
         not_measured=_not_measured(cut),
-        cuts_not_checked=tuple(map(str, cut.setup.missing())),
+        cuts_unknown=tuple(cut.setup.missing()),
         stated=tuple(dict.fromkeys(word for run in cut.setup.runs for word in stated_texts(run))),
         travel=tuple(judged_travel(cut.setup.runs, cut.setup.register_holds)),
         tools=cut.setup.tools,
@@ -230,16 +259,17 @@ def _not_measured(cut: CutSetup) -> tuple[str, ...]:
     return tuple(map(str, unmeasured_values(cut.setup.machine, kinds, np.concatenate(joints))))
 
 
-def not_measured_lines(found: SimulationResult) -> Iterator[str]:
+def not_measured_lines(found: SimulationResult, words: Words = LIBRARY) -> Iterator[str]:
     """Yield what distances of bodies stand on though nobody has measured it; nothing where there is none."""
     if found.not_measured:
-        yield f"distances of bodies: {phrase('stands_on', values=found.not_measured)}"
+        stands = phrase("stands_on", values=found.not_measured)
+        yield phrase("distances_stand_on", stands=stands).text("what", words)
 
 
-def travel_lines(found: SimulationResult) -> Iterator[str]:
+def travel_lines(found: SimulationResult, words: Words = LIBRARY) -> Iterator[str]:
     """Yield what was found of the travel of the axes in each program."""
     for each in found.travel:
-        yield from each.lines()
+        yield from each.lines(words)
 
 
 def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
@@ -267,7 +297,7 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         not_measured=tuple(dict.fromkeys(value for each in results for value in each.not_measured)),
         stated=tuple(dict.fromkeys(word for each in results for word in each.stated)),
         travel=tuple(one for each in results for one in each.travel),
-        cuts_not_checked=tuple(dict.fromkeys(why for each in results for why in each.cuts_not_checked)),
+        cuts_unknown=tuple(dict.fromkeys(why for each in results for why in each.cuts_unknown)),
     )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from trunnion.compensation.stretches import RegisterValue
+from trunnion.messages import LIBRARY, Words
 from trunnion.model.run import Run
 from trunnion.verification import Check, ExpectedValues, place_line, verify
 
@@ -19,11 +20,11 @@ class ProgramTravel:
     program: str
     check: Check
 
-    def lines(self) -> Iterator[str]:
+    def lines(self, words: Words = LIBRARY) -> Iterator[str]:
         """Yield the answer, and where axes go beyond their travel."""
-        yield f"{self.program}: {self.check!s}"
+        yield f"{self.program}: {self.check.line(words)}"
         if not self.check.passed:
-            yield from (place_line(self.program, place) for place in self.check.places)
+            yield from (place_line(self.program, place, words) for place in self.check.places)
 
 
 def judged_travel(runs: Iterable[Run], holds: RegisterValue) -> Iterator[ProgramTravel]:

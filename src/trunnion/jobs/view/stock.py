@@ -21,7 +21,7 @@ from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, joined
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.results import to_data
@@ -71,8 +71,8 @@ def with_stock(
     stock = StockView(found.simulation, min(widths, default=math.inf))
     warnings = [short_name(each) for each in found.remarks if each.severity is not Severity.ERROR]
     warnings = [each for each in warnings if each not in content.scene["remarks"]]
-    if found.not_checked_line:
-        warnings.insert(0, f"{found.not_checked_line}.")
+    if found.not_judged:
+        warnings.insert(0, f"{joined(found.not_judged)}.")
     warnings += [f"{kind}: {_MOST} of {count} are shown" for kind, count in _counts(found) if count > _MOST]
     checks = (*verification.checks, *simulation_checks(found))
     scene = {

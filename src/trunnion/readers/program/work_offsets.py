@@ -4,6 +4,8 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from trunnion.messages import Wording, declared
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorkOffsetWords:
@@ -21,6 +23,11 @@ class WorkOffsetWords:
     value: Callable[[tuple[int | None, ...]], int]
     name: Callable[[int], str]
     plain: bool = False
+
+    @property
+    def form_said(self) -> Wording:
+        """What they look like, in the language of who asks."""
+        return declared(self.form, "forms")
 
     def setting(self, value: int) -> str:
         """Return the setting ``work_offset`` of a value."""

@@ -339,9 +339,9 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
         knew = "knew the stock, tools and fixtures that it was given, and no more"
         yield f"Check what else there is. The simulation ({counted(found, 'finding')}) {knew}."
         if result.simulation.not_checked:
-            yield f"Look for {result.simulation.collisions_line}."
+            yield f"Look for {result.simulation.collisions_said}."
         if result.simulation.cuts_not_checked:
-            yield f"Measure {result.simulation.cuts_line}."
+            yield f"Measure {result.simulation.cuts_said}."
     yield "Check that axis directions, rotary centres and pivot lengths of the machine are those of its definition."
     inserted = [
         event.text.strip()
