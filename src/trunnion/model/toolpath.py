@@ -1,7 +1,6 @@
 """A toolpath: what the cutter does, in workpiece coordinates.
 
-Dense motion is in columns, one row for each CL point. Sparse events are small frozen records, each with the row before
-which it happens and its line in the CL file.
+Dense motion is in columns, one row for each CL point. Sparse events are records with row and line in the CL file.
 
 Units: mm, degrees, unit vectors for directions, mm/min or mm/rev for feeds.
 Frame: the operation's own coordinate system (``Operation.frame``, MSYS in a CLSF).
@@ -346,8 +345,7 @@ class Frame:
 class Operation:
     """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH in ``file``.
 
-    ``splines`` are those for which rows of ``moves`` stand; ``joined`` has the names of the operations of the file that
-    it goes on with, without a way home between them.
+    ``splines`` are those for which rows of ``moves`` stand; ``joined`` names operations that it goes on with.
     """
 
     name: str
@@ -369,13 +367,9 @@ class Toolpath:
     """The content of a CL file.
 
     file        path of the file; in an archive, the path of the archive and the name there; ``stdin`` for a stream
-    operations  in the order of the file
-    part        name of the part
-    remarks     warnings of the reader
-    unit        length unit of the file, mm
-    states_unit  the file says its unit, or its feeds do; else mm are assumed
-    dialect     what the file is written in, a key of ``trunnion.cl.dialects.DIALECTS``
-    recognized_by  the title of the dialect, and by what it was recognized; ``recognized`` in English
+    operations, part, remarks  in the order of the file; name of the part; warnings of the reader
+    unit, states_unit  length unit of the file, mm; the file says it, or its feeds do: else mm are assumed
+    dialect, recognized_by  a key of ``trunnion.cl.dialects.DIALECTS``; its title, and by what it was recognized
     system      of the points, in that of the model, where the file gives it and its meaning is open: 3 rows of 4, mm
     states_system  each operation states where its coordinate system lies in the absolute one of the CAM system
     clamping    how the part is clamped, as comments in the head of the file say; None: they say nothing
