@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
+from trunnion.messages import phrase
+from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState, no_remarks
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.simulation.setup_findings import BlockRemoval, NearMiss, SimulatedOperation, SimulationFinding
 from trunnion.verification import Verdict
@@ -30,7 +31,7 @@ CONTENT = SimulationContent(
             ((EVIL, b"\x89PNG"),),
         ),
     ),
-    remarks=(EVIL,),
+    remarks=lambda words: (EVIL,),
     data={},
 )  # fmt: skip
 
@@ -58,10 +59,12 @@ def test_it_shows_findings_tables_bars_and_pictures() -> None:
     assert "<td class=n>120</td>" in text  # mm³ in a minute
     assert re.findall(r'<rect width="([\d.]+)"', text) == ["120.0", "240.0"]  # to the scale of what deviates
     assert text.count("data:image/png;base64,iVBORw==") == 1
-    sound = page(replace(CONTENT, verdict=Verdict.PASSED, findings=(), near=(), remarks=()))
+    sound = page(replace(CONTENT, verdict=Verdict.PASSED, findings=(), near=(), remarks=no_remarks))
     assert "Nothing was found." in sound
     assert "Near misses" not in sound
     assert 'class="verdict good"' in sound
-    in_part = page(replace(CONTENT, verdict=Verdict.IN_PART, not_checked="not all was judged (SIM146)"))
+    in_part = page(
+        replace(CONTENT, verdict=Verdict.IN_PART, not_checked=(phrase("not_all_judged", codes=("SIM146",)),))
+    )
     assert 'class="verdict open"' in in_part
     assert "<strong>Passed in part</strong>\n<span>nothing found; not all was judged (SIM146)</span>" in in_part

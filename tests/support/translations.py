@@ -22,6 +22,7 @@ from trunnion.jobs.describe.controls import describe_controls
 from trunnion.jobs.registry import GROUPS, JOBS
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.messages import DECLARED, ENGLISH, LANGUAGES, digest
+from trunnion.model.motion import DecisionTopic
 from trunnion.simulation.finding import What
 from trunnion.simulation.tools.profile import Role
 
@@ -39,6 +40,8 @@ SETTABLE = {"setting", "argument", "switch"}
 WORDS = (
     "three-axis", "3+2", "simultaneous", "empty", "tilted", "tcp",
     "bed", *FitStatus, *What, "stock", "part", "fixture", "hub", *Role,
+    "Rotary speeds", "Tip feed", "tip", "programmed", "linear axes at rapid", "limits not stated", "endless", "limits",
+    "from above", "from below, from the other side", *DecisionTopic,
 )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ def run(given: Given) -> int:
     if given.save_stock is not None:
         save_mesh(stock_surface(found.simulation.stock), given.save_stock, inputs=given.read)
     if given.report is not None:
-        write_simulation_report(found, given.report, given.read)
+        write_simulation_report(found, given.report, given.read, spoken())
     show(given, lambda: found, simulation_lines(found))
     return 0 if found.passed else 1
 

@@ -13,7 +13,7 @@ from trunnion.cli.wording import in_command_words, problem_lines, said, spoken
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.observer import Observer
-from trunnion.messages import Wording
+from trunnion.messages import Wording, Words
 from trunnion.model.motion import Plan
 from trunnion.verification import Verification, check_lines, place_lines, stand_lines, time_lines
 
@@ -31,6 +31,11 @@ class Terminal(Observer):
     def __init__(self, *, explain: bool = False, recorded: bool = False) -> None:
         self._explain, self._recorded = explain, recorded
         self._explained = False
+
+    @property
+    def words(self) -> Words:  # type: ignore[override]
+        """The language of the command, and its options."""
+        return spoken()
 
     def setup(self, name: str) -> None:
         """Print whose set-up the next lines are about, where there are several."""

@@ -7,7 +7,7 @@ from typing import Any, Final
 from trunnion.cli.printing import tell
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal, verification_lines
-from trunnion.cli.wording import said
+from trunnion.cli.wording import said, spoken
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
@@ -34,7 +34,7 @@ def run(given: Given) -> int:
     )
     show(given, lambda: _report_data(verification), verification_lines(verification))
     if given.report is not None:
-        write_report(verification, given.report)
+        write_report(verification, given.report, words=spoken())
     return 0 if verification.passed else 1
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
 from trunnion.errors import Problem
+from trunnion.messages import LIBRARY, Words
 from trunnion.model.motion import Plan
 from trunnion.verification.results import Verification
 
@@ -13,7 +14,11 @@ class Observer:
 
     Methods are called in the thread that called the library, but for the progress of reading, which may come from
     another one.
+
+    ``words`` are the language of who asks, which pages for people are in, and what it calls settings.
     """
+
+    words: Words = LIBRARY
 
     def setup(self, name: str) -> None:
         """Hear that a set-up of a project is posted next; its name is empty if there are no others."""

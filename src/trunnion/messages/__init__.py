@@ -45,6 +45,7 @@ CATALOGUES: Final = {
     "SIM": "simulation",
     "TWN": "twin",
     "comparison": "comparison",
+    "report": "report",
     "results": "results",
     "terminal": "terminal",
 }

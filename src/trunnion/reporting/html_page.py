@@ -13,37 +13,47 @@ from importlib.resources import files
 
 import numpy as np
 
+from trunnion.messages import LIBRARY, Words
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.detail_levels import detail_levels, select_rows
 from trunnion.reporting.html_plots import column_element, column_elements, element_prefix, plot_section
 from trunnion.reporting.html_tables import page_body
 from trunnion.reporting.html_text import page_head, source_hash
+from trunnion.reporting.page_words import in_language, verdict_word
 from trunnion.reporting.plot_series import PlotSeries
 
 _ASSETS = files("trunnion.reporting")
 
 
-def render_page(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
-    """Yield the page, piece by piece."""
+def render_page(content: ReportContent, series: PlotSeries, words: Words = LIBRARY) -> Iterator[bytes]:
+    """Yield the page in the language of who asks, piece by piece."""
     parts = [series] if content.recorded is None else [content.recorded.series, series]
-    title = f"{content.program}: {content.verdict.word.lower()}"
-    yield from plot_page(title, page_body(content), parts, pictures=content.simulation is not None)
+    with in_language(words):
+        title = f"{content.program}: {verdict_word(content.verdict).lower()}"
+        body = page_body(content)
+    yield from plot_page(title, body, parts, words, pictures=content.simulation is not None)
 
 
-def plot_page(title: str, body: str, parts: Sequence[PlotSeries], *, pictures: bool = False) -> Iterator[bytes]:
+def plot_page(
+    title: str, body: str, parts: Sequence[PlotSeries], words: Words = LIBRARY, *, pictures: bool = False
+) -> Iterator[bytes]:
     """Yield a page with plots, piece by piece.
 
     title     of the window
     body      HTML from the body tag, with ``main`` open, up to the plots
     parts     what is plotted, each in a section of its own
+    words     of who asks
     pictures  the body has pictures
     """
     levels = [list(detail_levels(part)) for part in parts]
     scripts = (_read_vendored("uPlot.iife.min.js"), _read_asset("unpack.js") + _read_asset("page.js"))
-    yield _head(title, scripts, pictures).encode()
+    with in_language(words):
+        head = _head(title, scripts, pictures)
+        sections = [plot_section(part, own) for part, own in zip(parts, levels, strict=True)]
+    yield head.encode()
     yield body.encode()
-    for part, own in zip(parts, levels, strict=True):
-        yield plot_section(part, own).encode()
+    for section in sections:
+        yield section.encode()
     yield b"</main>\n"
     for part, own in zip(parts, levels, strict=True):
         if own:

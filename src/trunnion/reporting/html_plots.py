@@ -6,6 +6,7 @@ Out:    HTML. page.js draws the plots from it.
 
 import json
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +14,17 @@ from numpy.typing import NDArray
 from trunnion.reporting.column_encoding import encode_column
 from trunnion.reporting.detail_levels import BUCKETS_IN_VIEW, MAX_DIRECT_POINTS, DetailLevel
 from trunnion.reporting.html_text import escape
+from trunnion.reporting.page_words import label, told, word
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries
 
 #: Tool changes marked in the plots; more of them would be a grey wall.
 MAX_TOOL_MARKS = 100
 
-#: Explains the dotted lines, if there are any.
-FLOATING_NOTE = """ Dotted ones are as far apart as the limits of the linear axis, but stand around the motion: where
-the limits really are is not known: no workpiece zero is given, or for a linear axis along the tool no tool length."""
+#: Words that page.js says.
+_PLOT_WORDS: Final = (
+    "point_at", "held", "time", "motion", "block", "nc_line", "in_file", "cl_line", "travel", "moves_nothing",
+    "old_browser", "not_drawn",
+)  # fmt: skip
 
 
 def plot_section(series: PlotSeries, levels: Sequence[DetailLevel]) -> str:
@@ -30,25 +34,26 @@ def plot_section(series: PlotSeries, levels: Sequence[DetailLevel]) -> str:
     own = element_prefix(series)
     curves = [curve for plot in series.plots for curve in plot.curves]
     floating = any(curve.floating for curve in curves)
-    limits = " Red lines are limits." if any(curve.limits for curve in curves) else ""
-    title = series.title or f"Axes, speeds and feed over {'time' if series.timed else 'motions: no times are known'}"
-    whole = "whole recording" if series.name else "whole program"
+    limits = label("red_lines") if any(curve.limits for curve in curves) else ""
+    over = label("plots_over_time") if series.timed else label("plots_over_motions")
+    title = word(series.title) if series.title else over
+    whole = label("whole_recording") if series.name else label("whole_program")
+    notes = " ".join(filter(None, (label("how_to_zoom", whole=whole), limits, label("dotted") if floating else "")))
     return f"""<section id="{own}plots" class="plots">
 <h2>{escape(title)}</h2>
-<p class="note">Drag over a stretch to zoom in, double-click for the {whole}; click a point to hold it, Escape
-lets go.{limits}{FLOATING_NOTE if floating else ""} {escape(series.note)}</p>
+<p class="note">{escape(notes)} {escape(word(series.note)) if series.note else ""}</p>
 <div id="{own}bar" class="bar">
-<div id="{own}point" class="point"><span class="hint">Loading …</span></div>
-<div class="buttons"><button type=button data-act="left" title="earlier">◀</button>
-<button type=button data-act="out" title="zoom out">−</button>
-<button type=button data-act="in" title="zoom in">+</button>
-<button type=button data-act="right" title="later">▶</button>
-<button type=button data-act="whole">{whole}</button>
-<label><input type=checkbox id="{own}fit"> fit heights to the motion</label></div>
+<div id="{own}point" class="point"><span class="hint">{escape(label("loading"))}</span></div>
+<div class="buttons"><button type=button data-act="left" title="{escape(label("earlier"))}">◀</button>
+<button type=button data-act="out" title="{escape(label("zoom_out"))}">−</button>
+<button type=button data-act="in" title="{escape(label("zoom_in"))}">+</button>
+<button type=button data-act="right" title="{escape(label("later"))}">▶</button>
+<button type=button data-act="whole">{escape(whole)}</button>
+<label><input type=checkbox id="{own}fit"> {escape(label("fit_heights"))}</label></div>
 </div>
 <div id="{own}strips"></div>
 <p class="note" id="{own}status"></p>
-<noscript><p class="note">The plots need JavaScript, which this browser has switched off.</p></noscript>
+<noscript><p class="note">{escape(label("needs_javascript"))}</p></noscript>
 </section>
 <script type="application/json" id="{own}report">{script_json(_specification(series, levels))}</script>
 """
@@ -75,7 +80,8 @@ def _specification(series: PlotSeries, levels: Sequence[DetailLevel]) -> dict[st
         "plots": [_plot(plot) for plot in series.plots],
         "marks": [[float(time[row]), name] for row, name in series.tool_changes[:MAX_TOOL_MARKS]],
         "markWord": "" if series.name else "T",
-        "first": "" if series.name else "before the first motion",
+        "first": "" if series.name else label("before_first_motion"),
+        "words": {name: label(f"plot_{name}") for name in _PLOT_WORDS},
     }
 
 
@@ -87,12 +93,14 @@ def script_json(value: object) -> str:
 
 def _plot(plot: Plot) -> dict[str, object]:
     lines = [_curve(curve) for curve in plot.curves]
-    return {"title": plot.title, "unit": plot.unit, "step": plot.step, "note": plot.note, "lines": lines}
+    note = word(plot.note) if plot.note else ""
+    return {"title": word(plot.title), "unit": plot.unit, "step": plot.step, "note": note, "lines": lines}
 
 
 def _curve(curve: Curve) -> dict[str, object]:
-    limits = {"limits": list(curve.limits), "limitName": curve.limit_name, "loose": curve.floating}
-    return {"column": curve.column, "name": curve.name, **limits}
+    name = curve.limit_name if isinstance(curve.limit_name, str) else told(curve.limit_name)
+    limits = {"limits": list(curve.limits), "limitName": word(name) if name else "", "loose": curve.floating}
+    return {"column": curve.column, "name": word(curve.name), **limits}
 
 
 def column_elements(group: str, series: PlotSeries) -> Iterator[bytes]:

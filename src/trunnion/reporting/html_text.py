@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from trunnion.reporting.page_words import label, language_tag, verdict_word
 from trunnion.verification import Verdict
 
 #: A negative number with the letter before it, and where a cell of a row begins.
@@ -50,6 +51,14 @@ def table(headings: Sequence[str], rows: Iterable[str], kind: str = "") -> str:
     return f'<div class="wide {kind}"><table>\n{head}\n<tbody>\n{body}\n</tbody></table></div>\n'
 
 
+def said_table(headings: Sequence[str], rows: Iterable[str], kind: str = "") -> str:
+    """Return a table; headings are names of texts, behind ``#`` those of columns of numbers."""
+    marks = (head[:1] if head[:1] == "#" else "" for head in headings)
+    names = (head.lstrip("#") for head in headings)
+    said = [f"{mark}{name if name == '-' else escape(label(name))}" for mark, name in zip(marks, names, strict=True)]
+    return table(said, rows, kind)
+
+
 def _labelled(row: str, names: Sequence[str]) -> str:
     of_cells = iter(names)
     return _CELL.sub(lambda cell: f'{cell[0]} data-of="{next(of_cells, "")}"', row)
@@ -58,7 +67,7 @@ def _labelled(row: str, names: Sequence[str]) -> str:
 def page_head(title: str, style: str, policy: str) -> str:
     """Return the beginning of a page up to its body; ``policy`` says what it may load and run."""
     return f"""<!DOCTYPE html>
-<html lang="en">
+<html lang="{language_tag()}">
 <head>
 <meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{policy}">
@@ -74,7 +83,7 @@ def verdict_banner(verdict: Verdict, said: str) -> str:
     """Return the banner of a page: its verdict, and what that stands on."""
     state, mark = _BANNERS[verdict]
     return f"""<div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span>\
-<div><strong>{verdict.word}</strong>
+<div><strong>{escape(verdict_word(verdict))}</strong>
 <span>{prose(said)}</span></div></div>"""
 
 
@@ -110,7 +119,7 @@ def format_fixed(value: float) -> str:
 
 def format_limit(value: float | None) -> str:
     """Return a limit in words."""
-    return "no limit" if value is None else format_number(value)
+    return label("no_limit") if value is None else format_number(value)
 
 
 def with_unit(value: float | None, unit: str) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from trunnion.messages import LIBRARY, Words
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.plot_series import PlotSeries
 from trunnion.results import to_data
@@ -21,8 +22,8 @@ MAX_COLUMN_MOTIONS = 100_000
 DECIMALS = 6
 
 
-def render_json(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
-    """Yield the document, piece by piece."""
+def render_json(content: ReportContent, series: PlotSeries, words: Words = LIBRARY) -> Iterator[bytes]:
+    """Yield the document, piece by piece; it is the same whoever asks."""
     encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False, indent=1)
     head = encoder.encode(to_data(content)).removesuffix("\n}")
     yield head.encode()

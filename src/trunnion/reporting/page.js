@@ -105,7 +105,7 @@ for (const own of ["", "recorded-"]) (() => {
     const place = byId("point");
     place.replaceChildren();
     if (!shown) {
-      place.append(element("span", "hint", "Point at a plot to see the block."));
+      place.append(element("span", "hint", report.words.point_at));
       return;
     }
     const { table: t, at } = shown;
@@ -114,13 +114,13 @@ for (const own of ["", "recorded-"]) (() => {
       item.append(element("b", "", value));
       place.append(item);
     };
-    if (!point) place.append(element("span", "held", "held"));
-    say(report.timed ? "time" : "motion", clock(t.time[at], 3));
+    if (!point) place.append(element("span", "held", report.words.held));
+    say(report.timed ? report.words.time : report.words.motion, clock(t.time[at], 3));
     if (at === 0 && report.first) return void place.append(element("span", "hint", report.first));
-    if (t.number[at] >= 0) say("block", `N${t.number[at]}`);
-    if (t.block[at] > 0) say("NC line", String(t.block[at]));
-    if (t.file && t.file[at]) say("in", report.files[t.file[at]]);
-    if (t.cl[at] > 0) say("CL line", String(t.cl[at]));
+    if (t.number[at] >= 0) say(report.words.block, `N${t.number[at]}`);
+    if (t.block[at] > 0) say(report.words.nc_line, String(t.block[at]));
+    if (t.file && t.file[at]) say(report.words.in_file, report.files[t.file[at]]);
+    if (t.cl[at] > 0) say(report.words.cl_line, String(t.cl[at]));
   }
 
   // ------------------------------------------------------------------------------------------------------------------
@@ -280,7 +280,7 @@ for (const own of ["", "recorded-"]) (() => {
       const outputs = legend(spec, side);
       for (const line of spec.lines) {
         const values = line.limits.map((value) => String(+value.toFixed(3)).replace("-", "\u2212")).join(" \u2026 ");
-        const text = line.loose ? `travel ${+(line.limits[1] - line.limits[0]).toFixed(3)}` : `${line.limitName} ${values}`;
+        const text = line.loose ? `${report.words.travel} ${+(line.limits[1] - line.limits[0]).toFixed(3)}` : `${line.limitName} ${values}`;
         if (values) side.append(element("p", "limits", text));
       }
       if (spec.note) side.append(element("p", "hint", spec.note));
@@ -344,7 +344,7 @@ for (const own of ["", "recorded-"]) (() => {
       if (full.cl[i] === cl) break;
     }
     byId("plots").scrollIntoView();
-    if (at < 0) return void (byId("status").textContent = `NC line ${line} moves nothing.`);
+    if (at < 0) return void (byId("status").textContent = report.words.moves_nothing.replace("#", line));
     const near = [full.time[Math.max(at - 25, 0)], full.time[Math.min(at + 25, full.time.length - 1)]];
     show(...near);
     hold({ table: full, at });
@@ -408,7 +408,7 @@ for (const own of ["", "recorded-"]) (() => {
     const old = typeof DecompressionStream === "undefined";
     byId("point").replaceChildren();
     byId("status").textContent = old
-      ? "The plots need a newer browser: Chrome or Edge 80, Firefox 113, Safari 16.4 or later."
-      : `The plots cannot be drawn: ${error}`;
+      ? report.words.old_browser
+      : `${report.words.not_drawn} ${error}`;
   });
 })();

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Floats, Lines
 from trunnion.machines import Axis
+from trunnion.messages import Wording, phrase
 from trunnion.reporting.extents import is_zero_known, travel_rows
 from trunnion.reporting.text import clean
 from trunnion.verification.results import Verification, durations
@@ -32,7 +33,7 @@ class Curve:
     column: str
     name: str
     limits: tuple[float, ...] = ()
-    limit_name: str = "limits"
+    limit_name: str | Wording = "limits"
     floating: bool = False
 
 
@@ -168,7 +169,7 @@ def _centred_limits(verification: Verification, k: int) -> tuple[float, ...]:
 
 def _speed_curve(axis: Axis, k: int) -> Curve:
     name = clean(axis.name)
-    return Curve(f"speed{k}", name, finite_values(axis.rapid), f"{name} rapid")
+    return Curve(f"speed{k}", name, finite_values(axis.rapid), phrase("axis_rapid", axis=name))
 
 
 def finite_values(*values: float | None) -> tuple[float, ...]:

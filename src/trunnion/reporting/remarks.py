@@ -9,12 +9,12 @@ Text from outside is cleaned here of characters that no file can hold.
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from trunnion.errors import Problem
-from trunnion.messages import Wording
+from trunnion.messages import LIBRARY, Part, Wording, Words, phrase
 from trunnion.reporting.text import clean
-from trunnion.results import OptionalLine, OptionalText, to_data
+from trunnion.results import NOT_DATA, OptionalLine, OptionalText, to_data
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,13 +28,27 @@ class RemarkGroup:
     file: OptionalText
     line: OptionalLine
     count: int
+    problem: Annotated[Problem, NOT_DATA]
+
+    def said(self, part: Part, words: Words) -> str:
+        """Return ``text`` or ``cure`` in the language of who asks."""
+        return clean(self.problem.wording.text(part, words))
+
+    def severity_said(self, words: Words) -> str:
+        """Return ``severity`` in the language of who asks."""
+        return self.problem.severity.said(words)
+
+    def line_in(self, words: Words) -> str:
+        """Return it as a line in the language of who asks, as ``Problem`` is printed, with its count."""
+        place = f"{self.file}:{self.line}" if self.line else self.file
+        texts = tuple(filter(None, (self.said("what", words), self.said("cure", words))))
+        what = Wording("terminal", "joined", texts=texts).text("what", words)
+        more = phrase("more_like_it", count=self.count - 1).text("what", words) if self.count > 1 else ""
+        return f"{place}: {self.severity_said(words)}: {what}{f' [{self.code}]' if self.code else ''}{more}"
 
     def __str__(self) -> str:
-        """Return it as a line, as ``Problem`` is printed, with its count."""
-        place = f"{self.file}:{self.line}" if self.line else self.file
-        what = f"{self.text}; {self.cure}" if self.cure else self.text
-        more = f" (and {self.count - 1} more like it)" if self.count > 1 else ""
-        return f"{place}: {self.severity}: {what}{f' [{self.code}]' if self.code else ''}{more}"
+        """Return it as a line in English."""
+        return self.line_in(LIBRARY)
 
 
 def remark_groups(problems: Iterable[Problem]) -> tuple[RemarkGroup, ...]:
@@ -71,4 +85,5 @@ def _group(problems: list[Problem]) -> RemarkGroup:
         file=clean(Path(first.file).name),
         line=first.line,
         count=len(problems),
+        problem=first,
     )

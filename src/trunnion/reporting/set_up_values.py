@@ -15,6 +15,7 @@ from trunnion.machines.machine import Vector
 from trunnion.model.run import NO_OFFSET, Run
 from trunnion.model.run_setups import Setup
 from trunnion.reporting.html_text import format_fixed
+from trunnion.reporting.page_words import label
 from trunnion.reporting.text import clean
 from trunnion.results import Figure
 
@@ -27,7 +28,7 @@ class OffsetZero:
     zero: Annotated[Vector | None, Figure(unit="mm")]
 
     def __str__(self) -> str:
-        place = "not stated" if self.zero is None else place_text(self.zero)
+        place = label("not_stated") if self.zero is None else place_text(self.zero)
         return f"{self.name} {place}" if self.name else place
 
 
@@ -43,8 +44,8 @@ class ToolLength:
     source: Annotated[str, Figure(none="")] = ""
 
     def __str__(self) -> str:
-        known = "not stated" if self.length is None else f"{self.length:g}"
-        return f"{self.tool or 'no call'}: {known}{f' ({self.source})' if self.source else ''}"
+        known = label("not_stated") if self.length is None else f"{self.length:g}"
+        return f"{self.tool or label('no_call')}: {known}{f' ({self.source})' if self.source else ''}"
 
 
 def zeros_of(run: Run) -> tuple[OffsetZero, ...]:
@@ -72,8 +73,8 @@ def zeros_text(zeros: Sequence[OffsetZero]) -> str:
     places = dict.fromkeys(each.zero for each in zeros)
     if len(places) == 1:
         (zero,) = places
-        return "not stated" if zero is None else place_text(zero)
-    return "; ".join(map(str, zeros)) or "not stated"
+        return label("not_stated") if zero is None else place_text(zero)
+    return "; ".join(map(str, zeros)) or label("not_stated")
 
 
 def lengths_text(lengths: Sequence[ToolLength]) -> str:

@@ -3,9 +3,10 @@
 Units:  mm, mm², mm³, seconds.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from trunnion.messages import Wording, Words
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
 from trunnion.verification import Verdict
 
@@ -38,15 +39,20 @@ class StockState:
     pictures: tuple[tuple[str, bytes], ...]
 
 
+def no_remarks(_: Words) -> tuple[str, ...]:
+    """Return that nothing was taken for granted, or that it is said elsewhere."""
+    return ()
+
+
 @dataclass(frozen=True, slots=True)
 class SimulationContent:
     """A simulation.
 
     verdict  on what was judged
     facts    names and values of what it is about
-    remarks  what was taken for granted or broken off, each thing once with its count
-    not_checked  what was not judged, and why; empty: all was
-    stated   what somebody has stated that it stands on; empty: nothing
+    remarks  returns what was taken for granted or broken off, each thing once with its count, in words
+    not_checked  what was not judged, and why
+    stated   what somebody has stated that it stands on
     data     all of it, as the command prints it as data
     """
 
@@ -57,10 +63,10 @@ class SimulationContent:
     near: tuple[NearMiss, ...]
     operations: tuple[SimulatedOperation, ...]
     states: tuple[StockState, ...]
-    remarks: tuple[str, ...]
+    remarks: Callable[[Words], tuple[str, ...]]
     data: Mapping[str, object]
-    not_checked: str = ""
-    stated: str = ""
+    not_checked: tuple[Wording, ...] = ()
+    stated: tuple[Wording, ...] = ()
 
     @property
     def passed(self) -> bool:

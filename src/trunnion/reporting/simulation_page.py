@@ -10,6 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.reporting.html_text import (
     capitalised,
     escape,
@@ -17,14 +18,15 @@ from trunnion.reporting.html_text import (
     format_number,
     page_head,
     prose,
+    said_table,
     source_hash,
-    table,
     verdict_banner,
 )
+from trunnion.reporting.page_words import in_language, label, page_words, told, verdict_word, word
 from trunnion.reporting.simulation_content import DeviationBin, SimulationContent, StockState
 from trunnion.reporting.text import clean
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
-from trunnion.wording import counted, format_duration, position
+from trunnion.wording import format_duration, position
 
 #: Findings that the page shows; the data has all.
 _MOST: Final = 200
@@ -35,54 +37,62 @@ _BAR: Final = (240, 12)
 _ASSETS: Final = files("trunnion.reporting")
 
 
-def render_simulation_page(content: SimulationContent) -> Iterator[bytes]:
-    """Yield the page, piece by piece."""
+def render_simulation_page(content: SimulationContent, words: Words = LIBRARY) -> Iterator[bytes]:
+    """Yield the page in the language of who asks, piece by piece."""
+    with in_language(words):
+        page = _page(content)
+    yield page.encode()
+
+
+def _page(content: SimulationContent) -> str:
     style = "\n" + _ASSETS.joinpath("page.css").read_text(encoding="utf-8")
     policy = f"default-src 'none'; img-src data:; style-src {source_hash(style)}; base-uri 'none'; form-action 'none'"
     facts = "".join(
-        f"<div><dt>{escape(name)}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in content.facts
+        f"<div><dt>{escape(label(name))}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in content.facts
     )
-    title = f"{content.title}: simulation {content.verdict.word.lower()}"
-    yield f"""{page_head(title, style, policy)}<body>
+    title = label("simulation_title", program=content.title, verdict=verdict_word(content.verdict).lower())
+    return f"""{page_head(title, style, policy)}<body>
 <main>
 <header>
 {verdict_banner(content.verdict, _said(content))}
 <h1><bdi>{escape(content.title)}</bdi></h1>
 <dl>{facts}</dl>
 </header>
-""".encode()
-    yield simulation_section(content).encode()
-    yield b"</main>\n</body>\n</html>\n"
+{simulation_section(content)}</main>
+</body>
+</html>
+"""
 
 
 def simulation_section(content: SimulationContent) -> str:
     """Return what a simulation found, in tables and pictures."""
-    near = _findings(content.near, "#Apart mm") if content.near else ""
+    near = _findings(content.near, "#apart") if content.near else ""
     parts = (
-        ("Simulation: findings", _findings(content.findings, "#Depth mm") + _unfound(content)),
-        ("Near misses", near),
-        ("Finished stock", "".join(map(_state, content.states))),
-        ("Material removed", _operations(content.operations)),
-        ("What the simulation took for granted", "".join(f"<p>{prose(each)}</p>" for each in content.remarks)),
+        ("simulation_findings", _findings(content.findings, "#depth") + _unfound(content)),
+        ("near_misses", near),
+        ("finished_stock", "".join(map(_state, content.states))),
+        ("material_removed", _operations(content.operations)),
+        ("taken_for_granted", "".join(f"<p>{prose(each)}</p>" for each in content.remarks(page_words()))),
     )
-    return "".join(f"<section>\n<h2>{title}</h2>\n{body}\n</section>\n" for title, body in parts if body)
+    return "".join(f"<section>\n<h2>{escape(label(title))}</h2>\n{body}\n</section>\n" for title, body in parts if body)
 
 
 def _unfound(content: SimulationContent) -> str:
     """Return that nothing was found, and what was not checked."""
-    told = "" if content.findings else "Nothing was found."
+    told = "" if content.findings else escape(label("nothing_was_found"))
     if content.not_checked:
-        told = f"{told} {capitalised(content.not_checked)}."
+        told = f"{told} {capitalised(joined(content.not_checked, page_words()))}."
     return f'<p class="note">{told.strip()}</p>' if told else ""
 
 
 def _said(content: SimulationContent) -> str:
     if content.passed:
-        found = "nothing found"
+        found = phrase("nothing_found")
+    elif content.findings:
+        found = Wording("report", "findings_must_not_run", count=len(content.findings))
     else:
-        count = counted(len(content.findings), "finding") if content.findings else "see below"
-        found = f"{count}; the program must not run as it is"
-    return "; ".join(filter(None, (found, content.not_checked, content.stated)))
+        found = Wording("report", "see_below_must_not_run")
+    return joined((found, *content.not_checked, *content.stated), page_words())
 
 
 def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:
@@ -90,8 +100,8 @@ def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:
         return ""
     rows = [_finding(each) for each in found[:_MOST]]
     more = len(found) - _MOST
-    note = f'<p class="note">and {more} more, in the data</p>' if more > 0 else ""
-    return table((size, "What", "Between", "Program", "CL file", "#After", "#Place mm"), rows) + note
+    note = f'<p class="note">{escape(label("and_more_in_data", count=more))}</p>' if more > 0 else ""
+    return said_table((size, "what", "between", "program", "cl_file", "#after", "#place"), rows) + note
 
 
 def _finding(each: SimulationFinding | NearMiss) -> str:
@@ -103,9 +113,10 @@ def _finding(each: SimulationFinding | NearMiss) -> str:
         what, size = each.kind, each.depth
         cl = f"{Path(each.cl_file).name}:{each.cl_line}" if each.cl_file else ""
     number = f" N{each.block}" if each.block >= 0 else ""
-    stretch = f"<br><small>{each.stretch}</small>" if each.stretch else ""
+    stretch = f"<br><small>{escape(told(each.among))}</small>" if each.among is not None else ""
+    between = _text(", ".join(map(word, each.between)))
     return (
-        f"<tr><td class=n>{size:.3f}</td><th scope=row>{escape(what)}</th><td>{_text(', '.join(each.between))}</td>"
+        f"<tr><td class=n>{size:.3f}</td><th scope=row>{escape(word(what))}</th><td>{between}</td>"
         f"<td>{_place(each)}{number}{stretch}</td><td>{_text(cl)}</td>"
         f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{position(each.place)}</td></tr>"
     )
@@ -127,8 +138,8 @@ def _operations(operations: Sequence[SimulatedOperation]) -> str:
         f"<td class=n>{_rate(each)}</td><td class=n>{each.air:.0f}</td><td class=n>{each.findings or ''}</td></tr>"
         for each in operations
     ]
-    heads = ("From", "Tool", "#Removed mm³", "#Of the part mm³", "#Time", "#mm³/min", "#In air mm", "#Findings")
-    return table(heads, rows) if rows else ""
+    heads = ("from", "tool", "#removed", "#of_the_part", "#time", "#rate", "#in_air", "#findings")
+    return said_table(heads, rows) if rows else ""
 
 
 def _rate(each: SimulatedOperation) -> str:
@@ -137,16 +148,17 @@ def _rate(each: SimulatedOperation) -> str:
 
 def _state(state: StockState) -> str:
     title = f"<h3>{escape(state.name)}</h3>\n" if state.name else ""
-    lines = [f"{state.removed:.1f} mm³ removed."]
-    for name, excess in (("Left on the part", state.left), ("Missing from the part", state.gouge)):
+    lines = [label("volume_removed", volume=state.removed)]
+    for name, excess in (("left_on_part", state.left), ("missing_from_part", state.gouge)):
         if excess is not None:
-            lines.append(f"{name}: {excess[0]:.3f} mm at most, {excess[1]:.2f} mm³.")
+            lines.append(label(name, most=excess[0], volume=excess[1]))
     if state.deviation:
-        lines.append("In the pictures blue is material that is left, red what is missing.")
-    words = "".join(f"<p>{line}</p>\n" for line in lines)
+        lines.append(label("colours"))
+    words = "".join(f"<p>{escape(line)}</p>\n" for line in lines)
     pictures = "".join(
-        f'<figure><img alt="the stock {escape(view)}" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
-        f"<figcaption>{escape(view)}</figcaption></figure>"
+        '<figure><img alt="' + escape(label("the_stock", view=word(view))) + '"'
+        f' src="data:image/png;base64,{base64.b64encode(png).decode()}">'
+        f"<figcaption>{escape(word(view))}</figcaption></figure>"
         for view, png in state.pictures
     )
     return title + words + f'<div class="pair">{pictures}</div>\n' + _histogram(state.deviation)
@@ -169,6 +181,7 @@ def _histogram(bins: Sequence[DeviationBin]) -> str:
         rows.append(
             f"<tr><td class=n>{format_fixed(each.low)} … {format_fixed(each.high)}</td>"
             f"<td class=n>{each.area:.1f}</td><td class=n>{100.0 * each.area / max(total, 1e-12):.2f}</td>"
-            f"<td>{'as the design wants it' if within else picture}</td></tr>"
+            f"<td>{escape(label('as_design')) if within else picture}</td></tr>"
         )
-    return "<h3>Deviation from the part</h3>\n" + table(("#From mm to mm", "#Surface mm²", "#%", "-"), rows, "tight")
+    heads = ("#from_to", "#surface", "#percent", "-")
+    return f"<h3>{escape(label('deviation'))}</h3>\n" + said_table(heads, rows, "tight")

@@ -10,7 +10,7 @@ from pathlib import Path
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import LIBRARY, Wording, Words
 from trunnion.model.motion import Decision
 from trunnion.reporting.content import ReportContent, collect_content, refused_content
 from trunnion.reporting.html_page import render_page
@@ -46,18 +46,22 @@ def render_report(
     made: str = "",
     decisions: Sequence[Decision] = (),
     simulation: SimulationContent | None = None,
+    words: Words = LIBRARY,
 ) -> Iterator[bytes]:
     """Return the bytes of a report, piece by piece; the arguments are those of ``write_report``, and what a simulation
-    found.
+    found and the
+    words of who asks.
 
     Raises as ``write_report`` does, but writes nothing.
     """
     return _renderer(path)(
-        collect_content(verification, control, made, decisions, simulation), collect_series(verification)
+        collect_content(verification, control, made, decisions, simulation), collect_series(verification), words
     )
 
 
-def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, path: Path) -> None:
+def write_refusal(
+    problems: Sequence[Problem], machine: Machine, program: str, path: Path, words: Words = LIBRARY
+) -> None:
     """Write the report of a program that was refused before it was run.
 
     problems          why; warnings too
@@ -66,12 +70,12 @@ def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, p
 
     Raises ``InputError`` for any other suffix, and for a file that cannot be written.
     """
-    pieces = _renderer(path)(refused_content(machine, program, problems), no_series())
+    pieces = _renderer(path)(refused_content(machine, program, problems), no_series(), words)
     with atomic_file(path) as sink:
         sink.writelines(pieces)
 
 
-def _renderer(path: Path) -> Callable[[ReportContent, PlotSeries], Iterator[bytes]]:
+def _renderer(path: Path) -> Callable[[ReportContent, PlotSeries, Words], Iterator[bytes]]:
     """Return what makes a report of the form that a name asks for."""
     render = RENDERERS.get(path.suffix.lower())
     if render is None:
@@ -80,7 +84,7 @@ def _renderer(path: Path) -> Callable[[ReportContent, PlotSeries], Iterator[byte
 
 
 #: Suffix -> the function that yields the bytes, piece by piece.
-RENDERERS: dict[str, Callable[[ReportContent, PlotSeries], Iterator[bytes]]] = {
+RENDERERS: dict[str, Callable[[ReportContent, PlotSeries, Words], Iterator[bytes]]] = {
     ".html": render_page,
     ".json": render_json,
 }

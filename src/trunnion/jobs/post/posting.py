@@ -270,7 +270,7 @@ def _with_papers(posting: Posting, program: Program, result: PostResult, later: 
     """
     target = posting.target
     if target.papers:
-        papers = post_papers(target, program, posting.job, result)
+        papers = post_papers(target, program, posting.job, result, posting.observer.words)
         if later is None:
             papers.write()
         else:

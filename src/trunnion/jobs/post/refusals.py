@@ -7,7 +7,7 @@ from dataclasses import replace
 from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.post.result import PostResult, ProofFailedError
 from trunnion.jobs.post.stages import Posting, Proof
-from trunnion.jobs.verify.reports import write_refusal
+from trunnion.jobs.verify.reports import write_post_report, write_refusal
 from trunnion.messages import Wording
 
 
@@ -19,7 +19,7 @@ def reported_refusals(posting: Posting) -> Iterator[None]:
         yield
     except TrunnionError as error:
         if job.papers.report is not None:
-            write_refusal(error.problems, job.machine, target.name, job.papers.report)
+            write_refusal(error.problems, job.machine, target.name, job.papers.report, posting.observer.words)
             target.files.remember_alone(job.papers.report)
         raise
 
@@ -30,7 +30,9 @@ def refused(posting: Posting, proof: Proof, result: PostResult) -> ProofFailedEr
     assert proof.verification is not None
     result = replace(result, verification=places.explained(proof.verification))
     if job.papers.report is not None:
-        result.write_report(job.papers.report)
+        assert result.proof is not None
+        words = posting.observer.words
+        write_post_report(result.proof, job.papers.report, result.decisions, result.simulation, words)
         posting.target.files.remember_alone(job.papers.report)
     failed = tuple(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
     wording = Wording("CTL910", "can_be_forced" if job.can_force else "nothing_written", failed=failed)

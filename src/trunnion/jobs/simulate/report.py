@@ -5,6 +5,7 @@ Out:    ``SimulationContent``, or the file.
 """
 
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,7 +16,7 @@ from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import check_report_name
 from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines, travel_lines
-from trunnion.messages import joined
+from trunnion.messages import LIBRARY, Words
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.remarks import remark_groups
 from trunnion.reporting.simulation_content import (
@@ -47,7 +48,9 @@ _LEFT: Final = np.array([[0.62, 0.78, 0.95], [0.08, 0.30, 0.80]])
 _MISSING: Final = np.array([[1.0, 0.70, 0.40], [0.85, 0.05, 0.10]])
 
 
-def write_simulation_report(found: SimulationResult, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
+def write_simulation_report(
+    found: SimulationResult, file: FilePath, inputs: Iterable[FilePath] = (), words: Words = LIBRARY
+) -> None:
     """Write what a simulation found: a page that works offline (``.html``), or data (``.json``).
 
     Raises ``InputError`` when the name ends otherwise, the file cannot be written, or it is one of ``inputs``.
@@ -59,20 +62,20 @@ def write_simulation_report(found: SimulationResult, file: FilePath, inputs: Ite
             data = _cleaned(to_data(found))
             sink.write((as_json(data) + "\n").encode())
         else:
-            sink.writelines(render_simulation_page(simulation_content(found)))
+            sink.writelines(render_simulation_page(simulation_content(found), words))
 
 
 def simulation_content(found: SimulationResult) -> SimulationContent:
     """Return what the report of a simulation shows."""
     cell = " × ".join(f"{width:.4g}" for width in found.cell)
     facts = (
-        ("Machine", found.machine),
-        ("Removed", f"{found.removed:.1f} mm³"),
-        ("Cells", f"{cell} mm"),
-        ("Motions and tools within", f"{found.accuracy:.4g} mm"),
-        ("Not listed below", f"{found.limit:.4g} mm"),
-        ("Set-ups", ", ".join(each.setup for each in found.setups)),
-        ("Clamped", "; ".join(filter(None, map(_clamped, found.setups or (found,))))),
+        ("machine", found.machine),
+        ("fact_removed", f"{found.removed:.1f} mm³"),
+        ("fact_cells", f"{cell} mm"),
+        ("fact_accuracy", f"{found.accuracy:.4g} mm"),
+        ("fact_limit", f"{found.limit:.4g} mm"),
+        ("fact_setups", ", ".join(each.setup for each in found.setups)),
+        ("fact_clamped", "; ".join(filter(None, map(_clamped, found.setups or (found,))))),
     )
     return SimulationContent(
         title=clean(", ".join(dict.fromkeys(Path(program).name for program in found.programs))),
@@ -82,11 +85,17 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         near=found.near,
         operations=found.operations,
         states=tuple(_state(each) for each in found.setups or (found,)),
-        remarks=(*map(str, remark_groups(found.remarks)), *not_measured_lines(found), *travel_lines(found)),
+        remarks=partial(_remarks, found),
         data=_cleaned(to_data(found)),
-        not_checked=joined(found.not_judged),
-        stated=clean(str(found.stated_said or "")),
+        not_checked=found.not_judged,
+        stated=() if found.stated_said is None else (found.stated_said.changed(clean),),
     )
+
+
+def _remarks(found: SimulationResult, words: Words) -> tuple[str, ...]:
+    """Return what was taken for granted or broken off, each thing once with its count."""
+    groups = (group.line_in(words) for group in remark_groups(found.remarks))
+    return (*groups, *not_measured_lines(found, words), *travel_lines(found, words))
 
 
 def _clamped(found: SimulationResult) -> str:

@@ -12,7 +12,7 @@ from trunnion.jobs.inputs.input_files import verified_files
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import check_report_name
 from trunnion.machines import Machine
-from trunnion.messages import Wording, phrase
+from trunnion.messages import LIBRARY, Wording, Words, phrase
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
 
@@ -21,16 +21,24 @@ if TYPE_CHECKING:  # imported where a program is simulated
 
 
 def write_post_report(
-    verification: Verification, file: FilePath, decisions: Sequence[Decision], simulation: "SimulationResult | None"
+    verification: Verification,
+    file: FilePath,
+    decisions: Sequence[Decision],
+    simulation: "SimulationResult | None",
+    words: Words = LIBRARY,
 ) -> None:
     """Write the report of a post as ``write_report`` does, with what its simulation found."""
     place = check_report_name(file)
     with atomic_file(place, inputs=verified_files(verification)) as sink:
-        add_report(verification, sink, place.name, decisions, simulation)
+        add_report(verification, sink, place.name, decisions, simulation, words)
 
 
 def write_report(
-    result: "Verification | SimulationResult", file: FilePath, *, decisions: Sequence[Decision] = ()
+    result: "Verification | SimulationResult",
+    file: FilePath,
+    *,
+    decisions: Sequence[Decision] = (),
+    words: Words = LIBRARY,
 ) -> None:
     """Write a report: a page that works offline (``.html``), or data (``.json``).
 
@@ -42,6 +50,8 @@ def write_report(
         An older file is replaced when the new one is complete.
     decisions
         Of the planner, beside a verification.
+    words
+        The language of a page and what it calls settings: English, and the words of the library.
 
     Raises
     ------
@@ -50,14 +60,14 @@ def write_report(
         result is about.
     """
     if isinstance(result, Verification):
-        write_post_report(result, file, decisions, None)
+        write_post_report(result, file, decisions, None, words)
         return
     from trunnion.jobs.simulate.report import write_simulation_report
     from trunnion.jobs.simulate.result import SimulationResult
 
     if not isinstance(result, SimulationResult):
         raise wrong_argument("result", result, phrase("give_result"))
-    write_simulation_report(result, file)
+    write_simulation_report(result, file, words=words)
 
 
 def add_report(
@@ -66,6 +76,7 @@ def add_report(
     name: str,
     decisions: Sequence[Decision],
     simulation: "SimulationResult | None" = None,
+    words: Words = LIBRARY,
 ) -> None:
     """Write a report into a file that appears later; with what a simulation found, if there was one.
 
@@ -82,11 +93,13 @@ def add_report(
         content = simulation_content(simulation)
         # How long it was computed differs each time, and the same post gives the same bytes.
         content = replace(content, data={key: value for key, value in content.data.items() if key != "seconds"})
-    sink.writelines(render_report(verification, Path(name), decisions=decisions, simulation=content))
+    sink.writelines(render_report(verification, Path(name), decisions=decisions, simulation=content, words=words))
 
 
-def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, place: Path) -> None:
+def write_refusal(
+    problems: Sequence[Problem], machine: Machine, program: str, place: Path, words: Words = LIBRARY
+) -> None:
     """Write the report of a program that was refused before it was run; arguments as ``reporting`` has them."""
     from trunnion.reporting import write  # most runs are not refused
 
-    write.write_refusal(problems, machine, program, place)
+    write.write_refusal(problems, machine, program, place, words)

@@ -18,6 +18,7 @@ from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.result_output import Target
 from trunnion.jobs.verify.reports import add_report
+from trunnion.messages import LIBRARY, Words
 from trunnion.output.program import Program
 from trunnion.verification import Verification
 
@@ -33,6 +34,7 @@ class PostPapers:
     """All that the papers of a post tell.
 
     inputs  the manifest's entries of what was read, as it was then
+    words   the language of who asks, for pages
     """
 
     target: Target
@@ -40,6 +42,7 @@ class PostPapers:
     job: PostJob
     result: PostResult
     inputs: "PostInputs"
+    words: Words = LIBRARY
 
     def with_checks(
         self,
@@ -64,7 +67,9 @@ class PostPapers:
         files, places = target.files, target.papers
         if verification is not None and "report" in places:
             name = places["report"].name
-            add_report(verification, files.add_paper(places["report"]), name, result.decisions, result.simulation)
+            add_report(
+                verification, files.add_paper(places["report"]), name, result.decisions, result.simulation, self.words
+            )
         if verification is not None and "sheet" in places:
             place = places["sheet"]
             data = self._sheet(verification, place.path.suffix.lower())
@@ -101,14 +106,16 @@ class PostPapers:
         return sheet_json(sheet) if suffix == ".json" else sheet_page(sheet)
 
 
-def post_papers(target: Target, program: Program, job: PostJob, result: PostResult) -> PostPapers:
+def post_papers(
+    target: Target, program: Program, job: PostJob, result: PostResult, words: Words = LIBRARY
+) -> PostPapers:
     """Return the papers of a post that is proven."""
     inputs: PostInputs = {}
     if "manifest" in target.papers:
         from trunnion.jobs.post.papers.manifests import post_inputs
 
         inputs = post_inputs(job, result)
-    return PostPapers(target, program, job, result, inputs)
+    return PostPapers(target, program, job, result, inputs, words)
 
 
 def _written_files(target: Target) -> "list[SheetFile]":
