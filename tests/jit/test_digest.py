@@ -8,7 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from trunnion.jit.arguments import argument_kinds
-from trunnion.jit.kernels import Kernel, inlined, inner
+from trunnion.jit.inner_functions import inlined, inner
+from trunnion.jit.kernels import Kernel
 
 
 class _One(NamedTuple):

@@ -24,7 +24,8 @@ from typing import Any
 import numpy as np
 
 from trunnion.jit.ahead import compile_ahead, is_first_run
-from trunnion.jit.kernels import inlined, inner, kernel
+from trunnion.jit.inner_functions import inlined, inner
+from trunnion.jit.kernels import kernel
 
 #: Kernels that scan bytes keep positions as unsigned numbers: Numba asks of every signed index whether it counts from
 #: the end, which takes a third of their time. A sum of signed and unsigned would be a float: add ``ONE``, and come

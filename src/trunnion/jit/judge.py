@@ -10,7 +10,7 @@ import numpy as np
 from numba.extending import overload, register_jitable
 
 from trunnion.jit.arguments import Array, Kind, Parts
-from trunnion.jit.kernels import INNER
+from trunnion.jit.inner_functions import INNER
 
 _NUMBERS = {int: numba.int64, float: numba.float64, bool: numba.boolean}
 

@@ -6,7 +6,7 @@ import os
 import threading
 from collections.abc import Callable
 from functools import cached_property, update_wrapper
-from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from trunnion.jit.arguments import Kind, argument_kinds, result_kinds
 from trunnion.jit.digest import ingredients
@@ -21,9 +21,6 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 _log = logging.getLogger("trunnion.jit")
 
-#: Inner functions, and whether they are copied into their callers. Numba is told of them before it compiles.
-INNER: Final[list[tuple[Callable[..., Any], bool]]] = []
-
 #: What has been said of compiling in this process, which is one line.
 _said: list[Wording] = []
 
@@ -33,19 +30,6 @@ def say_once(count: int = 0) -> None:
     if not _said:
         _said.append(phrase("compiling_some", count=count) if count else phrase("compiling"))
         _log.info("%s", _said[0])
-
-
-def inner(function: Function) -> Function:
-    """Compile a function into the kernels that call it. Called from Python, it is the plain function."""
-    INNER.append((function, False))
-    return function
-
-
-def inlined(function: Function) -> Function:
-    """Copy a function into the kernels that call it before they are compiled, for functions shorter than a call."""
-    INNER.append((function, True))
-    cast(Any, function).is_inlined = True
-    return function
 
 
 def kernel(*, writes: str = "", checks_division: bool = True) -> Callable[[Function], Function]:
