@@ -128,7 +128,7 @@ export class Page {
     const tool = this.scene.tools[program.rows ? program.tool[row] : 0]?.name ?? "";
     const rows = [
       [say("tip"), `${three(tip, 4)} mm`], [say("toolAxis"), three(axis, 5)], ["F", program.rows && program.feed[row] >= 0 ? `${program.feed[row].toFixed(0)} mm/min` : ""], [say("tool"), tool],
-      [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
+      [say("against"), `${clock(this.time)} / ${clock(program.end)} min`],
     ];
     element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");
     this.text.showClLine(row);
@@ -141,7 +141,7 @@ export class Page {
     element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
     for (const check of this.scene.checks.filter((one) => one.state !== "ok")) {
       const line = document.createElement("li");
-      line.append(...prose(`${check.key}: ${check.state}: ${check.summary}`));
+      line.append(...prose(`${check.key}: ${check.said}: ${check.summary}`));
       (check.state === "FAIL" ? list : element("unchecked")).append(line);
     }
     for (const text of this.scene.stands) {
@@ -268,7 +268,7 @@ export class Page {
     this.measuring = [...this.measuring, piece].slice(-2);
     if (this.measuring.length < 2) return;
     const { length, away } = this.space.measure(this.measuring[0], this.measuring[1]);
-    element("status").textContent = `${say("distance")} ${length.toFixed(4)} mm (${away.map((/** @type {number} */ part) => part.toFixed(4)).join("  ")})`;
+    element("status").textContent = `${say("distance")} ${length.toFixed(4)} mm (${away.map((/** @type {number} */ part) => part.toFixed(4)).join("  ")} mm)`;
     this.measuring = [];
   }
 
