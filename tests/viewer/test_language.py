@@ -34,7 +34,8 @@ FROM_SERVER = {"broken", "unclear", "name", "changed", "exists", "cannot", "home
 
 #: What is no word of a sentence: a font, keys of the keyboard, a question to the browser, classes, a state of checks.
 NO_WORDS = {
-    "(prefers-color-scheme: dark)", "not checked", "11px system-ui, sans-serif", "Home", "End", "Enter", "mark warn", "entry dashed",
+    "(prefers-color-scheme: dark)", "not checked", "11px system-ui, sans-serif", "Home", "End", "Enter",
+    "mark warn", "entry dashed",
 }  # fmt: skip
 
 #: Elements that a selector names.
