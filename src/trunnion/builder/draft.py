@@ -91,7 +91,7 @@ def draft_data(draft: Draft, words: Words = LIBRARY) -> dict[str, Any]:
             page: [_field(each, root, base, draft, words) for each in fields if each.page == page] for page in PAGES
         },
         "problems": [_problem(each, draft, words) for each in draft.problems],
-        "marks": [] if root is None else [_mark(root, *each) for each in marked_values(draft.text)],
+        "marks": [] if root is None else [_mark(root, words, *each) for each in marked_values(draft.text)],
         "axes": _axes(root),
         "extends": _plain_text(root and _own(draft).get("extends")),
         **_machine(draft.machine, words),
@@ -149,8 +149,10 @@ def _problem(problem: Problem, draft: Draft, words: Words) -> dict[str, Any]:
     }
 
 
-def _mark(root: LocatedValue, key: str, line: int, text: str) -> dict[str, Any]:
-    return {"line": line, "path": to_data(named_path(root, key)), "text": text}
+def _mark(root: LocatedValue, words: Words, key: str, line: int, text: str) -> dict[str, Any]:
+    mark, _, what = text.partition(":")
+    asked = phrase("to_enter" if mark == "enter" else "to_measure", what=what.strip()).text("what", words)
+    return {"line": line, "path": to_data(named_path(root, key)), "text": asked}
 
 
 def _base(draft: Draft) -> LocatedValue | None:

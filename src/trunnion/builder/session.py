@@ -119,11 +119,11 @@ class BuilderSession:
         if base:
             if base not in shipped_machines():
                 raise RequestError
-            text = definition_like(load_machine(base), name)
+            text = definition_like(load_machine(base), name, words)
         else:
             if control not in shipped_controls() or chain not in CHAINS:
                 raise RequestError
-            text = chain_text(chain, name, control)
+            text = chain_text(chain, name, control, words)
         return self._judged(text, given, words)
 
     def _change(self, given: Mapping[str, Any], words: Words) -> dict[str, Any]:

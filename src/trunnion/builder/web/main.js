@@ -175,7 +175,7 @@ class Builder {
   #showProblems() {
     const { problems, marks } = this.data;
     const found = problems.length ? say("mistakes", { count: problems.length }) : say("clean");
-    element("mistakes").textContent = [found, ...(marks.length ? [say("toEnter", { count: marks.length })] : [])].join(", ");
+    element("mistakes").textContent = marks.length ? say("both", { mistakes: found, marks: say("toEnter", { count: marks.length }) }) : found;
     element("mistakes").className = problems.length ? "bad" : marks.length ? "warn" : "good";
     refill(element("problems"), [...problems, ...marks].map((/** @type {any} */ each) => {
       const item = Object.assign(document.createElement("li"), { className: each.code === undefined ? "warn" : "" });

@@ -31,8 +31,8 @@ export class Sample {
     this.list.querySelector(".new")?.scrollIntoView({ block: "center" });
     const lines = (/** @type {string[]} */ texts, /** @type {string} */ kind) => texts.filter(Boolean).map((text) => Object.assign(document.createElement("div"), { textContent: text, className: kind }));
     const told = (/** @type {boolean} */ isError) => found.problems.filter((each) => (each.severity === "error") === isError).map((each) => each.text);
-    const checked = (/** @type {string} */ state) => found.checks.filter((each) => each.state === state).map((each) => `${each.key}: ${each.summary}`);
-    const unchecked = found.checks.filter((each) => each.state === "not checked").map((each) => `${each.said}: ${each.key}: ${each.summary}`);
+    const checked = (/** @type {string} */ state) => found.checks.filter((each) => each.state === state).map((each) => say("answer", { check: each.key, what: each.summary }));
+    const unchecked = found.checks.filter((each) => each.state === "not checked").map((each) => say("unanswered", { state: each.said, check: each.key, what: each.summary }));
     const open = [...unchecked, ...told(false), marks ? say("toEnter", { count: marks }) : ""];
     const head = found.passed && found.standing ? found.standing : found.checks.length ? say("failed") : say("refused");
     const moved = found.changed.length + found.removed ? say("moved", { new: found.changed.length, gone: found.removed }) : "";

@@ -138,10 +138,10 @@ export class Page {
     const list = element("findings");
     element("standing").textContent = this.scene.standing;
     element("basis").className = this.scene.verdict;
-    element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
+    element("findings-title").textContent = say("findings", { count: this.scene.findings.length });
     for (const check of this.scene.checks.filter((one) => one.state !== "ok")) {
       const line = document.createElement("li");
-      line.append(...prose(`${check.key}: ${check.said}: ${check.summary}`));
+      line.append(...prose(say("judged", { check: check.key, state: check.said, what: check.summary })));
       (check.state === "FAIL" ? list : element("unchecked")).append(line);
     }
     for (const text of this.scene.stands) {
@@ -152,7 +152,7 @@ export class Page {
     this.scene.findings.forEach((each) => {
       const line = document.createElement("li"), button = document.createElement("button");
       button.type = "button";
-      button.append(...prose(`${say("line")} ${each.line}: ${each.text}`));
+      button.append(...prose(say("found", { line: each.line, what: each.text })));
       button.addEventListener("click", () => this.goToFinding(each));
       line.append(button);
       list.append(line);
@@ -254,7 +254,9 @@ export class Page {
   setFrame(frame) { for (const space of this.spaces) space.setFrame(frame); }
 
   section() {
-    this.stock?.setOpen(element("section").value !== "");
+    const isOpen = element("section").value !== "";
+    element("section-at").hidden = !isOpen;
+    this.stock?.setOpen(isOpen);
     for (const space of this.spaces) space.section(element("section").value, Number(element("section-at").value));
   }
 

@@ -28,4 +28,5 @@ export function putTexts() {
     each.setAttribute("aria-label", text);
     if (each.matches("button, input, select")) each.title = text;
   }
+  for (const each of keyed("hint")) each.setAttribute("placeholder", say(/** @type {PlainKey} */ (each.dataset.hint)));
 }
