@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 import uvicorn
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, Page
 
 from tests.support.browser import PATIENCE, needs_browser
 from tests.support.browser import browser as browser
@@ -196,9 +196,32 @@ def english_of(page: str, language: str) -> set[str]:
     }
 
 
+#: Elements that are wider than the page, or whose text is cut; what scrolls, and the title with its dots, may be.
+_CUT = """() => {
+  const aside = "#listing, .listing, #program, #text, #gutter, #title, input, select, textarea, option, script, style";
+  const wide = each => each.clientWidth && each.scrollWidth > each.clientWidth + 1;
+  const cut = each => wide(each) && getComputedStyle(each).overflowX !== "auto";
+  const found = Array.from(document.querySelectorAll("body *")).filter(each => !each.closest(aside)).filter(cut);
+  if (document.documentElement.scrollWidth > innerWidth) found.push(document.body);
+  return found.map(each => `${innerWidth} px: ${each.tagName} ${each.id} ${each.textContent.trim().slice(0, 40)}`);
+}"""
+
+
+def cut_texts(page: Page) -> list[str]:
+    """What a page cuts off at the widths of a phone, a tablet, a laptop and a large screen."""
+    found: list[str] = []
+    for width, height in ((390, 844), (768, 1024), (1280, 720), (1920, 1080)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        found += page.evaluate(_CUT)
+    return found
+
+
 @needs_browser
-@pytest.mark.parametrize("language", [each for each in LANGUAGES if each != "en"])
-def test_nothing_that_is_read_is_left_in_english(language: str, builder: str, browser: Browser, tmp_path: Path) -> None:
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_nothing_that_is_read_is_left_in_english_or_cut_off(
+    language: str, builder: str, browser: Browser, tmp_path: Path
+) -> None:
     write_view(PROGRAM, machine="yl569", output=tmp_path / "view.html", words=library_words(language))
     page = browser.new_page(locale={"zh": "zh-CN"}.get(language, language))
     page.set_default_timeout(PATIENCE)
@@ -206,6 +229,7 @@ def test_nothing_that_is_read_is_left_in_english(language: str, builder: str, br
     page.wait_for_selector("html[data-ready=true]", state="attached")
     read = page.evaluate(_READ)
     assert len(read) > 80
+    assert cut_texts(page) == []
     assert set(read) & english_of("viewer", language) == set()
     page.goto(builder)
     page.wait_for_selector("html[data-ready=true]", state="attached")
@@ -213,6 +237,7 @@ def test_nothing_that_is_read_is_left_in_english(language: str, builder: str, br
     page.locator("#begin-go").click()
     page.wait_for_function("() => builder.data && document.getElementById('program').dataset.ready === 'true'")
     assert page.evaluate("document.documentElement.lang").startswith(language)
+    assert cut_texts(page) == []
     for name in PAGES:
         page.locator(f"[data-page={name}]").click()
         assert set(page.evaluate(_READ)) & english_of("builder", language) == set()
