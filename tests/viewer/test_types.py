@@ -1,6 +1,7 @@
 """The modules of our pages, checked by the TypeScript compiler: types are in JSDoc, those of texts in catalogues."""
 
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -39,7 +40,8 @@ def compiled(page: str, folder: Path, *more: Path) -> str:
     ]  # fmt: skip
     found = subprocess.run(command, capture_output=True, text=True, check=False).stdout
     others = tuple(f"{each}/web/" for each in WEB if each != page)
-    return "\n".join(line for line in found.splitlines() if not any(each in line for each in others))
+    messages = re.split(r"\n(?! )", found.strip())  # lines that go on with a message are indented
+    return "\n".join(each for each in messages if not any(other in each.splitlines()[0] for other in others if each))
 
 
 needs_compiler = pytest.mark.skipif(

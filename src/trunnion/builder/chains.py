@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.builder.document import with_value
-from trunnion.builder.likeness import to_measure
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem
 from trunnion.messages import LIBRARY, Wording, Words, phrase
@@ -70,7 +69,8 @@ def _axis_table(axis: str, side: str, lines: dict[str, tuple[float, float, float
     text = f'[[axis]]\nname = "{axis}"\nkind = "{kind}"\ncarries = "{side}"\ndirection = [{x:g}, {y:g}, {z:g}]\n'
     if not rotary:
         return text  # travel that is not known is not checked, and programs warn of it
-    text += f"point_mm = [0, 0, 0] {to_measure('measure_point', words)}\n"
+    point, limits = (phrase(what).text("what", words) for what in ("measure_point", "enter_limits"))
+    text += f"point_mm = [0, 0, 0] # measure: {point}\n"
     if axis == "C":
         return text + 'endless = true\noutput = "0..360"\n'
-    return text + f"limits_deg = [-110, 110] # enter: {phrase('enter_limits').text('what', words)}\n"
+    return text + f"limits_deg = [-110, 110] # enter: {limits}\n"

@@ -28,9 +28,9 @@ def _spindle(machine: Machine, words: Words) -> Iterator[str]:
     if has_head or machine.spindle_point_is_stated:
         point = written(list(machine.spindle_point))
         what = "measure_pivot" if has_head else "measure_gauge_point"
-        lines.append(f"gauge_point_mm = {point} {to_measure(what, words)}")
+        lines.append(f"gauge_point_mm = {point} {_to_measure(what, words)}")
     if machine.spindle_max_rpm is not None:
-        lines.append(f"max_rpm = {written(machine.spindle_max_rpm)} {to_measure('measure_plate', words)}")
+        lines.append(f"max_rpm = {written(machine.spindle_max_rpm)} {_to_measure('measure_plate', words)}")
     if lines:
         yield "\n".join(["[spindle]", *lines])
 
@@ -42,15 +42,15 @@ def _axis(axis: Axis, words: Words) -> Iterator[str]:
     unit = "deg" if axis.is_rotary else "mm"
     if axis.is_rotary:
         where = "measure_point_of_pivot" if axis.mount is Mount.TOOL else "measure_point_of_table"
-        yield f"point_mm = {written(list(axis.point))} {to_measure(where, words)}"
+        yield f"point_mm = {written(list(axis.point))} {_to_measure(where, words)}"
     if axis.has_limits:
-        yield f"limits_{unit} = {written([axis.low, axis.high])} {to_measure('measure_limits', words)}"
+        yield f"limits_{unit} = {written([axis.low, axis.high])} {_to_measure('measure_limits', words)}"
     elif not axis.endless:
-        yield f"# limits_{unit} = [low, high] {to_measure('measure_limits_or_none', words)}"
+        yield f"# limits_{unit} = [low, high] {_to_measure('measure_limits_or_none', words)}"
     if axis.home_is_stated:
-        yield f"home_{unit} = {written(axis.home)} {to_measure('measure_home', words)}"
+        yield f"home_{unit} = {written(axis.home)} {_to_measure('measure_home', words)}"
 
 
-def to_measure(what: str, words: Words) -> str:
+def _to_measure(what: str, words: Words) -> str:
     """Return the comment behind a value that stands for a measured one; ``what`` is the phrase that says which."""
     return f"# measure: {phrase(what).text('what', words)}"
