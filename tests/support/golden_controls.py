@@ -18,7 +18,7 @@ class Case:
 
 _BLADE = "yl569/3_blade_finish.cls"
 _CAP = "mikron_600u/cap.cls"
-_PLACE = ("zero=0,0,100", "tool_length=100")
+_PLACE = ("zero=0,0,100", "tool_length=100", "blank=off")
 CASES = {
     "fanuc/flange.expected.nc": Case(
         "fanuc/flange.cls", "matsuura_mx330", ("program=7118", "title=Flange 7-1182 Rev B", "work_offset=G54.1 P3")

@@ -139,11 +139,17 @@ class SelectTool(Event):
 
 @dataclass(frozen=True, slots=True)
 class SpindleOn(Event):
-    """Turn the spindle on, rev/min; surface speeds are converted. ``stated``: by a setting, not by the CL file."""
+    """Turn the spindle on, rev/min.
+
+    stated   by a setting, not by the CL file
+    surface  what the CL file says instead, and ``rpm`` was computed from: the speed of the cutting edge, m/min, and the
+             diameter at which it has that speed, mm
+    """
 
     rpm: float
     sense: Sense = Sense.CLW
     stated: bool = False
+    surface: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
