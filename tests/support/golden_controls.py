@@ -18,7 +18,7 @@ class Case:
 
 _BLADE = "yl569/3_blade_finish.cls"
 _CAP = "mikron_600u/cap.cls"
-_PLACE = ("zero=0,0,100", "tool_length=100", "blank=off")
+_PLACE = ("zero=0,0,100", "tool_length=100")
 _NO_TOLERANCE = " has no INTOL and OUTTOL"
 CASES = {
     "fanuc/flange.expected.nc": Case(
@@ -48,10 +48,10 @@ CASES = {
         _CAP, "mikron_600u", ("tcp=off", *_PLACE), warned="so short that F would be above"
     ),
     "mikron_600u/flange_by_increments.expected.h": Case(
-        "fanuc/flange.cls", "mikron_600u", ("distances=incremental",), warned=_NO_TOLERANCE
+        "fanuc/flange.cls", "mikron_600u", ("distances=incremental", "blank=extents"), warned=_NO_TOLERANCE
     ),
     **{
-        f"dmu65/bevel_{form}.expected.h": Case("dmu65/bevel.cls", "dmu65", (f"plane={form}",), warned=_NO_TOLERANCE)
+        f"dmu65/bevel_{form}.expected.h": Case("dmu65/bevel.cls", "dmu65", (f"plane={form}", "blank=extents"), warned=_NO_TOLERANCE)
         for form in ("spatial", "vector", "euler", "points", "relativ", "axial")
     },
 }

@@ -116,9 +116,9 @@ class TemplateValues:
         """
         control, operation = self._program.control, motion.operation
         values: dict[str, Value] = {**control.settings, **self._program.settings_of(operation)}
-        if values.get("blank") in (EXTENTS, STOCK):  # stock that is known has come as its corners
+        if values.get("blank") == EXTENTS:
             values["blank"] = self._extents()
-        elif values.get("blank") == NO_BLANK:
+        elif values.get("blank") in (STOCK, NO_BLANK):  # stock that is known has come as its corners
             values["blank"] = ""
         plane = None if motion.plane is None else motion.plane.matrix()
         values |= self._used

@@ -346,7 +346,7 @@ class MotionBlockWriter:
             every[at] = flags
             table.force(word, every)
         table.lines |= {row: line for row, line in zip(at.tolist(), words.lines or (), strict=False) if line}
-        if not self.family.INCREMENTS.circles:
+        if self.family.INCREMENTS is not None and not self.family.INCREMENTS.circles:
             table.absolute |= set(at.tolist())
         other_end = table.columns["X"] == ABSENT
         table.absolute |= set((np.flatnonzero(other_end) + 1).tolist())

@@ -1,4 +1,4 @@
-"""BLK FORM by the setting ``blank``: of the stock that a simulation or a project states, else around all cuts."""
+"""BLK FORM by the setting ``blank``: of the stock that a simulation or a project states, or around all cuts."""
 
 import re
 from pathlib import Path
@@ -44,9 +44,9 @@ def corners(program: Path) -> list[str]:
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize(
     ("blank", "expected"),
-    [(None, EXTENTS), ("stock", EXTENTS), ("extents", EXTENTS), ("off", []), ("-1,-5,-2.5,0,1,-0.0", None)],
+    [(None, []), ("stock", []), ("extents", EXTENTS), ("off", []), ("-1,-5,-2.5,0,1,-0.0", None)],
 )
-def test_without_stock_it_is_the_box_around_all_cuts(
+def test_without_stock_it_is_what_the_setting_says(
     blank: str | None, expected: list[str] | None, machine: str, part: Path, tmp_path: Path
 ) -> None:
     settings = {} if blank is None else {"blank": blank}
@@ -77,7 +77,7 @@ def test_it_is_the_box_of_the_stock_that_the_simulation_takes(
     assert not re.search(r"[XYZ]-0(?![.0-9])", "".join(corners(program)))
 
 
-def test_the_first_set_up_of_a_project_has_its_stock_and_a_later_one_its_cuts(part: Path, tmp_path: Path) -> None:
+def test_the_first_set_up_of_a_project_has_its_stock_and_a_later_one_none(part: Path, tmp_path: Path) -> None:
     project = tmp_path / "project.toml"
     project.write_text(
         f"""machine = "dmu65"
@@ -97,4 +97,4 @@ output = "two.h"
     )
     trunnion.post_project(project)
     assert corners(tmp_path / "one.h") == ["X-5 Y-20 Z-29.5", "X+55 Y+20 Z+0.5"]
-    assert corners(tmp_path / "two.h") == EXTENTS
+    assert corners(tmp_path / "two.h") == []

@@ -64,7 +64,7 @@ COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999
 NEVER_NUMBERED = "%O"
-INCREMENTS = IncrementWords("G91", "G90")
+INCREMENTS: IncrementWords | None = IncrementWords("G91", "G90")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}
 )

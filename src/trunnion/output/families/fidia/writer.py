@@ -61,7 +61,7 @@ COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
-INCREMENTS = IncrementWords("G91", "G90", circles=False)
+INCREMENTS: IncrementWords | None = IncrementWords("G91", "G90", circles=False)
 TEMPLATE_FIELDS: frozenset[str] = frozenset(_CANCELLING_FIELDS)
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

@@ -96,7 +96,7 @@ COMMENTS: re.Pattern[str] = re.compile(r'(;.*|^\* - .*)|"[^"]*"')
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("",)
 HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
-INCREMENTS = IncrementWords(prefix="I")
+INCREMENTS: IncrementWords | None = IncrementWords(prefix="I")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
         "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "free_axis", "blank_low",

@@ -42,7 +42,7 @@ COMMENTS: re.Pattern[str] = re.compile(r"(;.*|\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999
 NEVER_NUMBERED = ""
-INCREMENTS = IncrementWords("G91", "G90")
+INCREMENTS: IncrementWords | None = IncrementWords("G91", "G90")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: How a comment begins that LinuxCNC executes, after a semicolon as in brackets: it shows or logs texts, opens files,
