@@ -51,7 +51,9 @@ CASES = {
         "fanuc/flange.cls", "mikron_600u", ("distances=incremental", "blank=extents"), warned=_NO_TOLERANCE
     ),
     **{
-        f"dmu65/bevel_{form}.expected.h": Case("dmu65/bevel.cls", "dmu65", (f"plane={form}", "blank=extents"), warned=_NO_TOLERANCE)
+        f"dmu65/bevel_{form}.expected.h": Case(
+            "dmu65/bevel.cls", "dmu65", (f"plane={form}", "blank=extents"), warned=_NO_TOLERANCE
+        )
         for form in ("spatial", "vector", "euler", "points", "relativ", "axial")
     },
 }
