@@ -85,7 +85,7 @@ STATES: Final = (
     ),
     State(
         "tilted plane", "CYCLE800, PLANE, G68.2, G254", _PATH, kinds=("tilt", "plane", "cycle800", "level"),
-        columns=("plane", "xyz_is_tip", "length_axis"),
+        columns=("plane", "xyz_is_tip", "length_axis", "working_plane"),
     ),
     State("frame and shift", "TRANS, ROT, SCALE, G52, cycle 7", _PATH, kinds=("frame",)),
     State("TCP", "TRAORI, M128, G43.4, G96 (Fidia)", _PATH, columns=("tcp",)),
