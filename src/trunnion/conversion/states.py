@@ -145,7 +145,7 @@ STATES: Final = (
         "position of the machine", "SUPA, G53, M91, M140", _REPORTED, kinds=("retract", "leave"),
         columns=("machine_frame", "machine_steps"),
     ),
-    State("drilling cycle", "CYCLE81, G83, cycle 200", _REPORTED, kinds=("hole",)),
+    State("drilling cycle", "CYCLE81, G83, cycle 200", _REPORTED, kinds=("hole", "cycle_value")),
     State("variable", "R1, #1, Q1", _PATH),
     State("end", "M30, M2", _PATH, kinds=("end",)),
     State("begin anew", "M99 of a main program", _REPORTED),

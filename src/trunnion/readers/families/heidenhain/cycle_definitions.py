@@ -22,6 +22,7 @@ from trunnion.readers.families.heidenhain.cycles import (
     legacy_cycle_motions,
     legacy_spindle_work,
     spindle_work,
+    unusual_values,
 )
 from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
@@ -366,6 +367,8 @@ class Definitions:
             motions = legacy_cycle_motions(cycle.number, cycle.values, rpm, here)
         else:
             motions = cycle_motions(cycle.number, cycle.q_values, rpm)
+            for value in unusual_values(cycle.number, cycle.q_values, control.length_unit):
+                control.add_event("cycle_value", value)
         if control.feed_unit == 1.0:
             return motions
         return [
