@@ -70,9 +70,7 @@ def check_holes(context: ComparedContext) -> Check:
 
 
 def _unasked_values(context: ComparedContext, matches: Mapping[int, MatchedHole]) -> Iterator[Wording]:
-    """Yield what no CL file says of pecks and the program has otherwise than ``post``: how far the tool lifts, and where
-    it feeds on.
-    """
+    """Yield what no CL file says of pecks and ``post`` writes otherwise: how far the tool lifts, where it feeds on."""
     run = context.run
     rows = dict[str, int]()
     for event in run.events:
