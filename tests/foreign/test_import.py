@@ -133,7 +133,8 @@ def test_machine_data_are_compared_with_a_definition(capsys: pytest.CaptureFixtu
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("axis.X.limits_mm: [-250.0, 250.0] in yl569, [-251.0, 250.0] there")
     assert lines[1].startswith("axis.X.acceleration_mm_s2: not stated in yl569, 2500.0 there")
-    assert lines[-1] == "2 differences in 6 values of axes; 2 not compared"
+    assert lines[2].startswith("axis.C.point_mm X: 0.0 in yl569, 0.02 there")
+    assert lines[-1] == "3 differences in 7 values; 2 not compared"
 
 
 def test_machine_data_become_a_definition(tmp_path: Path) -> None:
@@ -220,7 +221,7 @@ def test_limits_that_cannot_be_are_reported(tmp_path: Path) -> None:
 
 def test_files_that_are_no_text_or_not_there_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "post.tcl").write_bytes(b"set mom\0")
-    for name, code in (("post.tcl", "DEF610"), ("none.tcl", "DEF610"), ("post.pst", "DEF650"), ("none.arc", "DEF610")):
+    for name, code in (("post.tcl", "DEF610"), ("none.tcl", "DEF610"), ("post.cps", "DEF650"), ("none.arc", "DEF610")):
         assert main(["import", str(tmp_path / name), "--output", str(tmp_path / "ours")]) == 2
         assert f"[{code}]" in capsys.readouterr().err
     shutil.copy(POST[0], tmp_path / "list.txt")

@@ -1,5 +1,5 @@
 """Posts and machine data of others as definitions of machines.
 
-files ──nx_post, machine_data──▶ ForeignMachine ──written_definition──▶ TOML that extends the nearest shipped machine
-                                                ──differences──────────▶ what a definition has otherwise
+files ──nx_post, mastercam, machine_data──▶ ForeignMachine ──written_definition──▶ TOML that extends a shipped machine
+                                                           ──differences─────────▶ what a definition has otherwise
 """

@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from trunnion.controls.definition_files import load_control_table
+from trunnion.controls.loading import control_library
+from trunnion.definitions import resolve_extends
 from trunnion.definitions.toml_text import written
 from trunnion.errors import InputError, argument_problem
 from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated
 from trunnion.machines import AngleOutput, Axis, Machine, load_machine
 from trunnion.machines.loading import shipped_machines
+from trunnion.machines.machine import Vector
 from trunnion.messages import Wording
 from trunnion.schemas import first_line
 
@@ -20,8 +23,9 @@ _HEAD: Final = """\
 # reports which marks are left; what the files have and a definition does not take stands at the end.
 """
 
-#: Relative and absolute differences of numbers that are the same.
+#: Relative and absolute differences of numbers that are the same; of lines of rotation, mm and components.
 _SAME: Final = 1e-9
+_SAME_LINE: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +80,10 @@ def written_definition(found: ForeignMachine, base: str, name: str) -> Written:
     if not base:
         return _whole_definition(found, name)
     machine = load_machine(base)
-    names = {axis.name for axis in machine.axes}
     outside = dict((*_homes_outside(found, machine), *_endless_against_limits(found, machine)))
     for key, value in found.values.items():
-        if key[0] == "axis" and key[1] not in names:
-            what = f"{'.'.join(key)} = {written(value.value)}"
-            outside[key] = Left(what, value.source, f"{base} has no axis {key[1]}")
+        if key[0] == "axis" and (why := _no_place(key, machine)):
+            outside[key] = Left(f"{'.'.join(key)} = {written(value.value)}", value.source, why)
     taken = {key: value for key, value in found.values.items() if key not in outside}
     lines = [
         first_line("machine") + _HEAD.format(sources=_sources(taken), like=f", like {base} where these say nothing")
@@ -92,6 +94,17 @@ def written_definition(found: ForeignMachine, base: str, name: str) -> Written:
         lines += _axis(axis, {key[2]: value for key, value in taken.items() if key[:2] == ("axis", axis.name)})
     lines += _control(_control_of(machine), found.control, taken)
     return _with_rest(lines, taken, (*found.left, *outside.values()))
+
+
+def _no_place(key: Key, machine: Machine) -> str:
+    """Return why a machine has no place for a value of an axis; empty if it has."""
+    axis = next((each for each in machine.axes if each.name == key[1]), None)
+    if axis is None:
+        return f"{machine.key} has no axis {key[1]}"
+    turns = key[2] in ("endless", "point_mm") or "_deg" in key[2]
+    if (turns and not axis.is_rotary) or (key[2].endswith("_mm") and key[2] != "point_mm" and axis.is_rotary):
+        return f"{key[1]} of {machine.key} is a {axis.kind} axis"
+    return ""
 
 
 def _with_rest(lines: list[str], taken: Mapping[Key, Stated], left: tuple[Left, ...]) -> Written:
@@ -159,16 +172,60 @@ def _endless_against_limits(found: ForeignMachine, machine: Machine) -> Iterator
 
 
 def differences(found: ForeignMachine, machine: Machine) -> Iterator[Difference]:
-    """Yield the values of axes that a definition has otherwise than a machine of others, in the order of the files."""
+    """Yield the values of axes and control that a definition has otherwise than a machine of others, in the order of
+    the files.
+
+    Lines of rotation are compared as such: a point may lie anywhere on its line, and a line that points the other way
+    with the other sense is the same.
+    """
     axes = {axis.name: axis for axis in machine.axes}
+    control: dict[str, Any] = resolve_extends(machine.control, control_library()).to_dict()
     for key, value in found.values.items():
+        if key[0] == "control" and not _is_same(here := _of_control(control, key), value.value):
+            yield Difference(".".join(key), here, value.value, value.source)
         if key[0] == "axis" and key[1] in axes:
-            here = _here(axes[key[1]], key[2])
-            if not _is_same(here, value.value):
+            axis = axes[key[1]]
+            if key[2] == "point_mm":
+                yield from _off_line(axis, value, machine.spindle_point)
+            elif key[2] == "direction" and ("axis", axis.name, "positive") in found.values:
+                yield from _askew(axis, value)
+            elif key[2] == "positive" and (line := found.values.get(("axis", axis.name, "direction"))):
+                yield from _other_sense(axis, value, line)
+            elif not _is_same(here := None if _no_place(key, machine) else _here(axis, key[2]), value.value):
                 yield Difference(".".join(key), here, value.value, value.source)
     for name in dict.fromkeys(key[1] for key in found.values if key[0] == "axis" and key[1] not in axes):
         first = next(value for key, value in found.values.items() if key[:2] == ("axis", name))
         yield Difference(f"axis.{name}", None, "stated", first.source)
+
+
+def _off_line(axis: Axis, stated: Stated, gauge: Vector) -> Iterator[Difference]:
+    """Yield the components in which a point, from the gauge point, is beside the line of rotation, mm."""
+    there = [float(value) + start for value, start in zip(stated.value, gauge, strict=True)]
+    away = [value - own for value, own in zip(there, axis.point, strict=True)]
+    along = sum(a * b for a, b in zip(away, axis.direction, strict=True))
+    for letter, off, part, own, value in zip("XYZ", away, axis.direction, axis.point, there, strict=True):
+        if abs(off - along * part) > _SAME_LINE:
+            yield Difference(f"axis.{axis.name}.point_mm {letter}", own, round(value, 9), stated.source)
+
+
+def _askew(axis: Axis, stated: Stated) -> Iterator[Difference]:
+    """Yield the components in which a line of rotation is not parallel to that of a definition."""
+    size = math.hypot(*stated.value)
+    there = [value / size for value in stated.value] if size > 0.0 else [0.0, 0.0, 0.0]
+    if sum(a * b for a, b in zip(there, axis.direction, strict=True)) < 0.0:
+        there = [-value + 0.0 for value in there]
+    for letter, own, value in zip("XYZ", axis.direction, there, strict=True):
+        if abs(own - value) > _SAME_LINE:
+            yield Difference(f"axis.{axis.name}.direction {letter}", own, round(value, 9), stated.source)
+
+
+def _other_sense(axis: Axis, stated: Stated, line: Stated) -> Iterator[Difference]:
+    """Yield a sense of rotation that is the other one, along the line as the definition has it."""
+    along = sum(a * b for a, b in zip(line.value, axis.direction, strict=True))
+    sense = (1.0 if stated.value == "standard" else -1.0) * (1.0 if along >= 0.0 else -1.0)
+    if sense != axis.sense:
+        there = "standard" if sense > 0.0 else "reversed"
+        yield Difference(f"axis.{axis.name}.positive", str(axis.positive), there, stated.source)
 
 
 def _rotary(machine: Machine) -> list[tuple[str, str]]:
@@ -238,6 +295,15 @@ def _control(own: str, control: str, taken: Mapping[Key, Stated]) -> Iterator[st
 def _has_other(table: Any, key: str, value: Any) -> bool:
     """Whether a table of a control can have a key, and has another value there."""
     return isinstance(table, dict) and (key in table or "OFF" in table) and table.get(key) != value
+
+
+def _of_control(control: Mapping[str, Any], key: Key) -> Any:
+    """Return a value of a control; None where it states none."""
+    table = control.get(key[1])
+    if key[1] == "format":
+        table = next((each for each in table or () if each.get("name") == key[2]), None)
+    value = table.get(key[-1]) if isinstance(table, dict) else None
+    return value[0] if isinstance(value, list) and len(value) == 1 else value
 
 
 def _control_of(machine: Machine) -> str:

@@ -3,9 +3,10 @@
 Units:  mm and degrees, as definitions have them.
 """
 
+import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -20,6 +21,15 @@ Key: TypeAlias = tuple[str, ...]
 
 #: Larger files are no posts and no machine data.
 MOST_BYTES: Final = 64_000_000
+
+#: Greater numbers are no sizes of a machine, mm, degrees or mm/min.
+LARGEST: Final = 1e6
+_NUMBER: Final = re.compile(r"[-+]?(?:\d{1,40}\.?\d{0,40}|\.\d{1,40})(?:[eE][-+]?\d{1,3})?", re.ASCII)
+
+
+def place_in(file: Path, line: int) -> str:
+    """Return the name of a file and a line, on one line whatever its name is."""
+    return f"{''.join(letter if letter.isprintable() else '?' for letter in file.name)}:{line}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +49,7 @@ class Stated:
     @property
     def place(self) -> str:
         """File and line."""
-        return f"{Path(self.file).name}:{self.line}"
+        return place_in(Path(self.file), self.line)
 
     def as_value(self, value: Any) -> "Stated":
         """Return another value from the same place."""
@@ -71,11 +81,43 @@ class ForeignMachine:
     control: str = ""
 
 
+def number(text: Any) -> float | None:
+    """Return a number as files of others write it; None where it is none, or none of a machine."""
+    if not _NUMBER.fullmatch(str(text).strip()):
+        return None
+    value = float(text)
+    return value if abs(value) <= LARGEST else None
+
+
+def index(text: Any) -> int | None:
+    """Return a whole number from 0 to 999999; None where it is none."""
+    return int(text) if re.fullmatch(r"\d{1,6}", str(text), re.ASCII) else None
+
+
 @cache
 def marks_of_controls() -> dict[str, Any]:
     """Return by what files of others show the control that they are for."""
     data: dict[str, Any] = tomllib.loads(files(__package__).joinpath("controls.toml").read_text(encoding="utf-8"))
     return data
+
+
+@dataclass(slots=True)
+class WordCounts:
+    """In how many lines the words of each control stand."""
+
+    counts: dict[str, int] = field(default_factory=dict)
+
+    def count(self, line: str) -> None:
+        """Look for the words of each control in a line."""
+        for control, words in marks_of_controls()["words"].items():
+            if any(word in line for word in words):
+                self.counts[control] = self.counts.get(control, 0) + 1
+
+    @property
+    def control(self) -> str:
+        """The control whose words stand in most lines; empty where none is clearly ahead."""
+        ranked = [*sorted(((count, name) for name, count in self.counts.items()), reverse=True), (0, ""), (0, "")]
+        return ranked[0][1] if ranked[0][0] > 2 * ranked[1][0] else ""
 
 
 def read_text(file: Path) -> str:

@@ -1,12 +1,13 @@
 """Machine data of a SINUMERIK 840D sl: an archive of the commissioning, or a list, as text.
 
-In:     lines such as ``N36100 $MA_POS_LIMIT_MINUS[AX1]=-250`` or ``36100 $MA_POS_LIMIT_MINUS[AX1] -250``.
+In:     lines such as ``N36100 $MA_POS_LIMIT_MINUS[AX1]=-250``, ``36100 $MA_POS_LIMIT_MINUS[AX1] -250`` or
+        ``$TC_CARR7[1]=-1``.
 Out:    a ``ForeignMachine``.
 Units:  data have mm, degrees, mm/min and rev/min, m/s^2 and rev/s^2.
 
 Numbers and names are those of the lists of machine data: 10000 names of machine axes, 20080 of channel axes, 30300 and
 30310 rotary and modulo axes, 32000 and 32300 highest speed and acceleration, 34100 reference point, 36100 and 36110
-software limits, 24100 type of the first transformation with its axes in 24110.
+software limits. Rotary axes are in ``chain_data``.
 """
 
 import re
@@ -15,31 +16,45 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, marks_of_controls, read_text
+from trunnion.foreign.chain_data import Chain, Data, chain_of
+from trunnion.foreign.machine import (
+    ForeignMachine,
+    Key,
+    Left,
+    Stated,
+    index,
+    marks_of_controls,
+    number,
+    place_in,
+    read_text,
+)
 from trunnion.messages import Wording
 
 _LINE: Final = re.compile(
-    r"\s*(?:N?\d{5}\s+)?\$M([NCA])_(\w+)(?:\[([^\]]*)\])?\s*(?:=|\s)\s*(\"[^\"]*\"|'[^']*'|[-+.\w]+)\s*(?:;.*)?$"
+    r"\s*(?:N?\d{1,6}\s+)?\$(M[NCA]_\w+|TC_CARR\d{1,2})\s*(?:\[([^\]]*)\])?\s*(?:=|\s)\s*"
+    r"(\"[^\"]*\"|'[^']*'|[-+.\w]+)\s*(?:;.*)?$"
 )
-_AXIS: Final = re.compile(r"(?:(\d),)?AX(\d+)")
+_DATUM: Final = re.compile(r"\s*(?:N?\d{1,6}\s+)?\$(?:M[NCA]_|TC_CARR)")
+_AXIS: Final = re.compile(r"(?:(\d),)?AX(\d{1,6})")
 
 _MM_PER_M, _DEG_PER_TURN = 1000.0, 360.0
-
-#: Type of transformation, without its lowest bits -> what the first and the second rotary axis carry.
-_TYPES: Final = {16: ("tool", "tool"), 32: ("part", "part"), 48: ("part", "tool")}
 
 _OF_AXES: Final = ("POS_LIMIT_MINUS", "POS_LIMIT_PLUS", "MAX_AX_VELO", "MAX_AX_ACCEL")
 
 #: A reference point is a place of its own, and no home for tool changes.
 _NOT_TAKEN: Final = {
-    "TRAFO5_PART_OFFSET_1": "compare it at the control: it counts from the table, not from the machine's frame",
-    "TRAFO5_JOINT_OFFSET_1": "compare it with the points of the rotary axes: it goes from one to the other",
-    "TRAFO5_JOINT_OFFSET_PART_1": "compare it with the points of the rotary axes: it goes from one to the other",
-    "TRAFO5_BASE_TOOL_1": "compare it with the pivot of the head",
     "TRAFO5_ROT_AX_OFFSET_1": "a definition has no offset of an angle",
     "TRAFO5_ROT_SIGN_IS_PLUS_1": "jog the axis: the sense of a definition is that of the tool, seen from the part",
     "REFP_SET_POS": "a reference point is no position for a tool change",
 }
+#: Data that say which axis is which, or that are in ``chain_data``.
+_USED: Final = re.compile(
+    r"AXCONF_MACHAX_NAME_TAB|AXCONF_CHANAX_NAME_TAB|AXCONF_MACHAX_USED|IS_ROT_AX|ROT_IS_MODULO|SCALING_SYSTEM_IS_METRIC"
+    r"|TRAFO_TYPE_1|TRAFO_AXES_IN_1|TRAFO5_\w+_1|TC_CARR\d+|REFP_SET_POS|" + "|".join(_OF_AXES)
+)
+
+#: Lines that are not understood, of which each is reported; the rest is counted.
+_MOST_LINES: Final = 20
 
 
 def read_machine_data(file: Path) -> ForeignMachine:
@@ -48,39 +63,77 @@ def read_machine_data(file: Path) -> ForeignMachine:
     Raises ``InputError`` if it cannot be read, or names no axes.
     """
     data: dict[tuple[str, str], Stated] = {}
-    repeated: list[Left] = []
-    for number, line in enumerate(read_text(file).splitlines(), 1):
-        if not (found := _LINE.match(line)):
+    left: list[Left] = []
+    odd: list[Left] = []
+    for line_number, line in enumerate(read_text(file).splitlines(), 1):
+        found = _LINE.match(line)
+        if not found or (found[1].startswith("TC_CARR") and not found[2]):
+            if _DATUM.match(line):
+                why = "it is not NAME[INDEX] = VALUE; a number has a point, and no comma"
+                odd.append(Left(line.strip()[:80], place_in(file, line_number), why))
             continue
-        key = (found[2].upper(), (found[3] or "").replace(" ", "").upper())
-        value = Stated(found[4].strip("\"'"), f"$M{found[1]}_{found[2]}[{found[3] or ''}]", str(file), number)
+        name = re.sub(r"M[NCA]_", "", found[1]).upper()
+        key = (name, (found[2] or "").replace(" ", "").upper())
+        label = f"${found[1]}[{found[2]}]" if found[2] else f"${found[1]}"
+        value = Stated(found[3].strip("\"'"), label, str(file), line_number)
         known = data.setdefault(key, value)
         if known is not value and known.value != value.value:
-            repeated.append(Left(f"{value.name} = {value.value}", value.place, f"line {known.line} counts"))
-    if not any(name in ("POS_LIMIT_MINUS", "IS_ROT_AX", "MAX_AX_VELO") for name, _ in data):
+            left.append(Left(f"{value.name} = {value.value}", value.place, f"line {known.line} counts"))
+    left += odd[:_MOST_LINES]
+    if len(odd) > _MOST_LINES:
+        rest = odd[_MOST_LINES]
+        left.append(Left(f"{len(odd) - _MOST_LINES} more lines", f"from {rest.where} on", rest.why))
+    if not any(name in ("POS_LIMIT_MINUS", "IS_ROT_AX", "MAX_AX_VELO", "TC_CARR23") for name, _ in data):
         raise InputError(Problem(str(file), 0, Wording("DEF630", "no_data_of_axes")))
     metric = data.get(("SCALING_SYSTEM_IS_METRIC", ""))
     if metric is not None and str(metric.value).upper() in ("0", "FALSE"):
         raise InputError(Problem(str(file), metric.line, Wording("DEF630", "inches")))
-    names = _names(data)
-    values = dict(_values(data, names))
-    return ForeignMachine(
-        _rotary(data, names), values, (*repeated, *_left(data, names)), marks_of_controls()["machine_data"]["control"]
-    )
+    names = _names(data, left)
+    chain = chain_of(data, names)
+    values = _with_chain(dict(_values(data, names, chain)), chain)
+    control = marks_of_controls()["machine_data"]["control"]
+    return ForeignMachine(_rotary(chain), values, (*left, *chain.left, *_left(data, names, chain)), control)
 
 
-def _names(data: Mapping[tuple[str, str], Stated]) -> dict[int, str]:
+def _with_chain(values: dict[Key, Stated], chain: Chain) -> dict[Key, Stated]:
+    """Add the lines of rotation; the software limits of an axis count before the range of the swivel data."""
+    for key, value in chain.values.items():
+        known = values.get(key) or values.get((*key[:2], "endless")) if key[2:] == ("limits_deg",) else None
+        if known is None:
+            values[key] = value
+        elif known.value != value.value:
+            why = f"{known.name} counts ({known.place}): this range is for CYCLE800 alone"
+            chain.left.append(Left(f"{'.'.join(key)} = {value.value} of {value.name}", value.place, why))
+    return values
+
+
+def _rotary(chain: Chain) -> tuple[tuple[str, str], ...]:
+    """Return the rotary axes from the workpiece to the tool: of two tables, and of one of each, the second is first."""
+    order = chain.order
+    return tuple(reversed(order)) if order and order[1][1] == "part" else order
+
+
+def _names(data: Data, left: list[Left]) -> dict[int, str]:
     """Return the names of axes by their numbers: as the channel calls them, else as the machine does."""
-    found: dict[int, str] = {}
-    for (name, index), value in data.items():
-        if name == "AXCONF_MACHAX_NAME_TAB" and index.isdecimal():
-            found.setdefault(int(index) + 1, str(value.value))
-    for (name, index), used in data.items():
-        if name == "AXCONF_MACHAX_USED" and index.isdecimal() and str(used.value).isdecimal():
-            channel = data.get(("AXCONF_CHANAX_NAME_TAB", index))
+    found: dict[int, Stated] = {}
+    for (name, place), value in data.items():
+        if name == "AXCONF_MACHAX_NAME_TAB" and (row := index(place)) is not None:
+            found.setdefault(row + 1, value)
+    for (name, place), used in data.items():
+        if name == "AXCONF_MACHAX_USED" and index(place) is not None and (axis := index(used.value)):
+            channel = data.get(("AXCONF_CHANAX_NAME_TAB", place))
             if channel is not None:
-                found[int(used.value)] = str(channel.value)
-    return {number: _letter(name) for number, name in found.items() if re.fullmatch(r"[A-Za-z]\w{0,7}", name)}
+                found[axis] = channel
+    names: dict[int, str] = {}
+    for axis, value in found.items():
+        if not re.fullmatch(r"[A-Za-z]\w{0,7}", str(value.value), re.ASCII):
+            if value.value:
+                left.append(Left(f"{value.name} = {value.value}", value.place, "it is no name of an axis"))
+        elif (name := _letter(str(value.value))) in names.values():
+            left.append(Left(f"{value.name} = {value.value}", value.place, f"another axis is {name} already"))
+        else:
+            names[axis] = name
+    return names
 
 
 def _letter(name: str) -> str:
@@ -89,25 +142,23 @@ def _letter(name: str) -> str:
 
 
 def _number(value: Stated | None) -> float | None:
-    try:
-        return None if value is None else float(value.value)
-    except ValueError:
-        return None
+    return None if value is None else number(value.value)
 
 
-def _of_axis(data: Mapping[tuple[str, str], Stated], name: str, axis: int) -> Stated | None:
+def _of_axis(data: Data, name: str, axis: int) -> Stated | None:
     """Return a datum of an axis; of one with sets, the first."""
     return data.get((name, f"AX{axis}")) or data.get((name, f"0,AX{axis}"))
 
 
-def _is_rotary(data: Mapping[tuple[str, str], Stated], axis: int) -> bool:
+def _is_rotary(data: Data, axis: int) -> bool:
     found = _of_axis(data, "IS_ROT_AX", axis)
     return found is not None and str(found.value).upper() in ("1", "TRUE")
 
 
-def _values(data: Mapping[tuple[str, str], Stated], names: Mapping[int, str]) -> Iterator[tuple[Key, Stated]]:
+def _values(data: Data, names: Mapping[int, str], chain: Chain) -> Iterator[tuple[Key, Stated]]:
+    turning = {name for name, _ in chain.order}
     for axis, name in names.items():
-        turns = _is_rotary(data, axis)
+        turns = name in turning or _is_rotary(data, axis)
         unit, scale = ("deg", _DEG_PER_TURN) if turns else ("mm", 1.0)
         modulo = _of_axis(data, "ROT_IS_MODULO", axis)
         if turns and modulo is not None and str(modulo.value).upper() in ("1", "TRUE"):
@@ -125,44 +176,19 @@ def _values(data: Mapping[tuple[str, str], Stated], names: Mapping[int, str]) ->
             yield ("axis", name, f"acceleration_{unit}_s2"), hardest.as_value(per_second)
 
 
-def _transformed(data: Mapping[tuple[str, str], Stated]) -> list[int]:
-    """Return the numbers of the two rotary axes of the first transformation, as its data have them."""
-    channel = [data.get(("TRAFO_AXES_IN_1", str(place))) for place in (3, 4)]
-    used = [
-        data.get(("AXCONF_MACHAX_USED", str(int(each.value) - 1)))
-        for each in channel
-        if each and each.value.isdecimal()
-    ]
-    found = [int(each.value) for each in used if each is not None and str(each.value).isdecimal()]
-    return found if len(found) == 2 else []
-
-
-def _rotary(data: Mapping[tuple[str, str], Stated], names: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
-    """Return the rotary axes from the workpiece to the tool, where the type of the transformation says what they carry.
-
-    The first axis of the data of two tables carries the second; that of two heads carries it, too; of the mixed ones
-    the first turns the part.
-    """
-    kind = data.get(("TRAFO_TYPE_1", ""))
-    number = int(kind.value) if kind is not None and str(kind.value).isdecimal() else 0
-    mounts = _TYPES.get(number & 0x70)
-    axes = _transformed(data)
-    if mounts is None or len(axes) != 2 or any(axis not in names for axis in axes):
-        return ()
-    order = [(names[axes[0]], mounts[0]), (names[axes[1]], mounts[1])]
-    return tuple(reversed(order)) if mounts == ("part", "part") else tuple(order)
-
-
-def _left(data: Mapping[tuple[str, str], Stated], names: Mapping[int, str]) -> Iterator[Left]:
-    taken = {(value.file, value.line) for _, value in _values(data, names)}
-    for (name, index), value in data.items():
-        if name in _OF_AXES and (value.file, value.line) not in taken and (axis := _AXIS.fullmatch(index)):
-            partner = data.get(("POS_LIMIT_MINUS", index)) if name == "POS_LIMIT_PLUS" else None
+def _left(data: Data, names: Mapping[int, str], chain: Chain) -> Iterator[Left]:
+    taken = {(value.file, value.line) for _, value in _values(data, names, chain)}
+    for (name, place), value in data.items():
+        if name in _OF_AXES and (value.file, value.line) not in taken and (axis := _AXIS.fullmatch(place)):
+            partner = data.get(("POS_LIMIT_MINUS", place)) if name == "POS_LIMIT_PLUS" else None
             if int(axis[2]) not in names:
                 yield Left(f"{value.name} = {value.value}", value.place, "no name of this axis is stated")
             elif partner is None or (partner.file, partner.line) not in taken:
                 yield Left(f"{value.name} = {value.value}", value.place, "no value of the axis can be made of it")
-    for (name, index), value in data.items():
-        axis = _AXIS.fullmatch(index)
+    for (name, place), value in data.items():
+        axis = _AXIS.fullmatch(place)
         if name in _NOT_TAKEN and (axis is None or int(axis[2]) in names):
             yield Left(f"{value.name} = {value.value}", value.place, _NOT_TAKEN[name])
+    rest = [value for (name, _), value in data.items() if not _USED.fullmatch(name)]
+    if rest:
+        yield Left(f"{len(rest)} other machine data", f"from {rest[0].place} on", "a definition has no such values")

@@ -8,15 +8,14 @@ The variables ``mom_kin_…`` describe the machine, ``mom_sys_…`` codes and nu
 machine with two tables carries the fifth, and so it does in a head.
 """
 
-import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, marks_of_controls, read_text
+from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, WordCounts, number, place_in, read_text
 from trunnion.messages import Wording
 
 _SET: Final = re.compile(
@@ -85,8 +84,6 @@ _LOOKED_AT: Final = re.compile(
     r"|[45]th_axis_(?:leader|type|plane|rotation|min_limit|max_limit|vector\(\d\)|center_offset\(\d\)))"
 )
 _INCH: Final = 25.4
-#: Greater numbers are no sizes of a machine, mm, degrees or mm/min.
-_LARGEST: Final = 1e6
 #: Limits of more are those of an axis that turns without end.
 _ENDLESS: Final = 9000.0
 
@@ -101,7 +98,7 @@ class _Post:
     lines: dict[str, list[str]] = field(default_factory=dict)
     blocks: dict[str, list[str]] = field(default_factory=dict)
     left: list[Left] = field(default_factory=list)
-    words: dict[str, int] = field(default_factory=dict)
+    words: WordCounts = field(default_factory=WordCounts)
 
 
 def read_nx_post(files: Sequence[Path]) -> ForeignMachine:
@@ -129,27 +126,25 @@ def read_nx_post(files: Sequence[Path]) -> ForeignMachine:
         tuple(reversed(order) if mounts[2] else order),
         values,
         tuple(_left(post, names, mounts[:2], values)),
-        _control(post),
+        post.words.control,
     )
 
 
 def _read(file: Path, text: str, post: _Post) -> None:
     is_pui, event, block, address = file.suffix.lower() == ".pui", "", "", ""
     procedure = ""
-    for number, line in enumerate(text.splitlines(), 1):
+    for row, line in enumerate(text.splitlines(), 1):
         if found := (_IN_PUI if is_pui else _SET).match(line):
-            _note(post, Stated(found[2].strip('"').strip(), found[1].replace(" ", ""), str(file), number), procedure)
+            _note(post, Stated(found[2].strip('"').strip(), found[1].replace(" ", ""), str(file), row), procedure)
             continue
         if not is_pui and not procedure and (found := _COMPUTED.match(line)):
-            where = f"{file.name}:{number}"
+            where = place_in(file, row)
             post.stated.pop(found[1], None)
             post.left.append(
                 Left(f"{found[1]} = {found[2].strip()}", where, "it is computed, and nothing of a post is run")
             )
             continue
-        for control, words in marks_of_controls()["words"].items():
-            if any(word in line for word in words):
-                post.words[control] = post.words.get(control, 0) + 1
+        post.words.count(line)
         if line.startswith("}"):
             procedure = ""
         if found := _PROC.match(line):
@@ -157,13 +152,13 @@ def _read(file: Path, text: str, post: _Post) -> None:
         elif found := _TEMPLATE.match(line):
             block = found[1]
         elif found := _FORMAT.match(line):
-            post.formats[found[1]] = Stated(int(found[6]), f"FORMAT {found[1]}", str(file), number)
+            post.formats[found[1]] = Stated(int(found[6]), f"FORMAT {found[1]}", str(file), row)
         elif found := _ADDRESS.match(line):
             address, block = found[1], ""
         elif address and (found := _OF_ADDRESS.match(line)):
             post.addresses.setdefault(address, found[1])
         elif event and (found := _LITERAL.match(line) or _BLOCK.match(line) or _COMMAND.match(line)):
-            post.lines.setdefault(event, []).append(f"{line.strip()} ({file.name}:{number})")
+            post.lines.setdefault(event, []).append(f"{line.strip()} ({place_in(file, row)})")
         elif block and (word := line.strip()) and word not in "{}":
             post.blocks.setdefault(block, []).append(word)
 
@@ -198,11 +193,8 @@ def _name_of(post: _Post, which: str, kind: Stated) -> str:
 def _number(post: _Post, name: str) -> Stated | None:
     """Return a number; None where none is stated."""
     found = post.stated.get(name)
-    try:
-        value = math.nan if found is None else float(found.value)
-    except ValueError:
-        return None
-    return found.as_value(value) if found is not None and abs(value) <= _LARGEST else None
+    value = None if found is None else number(found.value)
+    return found.as_value(value) if found is not None and value is not None else None
 
 
 def _values(post: _Post, names: Sequence[str], kind: str) -> Iterator[tuple[Key, Stated]]:
@@ -211,8 +203,8 @@ def _values(post: _Post, names: Sequence[str], kind: str) -> Iterator[tuple[Key,
     for which, name in zip(("4th", "5th"), names, strict=True):
         yield from _axis(post, which, name)
     yield from _points(post, names, kind, scale)
-    for number, name in enumerate("XYZ"):
-        if home := _number(post, f"mom_sys_home_pos({number})"):
+    for place, name in enumerate("XYZ"):
+        if home := _number(post, f"mom_sys_home_pos({place})"):
             yield ("axis", name, "home_mm"), home.as_value(home.value * scale)
         if (rapid := _number(post, "mom_kin_rapid_feed_rate")) and rapid.value > 0.0:
             yield ("axis", name, "rapid_mm_min"), rapid.as_value(rapid.value * scale)
@@ -335,10 +327,3 @@ def _block_words(post: _Post, line: str) -> str:
     found = _BLOCK.match(line)
     words = post.blocks.get(found[1], ()) if found else ()
     return f": {' '.join(words)}" if words else ""
-
-
-def _control(post: _Post) -> str:
-    """Return the control whose words stand in most lines; empty where none is clearly ahead."""
-    ranked: Iterable[tuple[int, str]] = sorted(((count, name) for name, count in post.words.items()), reverse=True)
-    counts = [*ranked, (0, ""), (0, "")]
-    return counts[0][1] if counts[0][0] > 2 * counts[1][0] else ""

@@ -13,6 +13,7 @@ from trunnion.files import atomic_file, check_outputs
 from trunnion.foreign.definition import Difference, Written, differences, nearest_machine, written_definition
 from trunnion.foreign.machine import ForeignMachine
 from trunnion.foreign.machine_data import read_machine_data
+from trunnion.foreign.mastercam import read_mastercam_post
 from trunnion.foreign.nx_post import read_nx_post
 from trunnion.jobs.job import Given
 from trunnion.machines import load_machine
@@ -22,8 +23,10 @@ from trunnion.results import to_data
 from trunnion.schemas import file_name, put_beside
 from trunnion.wording import counted
 
-#: Endings of the files of a post of NX Post Builder.
+#: Endings of the files of a post of NX Post Builder, of Mastercam, and of posts that are not read.
 _NX = (".tcl", ".def", ".pui")
+_MASTERCAM = (".pst", ".psb")
+_NOT_READ = (".cps", ".mcam-mmd", ".mcam-control")
 
 
 def run(given: Given) -> int:
@@ -63,7 +66,9 @@ def _read(files: list[Path]) -> ForeignMachine:
     endings = {file.suffix.lower() for file in files}
     if endings <= set(_NX):
         return read_nx_post(files)
-    if endings & {*_NX, ".pst", ".cps"} or len(files) > 1:
+    if endings <= set(_MASTERCAM):
+        return read_mastercam_post(files)
+    if endings & {*_NX, *_MASTERCAM, *_NOT_READ} or len(files) > 1:
         raise InputError(argument_problem("files", Wording("DEF650", "unknown_files", names=tuple(map(str, files)))))
     return read_machine_data(files[0])
 
@@ -83,12 +88,12 @@ def _compared(given: Given, found: ForeignMachine) -> int:
     """Report what a definition has otherwise; the exit code says whether there is any."""
     machine = load_machine(given.machine)
     other = list(differences(found, machine))
-    axes = len([key for key in found.values if key[0] == "axis"])
+    compared = len([key for key in found.values if key[0] != "spindle"])
     data: dict[str, Any] = {
-        "schema": 1, "machine": machine.key, "compared": axes, "differences": [to_data(each) for each in other],
+        "schema": 1, "machine": machine.key, "compared": compared, "differences": [to_data(each) for each in other],
         "left": [to_data(each) for each in found.left],
     }  # fmt: skip
-    show(given, lambda: data, _differences(found, other, machine.key, axes))
+    show(given, lambda: data, _differences(found, other, machine.key, compared))
     return 1 if other else 0
 
 
@@ -98,4 +103,4 @@ def _differences(found: ForeignMachine, other: list[Difference], machine: str, c
         yield f"{each.key}: {here} in {machine}, {each.there} there  ({each.source})"
     for left in found.left:
         yield f"not compared: {left.what}  ({left.where}): {left.why}"
-    yield f"{counted(len(other), 'difference')} in {counted(compared, 'value')} of axes; {len(found.left)} not compared"
+    yield f"{counted(len(other), 'difference')} in {counted(compared, 'value')}; {len(found.left)} not compared"

@@ -20,15 +20,16 @@ _NEW: Final = job(
 )  # fmt: skip
 
 _IMPORT: Final = job(
-    "import", "make a definition of a post of NX Post Builder or of machine data of an 840D",
+    "import", "make a definition of a post of NX or Mastercam or of data of an 840D",
     Option(
         "files", "", FileIn("FILE"),
-        "files of one post (.tcl, .def, .pui), or one of machine data ($MA_…, as text)", many=Many.SOME,
+        "files of one post (.tcl, .def, .pui; .pst), or one of machine and swivel data ($MA_…, $TC_CARR…, as text)",
+        many=Many.SOME,
     ),
     Option("output", "--output", Text("NAME"), "the definition: NAME.toml is written", either="what!"),
     Option(
         "machine", "--machine", FileIn("NAME_OR_FILE", leads="machine"),
-        "definition to compare with: its axes are listed that the files have otherwise", either="what!",
+        "definition to compare with: what the files have otherwise of its axes and control is listed", either="what!",
     ),
     Option(
         "like", "--like", Text("MACHINE"),

@@ -20,6 +20,8 @@ _DATA: Final = (
     "write nck.arc '$MA_POS_LIMIT_MINUS[AX1]=-250\\n$MA_POS_LIMIT_PLUS[AX1]=250\\n'\n"
     "trunnion import nck.arc --like yl569 --output ours"
 )
+_PST: Final = "write mill.pst 'fs2 2 0.4 0.3\\nfmt X 2 xabs\\nsg00 G0\\n'"
+_LIKE: Final = " --like yl569 --output ours"
 _KIND: Final = 'set mom_kin_machine_type "5_axis_dual_table"\\n'
 _LETTER: Final = 'set mom_kin_4th_axis_leader "B"\\n'
 _TCL: Final = _LINES.replace("\\n", "\n")
@@ -44,5 +46,9 @@ CURES: Final = (
            "METRIC=0", "METRIC=1"),
     script("DEF640 no_such_machine", _POST.replace('4th_axis_leader "B"', '4th_axis_leader "W"'),
            " --output", " --like yl569 --output"),
-    script("DEF650 unknown_files", _POST.replace("mill.tcl", "mill.pst"), "mill.pst", "mill.tcl"),
+    script("DEF610 encrypted", f"{_PST}\nwrite mill.psb 'x'\ntrunnion import mill.psb{_LIKE}", "import mill.psb",
+           "import mill.pst"),
+    script("DEF635 no_post", f"write none.pst '# nothing'\n{_PST}\ntrunnion import none.pst{_LIKE}", "import none",
+           "import mill"),
+    script("DEF650 unknown_files", _POST.replace("mill.tcl", "mill.cps"), "mill.cps", "mill.tcl"),
 )  # fmt: skip

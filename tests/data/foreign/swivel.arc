@@ -1,0 +1,23 @@
+; swivel data of a table B that carries C, whose line is 0.02 mm beside that of the definition in X
+$TC_CARR4[1]=0.02
+$TC_CARR5[1]=0
+$TC_CARR6[1]=0
+$TC_CARR7[1]=0
+$TC_CARR8[1]=-1
+$TC_CARR9[1]=0
+$TC_CARR10[1]=0
+$TC_CARR11[1]=0
+$TC_CARR12[1]=-1
+$TC_CARR15[1]=-0.02
+$TC_CARR16[1]=0
+$TC_CARR17[1]=0
+$TC_CARR18[1]=0
+$TC_CARR19[1]=0
+$TC_CARR20[1]=0
+$TC_CARR21[1]=B
+$TC_CARR22[1]=C
+$TC_CARR23[1]="P"
+$TC_CARR30[1]=-11
+$TC_CARR32[1]=100
+$TC_CARR34[1]="TABLE"
+$TC_CARR44[1]=0.001
