@@ -133,6 +133,28 @@ def test_the_project_says_what_an_option_said(folder: Path, option: Option) -> N
         assert (list(said) if isinstance(value, list) else said) == value
 
 
+def test_what_the_project_of_a_simulation_states_is_stated_again(folder: Path) -> None:
+    (folder / "simulated.toml").write_text(
+        'programs = ["old.mpf"]\nstock = "box:60,40,10,-20,-20,-9"\ncell_mm = 2\n'
+        'tools = ["1=flat:10,length=60,flutes=30"]\nfixtures = ["box:5,5,5,-40,0,-9"]\n',
+        encoding="utf-8",
+    )
+    post = ["post", "part.cls", "--machine", "yl569", "--output", "part.mpf", "--simulate", "--cell", "3"]
+    assert main([*post, "--project", "simulated.toml", "--suggest", "part.toml"]) == 2
+    text = (folder / "part.toml").read_text(encoding="utf-8")
+    assert "left out" not in text
+    (folder / "part.toml").write_text(
+        text.replace("NUMBER", "1").replace("RPM", "900").replace("MM_MIN", "300"), encoding="utf-8"
+    )
+    project = load_project(folder / "part.toml")
+    assert project.checks.simulate is Judgement.REFUSE
+    assert (project.simulation.stock, project.simulation.cell) == ("box:60,40,10,-20,-20,-9", 3.0)
+    setup = project.simulation.setups[0]
+    assert (list(setup.tools), list(setup.fixtures)) == (
+        ["1=flat:10,length=60,flutes=30"], ["box:5,5,5,-40,0,-9"],
+    )  # fmt: skip
+
+
 def test_settings_are_written_as_a_project_takes_them(folder: Path) -> None:
     (folder / "part.cls").write_text(HEAD + FOOT, encoding="utf-8")
     post = ["post", "part.cls", "--machine", "yl569", "--zero", "G54=1,2,-3,G55=4,5,6", "--tool-length", "1=100"]

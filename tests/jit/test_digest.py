@@ -3,12 +3,12 @@
 from types import ModuleType
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from trunnion.jit.argument_types import numba_types
+from trunnion.jit.arguments import argument_kinds
+from trunnion.jit.inner_functions import inlined, inner
 from trunnion.jit.kernels import Kernel
 
 
@@ -34,9 +34,10 @@ def _digest(source: str, **names: Any) -> str:
     return Kernel(names["example"], frozenset()).digest
 
 
-def _function(source: str, **names: Any) -> Any:
+def _function(source: str, *, mark: Any = inner) -> Any:
+    names: dict[str, Any] = {}
     exec(source, names)
-    return numba.extending.register_jitable(names["helper"])
+    return mark(names["helper"])
 
 
 @pytest.mark.parametrize(
@@ -50,6 +51,10 @@ def _function(source: str, **names: Any) -> Any:
         (_digest("x * K[0] + K[1]", K=(1.5, 23.0)), _digest("x * K[0] + K[1]", K=(1.52, 3.0))),
         (_digest("x * N().size", N=_One), _digest("x * N().size", N=_Two)),
         (_digest("x * m.VALUE", m=_package(1)), _digest("x * m.VALUE", m=_package(2))),
+        (
+            _digest("f(x)", f=_function("def helper(x): return x")),
+            _digest("f(x)", f=_function("def helper(x): return x", mark=inlined)),
+        ),
         *(
             (_digest("f(x)", f=_function(one)), _digest("f(x)", f=_function(other)))
             for one, other in (
@@ -72,4 +77,4 @@ def test_an_alias_of_an_array_type_is_the_type() -> None:
     def plain(values: np.ndarray[tuple[Any, ...], np.dtype[np.float64]]) -> None: ...
     def alias(values: NDArray[np.float64]) -> None: ...
 
-    assert numba_types(alias, frozenset()) == numba_types(plain, frozenset())
+    assert argument_kinds(alias, frozenset()) == argument_kinds(plain, frozenset())

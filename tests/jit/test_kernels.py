@@ -1,10 +1,13 @@
 """Kernels: kept machine code does what it did when it was compiled, and belongs to one state of the sources."""
 
+import hashlib
 import os
 import shutil
 import subprocess
 import sys
+from importlib.util import spec_from_file_location
 from pathlib import Path
+from shutil import which
 
 import pytest
 
@@ -58,6 +61,11 @@ print(out.tolist(), again.tolist())
 print(double.was_loaded, fold.was_loaded)
 """
 
+WHAT_IS_IMPORTED = """
+import sys
+print(*sorted({"numba", "llvmlite"} & sys.modules.keys()))
+"""
+
 SHOW_LOG = "import logging; logging.basicConfig(level='INFO', format='%(message)s')\n"
 
 
@@ -102,6 +110,12 @@ def run(folder: Path, script: str = RUN, modules: Path | None = None, **environm
     return done.stdout.splitlines() + done.stderr.splitlines()
 
 
+def machine_code(kept: Path, kernel: str) -> Path:
+    """Return the file that keeps the machine code of a kernel."""
+    (file,) = (each for each in kept.glob(f"kept/*/{kernel}-*") if each.suffix in (".so", ".o"))
+    return file
+
+
 def test_what_is_loaded_is_what_was_compiled(compiled: Compiled, kept: Path) -> None:
     modules, first = compiled
     loaded = run(kept, modules=modules)
@@ -112,6 +126,33 @@ def test_what_is_loaded_is_what_was_compiled(compiled: Compiled, kept: Path) -> 
     assert [line for line in first if line.startswith("compiling")] == [
         "compiling kernels for this computer, once; this takes some seconds",
     ]
+
+
+@pytest.mark.skipif(which("cc") is None, reason="needs a linker")
+def test_what_a_linker_made_is_loaded_without_numba_and_llvm(compiled: Compiled, kept: Path) -> None:
+    assert len(list(kept.glob("kept/*/*.so"))) == 2
+    assert run(kept, RUN + WHAT_IS_IMPORTED, modules=compiled[0])[1:] == ["True True", ""]
+
+
+@pytest.mark.nightly
+def test_without_a_linker_llvm_loads_what_was_compiled(compiled: Compiled, folder: Path) -> None:
+    first, again = (run(folder, RUN + WHAT_IS_IMPORTED, PATH="") for _ in range(2))
+
+    assert len(list(folder.glob("kept/*/*.o"))) == 2
+    assert first[0] == again[0] == compiled[1][0]
+    assert again[1:] == ["True True", "llvmlite"]
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("why", ["build.TRIED = ()", "build.library.is_as_expected = lambda: False"])
+def test_where_no_library_is_known_to_be_right_numba_runs_the_kernels(
+    compiled: Compiled, folder: Path, why: str
+) -> None:
+    script = f"from trunnion.jit import build\n{why}\n{RUN}"
+    first, again = (run(folder, script) for _ in range(2))
+
+    assert not [*folder.glob("kept/*/*.so"), *folder.glob("kept/*/*.o")]
+    assert first[:2] == again[:2] == [compiled[1][0], "False False"]
 
 
 @pytest.mark.parametrize(
@@ -128,17 +169,16 @@ def test_a_change_in_another_file_renews_the_kernels_that_it_reaches_and_no_othe
     (kept / "some_inner.py").write_text(INNER.replace(old, new), encoding="utf-8")  # is imported before the other
 
     assert run(kept, modules=compiled[0])[:2] == [result, "False True"]
-    assert len(list(kept.glob("kept/*/double-*"))) == 1  # the old one is gone
+    assert len(list(kept.glob("kept/*/double-*.sum"))) == 1  # the old one is gone
 
 
 def test_a_damaged_file_is_noticed_and_compiled_anew(compiled: Compiled, kept: Path) -> None:
     modules, first = compiled
-    for file in kept.glob("kept/*/double-*/*/*.nbc"):
-        code = bytearray(file.read_bytes())
-        code[len(code) // 2] ^= 1
-        file.write_bytes(code)
-    (index,) = kept.glob("kept/*/fold-*/*/*.nbi")
-    index.write_bytes(index.read_bytes()[:50])
+    double, fold = (machine_code(kept, name) for name in ("double", "fold"))
+    code = bytearray(double.read_bytes())
+    code[len(code) // 2] ^= 1
+    double.write_bytes(code)
+    fold.write_bytes(fold.read_bytes()[:50])
     damaged = run(kept, modules=modules)
 
     assert damaged[:2] == [first[0], "False False"]
@@ -150,12 +190,10 @@ def test_a_damaged_file_is_noticed_and_compiled_anew(compiled: Compiled, kept: P
 
 
 def test_what_cannot_be_loaded_is_compiled_anew(compiled: Compiled, kept: Path) -> None:
-    for folder in kept.glob("kept/*/double-*"):
-        for file in folder.glob("*/*.nbc"):
-            file.write_bytes(b"not a pickle")
-        damaged = store.Store(folder.parent, "double", "")
-        damaged.folder = folder
-        damaged.seal()
+    file = machine_code(kept, "double")
+    file.write_bytes(b"no machine code")
+    checksum = hashlib.sha256(b"no machine code").hexdigest()
+    file.with_suffix(".sum").write_text(f"{file.name} {checksum}", encoding="ascii")
     found = run(kept, modules=compiled[0])
 
     assert found[1] == "False True"
@@ -165,8 +203,7 @@ def test_what_cannot_be_loaded_is_compiled_anew(compiled: Compiled, kept: Path) 
 def test_what_a_process_left_unfinished_is_compiled_again_without_a_word_about_damage(
     compiled: Compiled, kept: Path
 ) -> None:
-    for sums in kept.glob("kept/*/double-*/checksums.json"):
-        sums.unlink()
+    machine_code(kept, "double").with_suffix(".sum").unlink()
     found = run(kept, modules=compiled[0])
 
     assert found[1] == "False True"
@@ -211,50 +248,38 @@ def test_processes_that_need_the_same_kernel_wait_for_the_one_that_compiles_it(f
     printed = [process.communicate()[0].splitlines() for process in started]
 
     assert {lines[0] for lines in printed} == {"[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]"}
-    for which in range(2):
-        assert sum(lines[1].split()[which] == "False" for lines in printed) == 1
+    for k in range(2):
+        assert sum(lines[1].split()[k] == "False" for lines in printed) == 1
 
 
-@pytest.mark.nightly
-def test_what_another_checkout_compiled_meanwhile_is_completed_and_nothing_waits_for_itself(
-    compiled: Compiled, kept: Path
-) -> None:
-    modules, other = compiled[0], kept / "other"
-    other.mkdir()
-    write_modules(other)
-    script = f"""
-import sys
-sys.path.insert(0, {str(other)!r})
-from trunnion.jit.kernels import Kernel
-load, first = Kernel._load, set()
-Kernel._load = lambda self, store: self.name in first and load(self, store) or first.add(self.name) or False
-"""
-    found = run(kept, script + RUN, modules=other)
-
-    assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
-    assert run(kept, modules=other)[1] == "True True"
-    assert run(kept, modules=modules)[1] == "True True"
-
-
-@pytest.mark.parametrize("text", ["5", "[]", "{}", "null", "[" * 100_000, '{"../lock": 1}', "\0"])
-def test_checksums_that_are_none_make_a_kernel_incomplete(tmp_path: Path, text: str) -> None:
+@pytest.mark.parametrize("text", ["", "5", "../lock 1", "\0 \0", "double-6b3a55-0123456789abcdef.so 5", "ä"])
+def test_a_checksum_that_is_none_makes_a_kernel_incomplete(tmp_path: Path, text: str) -> None:
     kept = store.Store(tmp_path, "some_kernels.double", "0123456789abcdef")
-    (kept.folder / "of_a_module").mkdir(parents=True)
-    (kept.folder / "of_a_module" / "code.nbc").write_bytes(b"code")
-    kept.seal()
-    assert kept.is_whole()
-    (kept.folder / "checksums.json").write_text(text, encoding="utf-8")
+    file = kept.keep(b"code", is_linked=True)
+    assert kept.whole() == file
+    file.with_suffix(".sum").write_text(text, encoding="utf-8")
 
-    assert not kept.is_whole()
+    assert store.Store(tmp_path, "some_kernels.double", "0123456789abcdef").whole() is None
 
 
-def test_checksums_that_are_none_are_damage(compiled: Compiled, kept: Path) -> None:
-    for file, text in zip(sorted((kept / "kept").rglob("checksums.json")), ["[" * 100_000, "{}"], strict=True):
-        file.write_text(text, encoding="utf-8")
-    found = run(kept, modules=compiled[0])
+def test_another_version_of_numba_and_another_processor_have_folders_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "numba").mkdir()
+    (tmp_path / "numba" / "__init__.py").touch()
+    monkeypatch.setattr(store, "find_spec", lambda name: spec_from_file_location(name, tmp_path / name / "__init__.py"))
+    found = [store._made_for()]
+    for make in (
+        (tmp_path / "numba-0.68.1.dist-info").mkdir,
+        (tmp_path / "llvmlite-0.50.0.dist-info").mkdir,
+        lambda: (tmp_path / "numba-0.68.1.dist-info").rename(tmp_path / "numba-0.68.2.dist-info"),
+        lambda: monkeypatch.setattr(store, "_processor", lambda: "flags: another"),
+    ):
+        make()
+        found.append(store._made_for())
 
-    assert found[:2] == ["[1.0, -4.0, 600.0] [90.5, 88.0, 30.0]", "False False"]
-    assert any("was damaged on disk" in line for line in found)
+    assert len(set(found)) == 5
+    assert found[-1] == store._made_for()
 
 
 @pytest.mark.skipif(sys.platform == "win32" or os.getuid() != 0, reason="makes the folder of another user")
@@ -290,7 +315,7 @@ def test_the_user_chooses_the_folder_and_the_next_best_is_taken(
 ) -> None:
     file = tmp_path / "file"
     file.write_text("", encoding="utf-8")
-    monkeypatch.setattr(store._config, "CACHE_DIR", str(tmp_path / "mine"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
     candidates = list(store._candidates())
 
     assert candidates[0].parent == tmp_path / "mine"

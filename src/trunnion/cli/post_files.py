@@ -2,11 +2,6 @@
 
 Reading first and importing afterwards lengthens the post of a million points by a tenth (2.60 to 2.86 s on the machine
 where this was measured).
-
-Numba is imported first, while few calls are open. Python gives back the memory of its calls in pieces of 16 KB: where a
-loop's calls cross the border of a piece, it is mapped and given back each time. Imported by the readers of CL files,
-dozens of calls deeper, Numba has such a loop: 16,000 times, which lengthens the post of 200 lines by a sixth (1.34 to
-1.61 s of processor time).
 """
 
 from concurrent.futures import ThreadPoolExecutor

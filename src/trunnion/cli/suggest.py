@@ -81,9 +81,29 @@ def _keys(given: Given, target: str, file: Path) -> dict[str, object]:
                 {option.key: True} if _NAME.fullmatch(option.key) else tomllib.loads(option.key.replace("] ", "]\n"))
             )
             continue
-        several = [_as_stated(each, option, file) for each in (value if isinstance(value, list) else [value])]
-        keys[option.key] = several if isinstance(value, list) else several[0]
-    return keys
+        keys[option.key] = _stated(value, option, file)
+    return {**_of_project(given, file), **keys}
+
+
+def _of_project(given: Given, file: Path) -> dict[str, object]:
+    """Return the keys of the project that states what the program is simulated with; none without one.
+
+    Raises ``InputError`` if it cannot be read.
+    """
+    if given.project is None:
+        return {}
+    from trunnion.jobs.project.file import read_project
+    from trunnion.jobs.project.keys import OF_PROJECT, OF_SETUP
+
+    own = {"machine", "cl", *dict(given.settings), *(each.setting or each.name for each in _given(given))}
+    simulation = read_project(Path(given.project), ("nc", *own))
+    stated = [(simulation, each) for each in OF_PROJECT] + [(simulation.setups[0], each) for each in OF_SETUP]
+    values = [(option, getattr(place, option.name)) for place, option in stated if option.name not in own | {"until"}]
+    return {
+        option.key: _stated(list(value) if isinstance(value, tuple) else value, option, file)
+        for option, value in values
+        if value is not None and value is not False and value not in ((), [], {}) and _NAME.fullmatch(option.key)
+    }
 
 
 def _given(given: Given) -> list[Option]:
@@ -101,8 +121,14 @@ def _unsaid(given: Given) -> list[str]:
     return [
         each.flag
         for each in _given(given)
-        if each.flag and each.name != "suggest" and not each.setting and not _has_key(each)
+        if each.flag and each.name not in ("suggest", "project") and not each.setting and not _has_key(each)
     ]
+
+
+def _stated(value: object, option: Option, file: Path) -> object:
+    """Return the value of an option, or its values, as a project has them."""
+    several = [_as_stated(each, option, file) for each in (value if isinstance(value, list) else [value])]
+    return several if isinstance(value, list) else several[0]
 
 
 def _as_stated(value: object, option: Option, file: Path) -> object:

@@ -1,4 +1,4 @@
-"""Compiling on two cores: in one process Numba compiles one function at a time, so that it takes a second process."""
+"""Compiling side by side: in one process Numba compiles one function at a time, so that it takes more processes."""
 
 import gc
 import logging
@@ -9,8 +9,6 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
-
-import numba
 
 from trunnion.jit.kernels import Kernel, say_once
 from trunnion.jit.store import cache_folder
@@ -73,8 +71,7 @@ def _start(folder: Path, names: Sequence[str]) -> None:
 def compile_named() -> None:
     """Compile the kernels that the arguments name, but for those that another process has begun."""
     gc.disable()
-    config: Any = numba.config
-    config.CACHE_DIR, *names = sys.argv[1:]
+    os.environ["NUMBA_CACHE_DIR"], *names = sys.argv[1:]
     for name in names:
         module, _, kernel_name = name.rpartition(".")
         getattr(import_module(module), kernel_name).prepare(wait=False)

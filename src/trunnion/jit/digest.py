@@ -19,8 +19,7 @@ def ingredients(value: Any, seen: set[int] | None = None) -> Iterator[bytes]:
         if id(value) not in seen:
             seen.add(id(value))
             yield from _of_function(value, seen)
-    elif hasattr(value, "py_func"):  # a function that Numba has decorated
-        yield repr(getattr(value, "targetoptions", "")).encode()
+    elif hasattr(value, "py_func"):  # a kernel
         yield from ingredients(value.py_func, seen)
     elif isinstance(value, CodeType):
         yield value.co_code
@@ -44,6 +43,8 @@ def ingredients(value: Any, seen: set[int] | None = None) -> Iterator[bytes]:
 
 
 def _of_function(function: FunctionType, seen: set[int]) -> Iterator[bytes]:
+    if hasattr(function, "is_inlined"):
+        yield b"inlined"
     keyword_defaults = sorted((function.__kwdefaults__ or {}).items())
     yield from ingredients((function.__code__, function.__defaults__, keyword_defaults), seen)
     for cell in function.__closure__ or ():

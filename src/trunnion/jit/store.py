@@ -1,23 +1,23 @@
 """Folders that keep machine code: where they are, what they hold, and who may write to them.
 
-A kernel's folder is complete when it holds the checksums of its files. What a process has left unfinished has none.
+A folder belongs to a version of Python, of Numba and of LLVM, and to a kind of processor: what another one made is not
+seen. A kernel's machine code is complete when its checksum is there. What a process has left unfinished has none.
 """
 
 import hashlib
-import json
 import logging
 import os
+import platform
 import stat
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from shutil import rmtree
-from typing import IO, Any, Final
-
-import numba
+from typing import IO, Final
 
 from trunnion.user_cache import user_cache
 
@@ -27,12 +27,7 @@ if sys.platform == "win32":
 else:
     import fcntl
 
-_CHECKSUMS = "checksums.json"
-_LOCK = "lock"
-
 _log = logging.getLogger("trunnion.jit")
-
-_config: Any = numba.config
 
 #: The code of messages about folders for kernels.
 _CODE: Final = "FIL310"
@@ -65,9 +60,10 @@ def cache_folder() -> Path | None:
 
 
 def _candidates() -> Iterator[Path]:
-    version = f"trunnion-{sys.implementation.cache_tag}-numba-{numba.__version__}"
-    if _config.CACHE_DIR:
-        yield Path(_config.CACHE_DIR) / version
+    version = f"trunnion-{sys.implementation.cache_tag}-{_made_for()}"
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    if chosen:
+        yield Path(chosen) / version
     yield Path(__file__).parent / "__pycache__" / version
     cache = user_cache()
     if cache is not None:
@@ -77,6 +73,31 @@ def _candidates() -> Iterator[Path]:
         yield temporary / "trunnion" / version
     else:
         yield temporary / f"trunnion-{os.getuid()}-{version}"
+
+
+def _made_for() -> str:
+    """Return a short name for what makes machine code here (Numba, LLVM, ``trunnion.jit``), and what it is made for.
+
+    Neither Numba nor LLVM is imported for it: their versions are in the names of the folders that installers write.
+    """
+    versions = ""
+    found = find_spec("numba")
+    if found is not None and found.origin is not None:
+        packages = Path(found.origin).parents[1]
+        versions = " ".join(sorted(each.name for one in ("numba", "llvmlite") for each in packages.glob(f"{one}-*")))
+    makers = [Path(__file__).with_name(f"{name}.py") for name in ("build", "library", "arguments")]
+    made_by = [hashlib.sha256(file.read_bytes()).hexdigest() for file in makers if file.exists()]
+    whole = (versions, made_by, sys.platform, platform.machine(), _processor(), object.__basicsize__)
+    return hashlib.sha256(repr(whole).encode()).hexdigest()[:10]
+
+
+def _processor() -> str:
+    """Return what the processor can do; where the system does not say it, the computer's name."""
+    with suppress(OSError):
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.startswith(("flags", "Features")):
+                return line
+    return f"{platform.processor()} {platform.node()}"
 
 
 def _is_anothers(folder: Path) -> bool:
@@ -96,49 +117,58 @@ def _is_private(folder: Path) -> bool:
 
 
 class Store:
-    """The folder of one kernel, with a checksum of each file."""
+    """The files of one kernel: its machine code, and a checksum of it."""
 
     def __init__(self, root: Path, name: str, digest: str) -> None:
         self._root = root
-        # Short, as whole paths have 260 characters on Windows, and Numba adds its own to them.
+        # Short, as whole paths have 260 characters on Windows.
         self._prefix = f"{name.rpartition('.')[2]}-{hashlib.sha256(name.encode()).hexdigest()[:6]}-"
-        self.folder = root / f"{self._prefix}{digest}"
+        self._stem = f"{self._prefix}{digest}"
+        self._sum = root / f"{self._stem}.sum"
+        self._found: Path | None = None
+
+    @property
+    def folder(self) -> Path:
+        """A folder for what Numba itself keeps of it."""
+        return self._root / self._stem
 
     @property
     def is_sealed(self) -> bool:
         """Whether it was complete once."""
-        return (self.folder / _CHECKSUMS).exists()
+        return self._sum.exists()
 
-    def is_whole(self) -> bool:
-        """Whether it is complete and undamaged."""
-        try:
-            sums = json.loads((self.folder / _CHECKSUMS).read_text(encoding="utf-8"))
-            return isinstance(sums, dict) and bool(sums) and sums == self._sums(list(sums))
-        except (OSError, ValueError, RecursionError):
-            return False
+    def whole(self) -> Path | None:
+        """Return its machine code if it is complete and undamaged: a linked library (``.so``), or object code."""
+        if self._found is None:
+            try:
+                name, _, checksum = self._sum.read_text(encoding="ascii").partition(" ")
+                file = self._root / name
+                if file.stem == self._stem and hashlib.sha256(file.read_bytes()).hexdigest() == checksum:
+                    self._found = file
+            except (OSError, ValueError):
+                return None
+        return self._found
 
-    def seal(self) -> None:
-        """Write the checksums: it is complete."""
-        files = [str(file.relative_to(self.folder)) for file in self.folder.rglob("*.nb[ic]")]
-        try:
-            part = self.folder / f"{_CHECKSUMS}.{os.getpid()}"
-            part.write_text(json.dumps(self._sums(files)), encoding="utf-8")
-            part.replace(self.folder / _CHECKSUMS)
-        except OSError as error:
-            _log.debug("%s: %s", self.folder, error)
+    def keep(self, code: bytes, *, is_linked: bool) -> Path:
+        """Write it, and remove the files of the same kernel in other states of the sources.
 
-    def clear(self) -> None:
-        """Empty it, and remove the folders of the same kernel in other states of the sources."""
+        Raises ``OSError`` where it cannot be written.
+        """
         self.remove()
         for old in self._root.glob(f"{self._prefix}*"):
-            if old != self.folder:
-                rmtree(old, ignore_errors=True)
+            if old.stem != self._stem:
+                _remove(old)
+        file = self._root / f"{self._stem}{'.so' if is_linked else '.o'}"
+        _write(file, code)
+        _write(self._sum, f"{file.name} {hashlib.sha256(code).hexdigest()}".encode("ascii"))
+        self._found = file
+        return file
 
     def remove(self) -> None:
         """Remove all but the lock."""
-        (self.folder / _CHECKSUMS).unlink(missing_ok=True)
-        for found in self.folder.glob("*/"):
-            rmtree(found, ignore_errors=True)
+        self._found = None
+        for file in (self._sum, *(self._root / f"{self._stem}{suffix}" for suffix in (".so", ".o"))):
+            _remove(file)
 
     @contextmanager
     def locked(self, *, wait: bool = True) -> Iterator[bool]:
@@ -148,14 +178,26 @@ class Store:
         """
         with ExitStack() as held:
             try:
-                self.folder.mkdir(parents=True, exist_ok=True)
-                free = _lock(held.enter_context((self.folder / _LOCK).open("ab")), wait)
+                free = _lock(held.enter_context((self._root / f"{self._stem}.lock").open("ab")), wait)
             except OSError:
                 free = True
             yield free
 
-    def _sums(self, files: Sequence[str]) -> dict[str, str]:
-        return {file: hashlib.sha256((self.folder / file).read_bytes()).hexdigest() for file in files}
+
+def _write(file: Path, content: bytes) -> None:
+    """Write a file that another process sees whole or not at all."""
+    part = file.with_name(f"{file.name}.{os.getpid()}")
+    part.write_bytes(content)
+    part.replace(file)
+
+
+def _remove(path: Path) -> None:
+    """Remove a file or a folder; one that is in use, as a loaded library on Windows, stays."""
+    if path.is_dir():
+        rmtree(path, ignore_errors=True)
+    else:
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
 
 
 if sys.platform == "win32":

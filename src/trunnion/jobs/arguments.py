@@ -188,6 +188,7 @@ class PlacedArguments(TypedDict, total=False):
 class ReachArguments(ReadingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.reach``."""
 
+    settings: Settings | None
     hooks: Sequence[FilePath]
     cl: ToolpathLike | Iterable[ToolpathLike]
     part: FilePath | None
@@ -198,6 +199,7 @@ class ReachArguments(ReadingArguments, SetUpArguments, total=False):
 class FitArguments(ReadingArguments, SetUpArguments, total=False):
     """Arguments of ``trunnion.fit``."""
 
+    settings: Settings | None
     hooks: Sequence[FilePath]
     machines: str | Iterable[MachineLike]
     machine: MachineLike | None

@@ -20,7 +20,7 @@ from trunnion.options.kinds import (
 )
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.options.option import Group, Level, Many, Option
-from trunnion.options.words import EDITED, FEEDS
+from trunnion.options.words import CL_SETTINGS, EDITED, FEEDS
 
 PAGE_OR_DATA: Final = (".html", ".json")
 
@@ -89,6 +89,11 @@ READING_AS_SETTINGS: Final = READING.but(units={"setting": "cl_units"}, dialect=
 
 FEED: Final = Option(
     "feed", "--feed", Choice(FEEDS), "fastest: of each block what the axes reach, within the feed of the CL file"
+)
+
+#: The other settings of reading, where a command has no settings besides.
+SETTINGS_OF_READING: Final = SETTINGS.but(
+    key="", help=f"how CL files are read, as post has it: {', '.join(CL_SETTINGS[2:])}; may be repeated"
 )
 
 #: Options of a post that are settings of the same name: declared here, and read as settings where they act.

@@ -11,11 +11,14 @@ POSITIONS: Final = ("tip", "gauge_line")
 #: What becomes of a file that is not as a job has written it, where a new program takes its place.
 EDITED: Final = ("refuse", "keep", "replace")
 
+#: Settings that say how CL files are read, in every command that reads them.
+CL_SETTINGS: Final = ("cl_units", "dialect", "cutcom", "open_cycle", "spline_tolerance")
+
 #: Settings of a post that its CL files do not show and the proof stands on: ``verify`` is told them again.
 PROOF_SETTINGS: Final = (
     "same_tool", "operation_clearance", "first_approach", "stop_between", "radius_offset", "edge_from", "rapid_feed",
     "rigid_tap", "swivel_data", "delta_length", "delta_radius", "tolerance", "three_axis_tolerance",
-    "fallback_tolerance", "spindle", "missing_feed", "feed_rapid_from", "open_cycle", "compensation",
+    "fallback_tolerance", "spindle", "missing_feed", "feed_rapid_from", "compensation", *CL_SETTINGS,
 )  # fmt: skip
 
 #: Words in cures of messages in whose place a value is to be written.

@@ -38,8 +38,8 @@ _NAME: Final = "survey"
 _CALLS_FILE: Final = "NC132"
 _MOST_BESIDE: Final = 50_000_000
 
-#: Settings of a post that ``verify`` has as arguments, by the names of these.
-_REPEATED: Final = {"cl_units": "units", "dialect": "dialect", "frame": "frame", "cutcom": "cutcom"}
+#: A setting of a post that ``verify`` has as an argument alone.
+_FRAME: Final = "frame"
 
 #: Of an outcome: the step that it is of, and the settings or keys without which it would not have passed.
 STEP: Final = "step"
@@ -224,8 +224,8 @@ def _verified(subject: _Subject) -> Outcome:
     arguments: dict[str, Any] = {"machine": _reading(subject), "subprograms": list(subject.subprograms)}
     if subject.cl:
         proven = {name: value for name, value in subject.settings.items() if name in PROOF_SETTINGS}
-        repeated = {_REPEATED[name]: value for name, value in subject.settings.items() if name in _REPEATED}
-        arguments |= {"cl": [subject.cl], "settings": proven, **repeated}
+        arguments |= {"cl": [subject.cl], "settings": proven}
+        arguments |= {_FRAME: subject.settings[_FRAME]} if _FRAME in subject.settings else {}
     return _worked(subject, Action.VERIFY, subject.program, arguments, "")
 
 

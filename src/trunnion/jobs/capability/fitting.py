@@ -10,14 +10,13 @@ from typing import Annotated, Final, Unpack
 
 import numpy as np
 
-from trunnion.cl.read import ClReading
 from trunnion.definitions import load_table
 from trunnion.errors import InputError, MissingExtraError, Problem, Severity, TrunnionError, argument_problem
 from trunnion.jobs.arguments import FitArguments, taken
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
 from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
-from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths, stated_reading
 from trunnion.jobs.inputs.stated_setup import LengthLike, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.placing import place, unknown_length
@@ -126,6 +125,8 @@ def fit(
         the greatest that the CL files state for tools in the spindle. Where none is known the answer is open at best.
     units, dialect, strict
         How the CL files are read, as ``trunnion.read_cl`` has it.
+    settings
+        The same, as for ``trunnion.post``: ``cutcom``, ``open_cycle``, ``spline_tolerance``.
     hooks
         Python files that change the CL files, as for ``trunnion.post``. They are run, on each machine anew.
     turns
@@ -231,7 +232,7 @@ def _toolpaths(
     if subprograms or zero is not None:
         name = "subprograms" if subprograms else "zero"
         raise InputError(argument_problem(name, Wording("ARG130", "only_for_programs")))
-    toolpaths = as_toolpaths(files, observer, ClReading(stated["units"], stated["dialect"], stated["strict"]))
+    toolpaths = as_toolpaths(files, observer, stated_reading(stated["settings"], stated["strict"]))
     if not any(len(operation.moves) for path in toolpaths for operation in path.operations):
         raise InputError(argument_problem("files", Wording("ARG130", "no_motion_in_files")))
     for toolpath in toolpaths:
@@ -241,8 +242,8 @@ def _toolpaths(
 
 def _check_for_cl(stated: FitArguments) -> None:
     """Refuse what says how CL files are read where an NC program is asked about."""
-    for name, value in (("units", stated["units"]), ("dialect", stated["dialect"]), ("strict", stated["strict"])):
-        if value:
+    for name in ("units", "dialect", "strict", "settings"):
+        if stated[name]:
             raise InputError(argument_problem(name, Wording("ARG130", "only_for_cl_files")))
 
 

@@ -14,13 +14,12 @@ from trunnion.capability.reach import (
     tilt_reach,
     tilts_between,
 )
-from trunnion.cl.read import ClReading
 from trunnion.errors import Problem, warning
 from trunnion.jobs.arguments import ReachArguments, taken
 from trunnion.jobs.inputs.arguments import check_path, wrong_argument
 from trunnion.jobs.inputs.driven_paths import centres_of
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
-from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.reading import MachineLike, as_machine, as_toolpaths, stated_reading
 from trunnion.jobs.inputs.stated_setup import check_one_zero, length_of_tool_missing, set_up_machine
 from trunnion.jobs.inputs.tool_lengths import called_tools, with_lengths_of_tools
 from trunnion.jobs.observer import SILENT, Observer
@@ -47,6 +46,8 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
         CL files whose points are judged, in one program's coordinates, those of the first operation.
     units, dialect, strict
         How the CL files are read, as ``trunnion.read_cl`` has it.
+    settings
+        The same, as for ``trunnion.post``: ``cutcom``, ``open_cycle``, ``spline_tolerance``.
     hooks
         Python files that change the CL files, as for ``trunnion.post``. They are run.
     part
@@ -92,7 +93,7 @@ def reach(machine: MachineLike, *, observer: Observer = SILENT, **given: Unpack[
     loaded = set_up_machine(as_machine(machine), found["zero"], found["tool_length"])
     check_one_zero(loaded, Wording("ARG220", "zero_of_no_offset"))
     toolpaths = hooked_toolpaths(
-        as_toolpaths(found["cl"], observer, ClReading(found["units"], found["dialect"], found["strict"])),
+        as_toolpaths(found["cl"], observer, stated_reading(found["settings"], found["strict"])),
         loaded,
         found["hooks"],
     )

@@ -30,12 +30,12 @@ from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.result_output import open_target
 from trunnion.machines import Machine
 from trunnion.messages import Wording
-from trunnion.options.words import POSITIONS
+from trunnion.options.words import CL_SETTINGS, POSITIONS
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
 from trunnion.verification import stated_texts
 
-#: Settings that say how CL files are read.
-_OF_CL_FILES: Final = frozenset({"cutcom", "open_cycle", "spline_tolerance"})
+#: Settings that have a meaning for CL files alone, and that a program does not have otherwise.
+_OF_CL_FILES: Final = {*CL_SETTINGS} - {"cl_units", "dialect"}
 
 
 def convert(

@@ -15,10 +15,10 @@ from trunnion.options.groups import (
     OUTPUT,
     RADIUS_REGISTER,
     RATE,
-    READING,
     READING_AS_SETTINGS,
     SERVING,
     SETTINGS,
+    SETTINGS_OF_READING,
     SETUP,
     SUBPROGRAMS,
     TOOL_LIBRARIES,
@@ -32,7 +32,8 @@ from trunnion.options.option import Many, Option
 _INFO: Final = job(
     "info", "show what CL files hold; no machine is needed",
     Option("cl", "", FileIn("CL", stdin=True), "CL file; several are one job in their order", many=Many.SOME),
-    READING,
+    READING_AS_SETTINGS,
+    SETTINGS_OF_READING,
     JSON,
     Option(
         "plot", "--plot", FileOut("FILE", (".html",), phrase("path_is_page")),

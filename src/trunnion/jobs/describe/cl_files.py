@@ -7,9 +7,9 @@ from typing import Annotated, ClassVar, Final
 import numpy as np
 
 from trunnion.cl import DIALECTS, other_system, unknown_statements
-from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
+from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths, stated_reading
+from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.messages import Wording
 from trunnion.model.apt_cutter import apt_cutter
@@ -196,6 +196,7 @@ def describe_cl(
     units: str | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    settings: Settings | None = None,
     observer: Observer = SILENT,
 ) -> ClDescription:
     """Describe what CL files hold. No machine is needed.
@@ -211,6 +212,8 @@ def describe_cl(
         What they are written in; by default the content of each file decides.
     strict
         Raise an error for an unknown statement instead of listing it.
+    settings
+        How they are read, as for ``trunnion.post``: ``cutcom``, ``open_cycle``, ``spline_tolerance``.
     observer
         Receives the progress.
 
@@ -236,7 +239,7 @@ def describe_cl(
     >>> [(operation.name, operation.kind, operation.points) for operation in found.operations]
     [('MULTI_BLADE_ROUGH', 'simultaneous', 23)]
     """
-    toolpaths = read_toolpaths(cl, observer, ClReading(units, dialect, strict))
+    toolpaths = read_toolpaths(cl, observer, stated_reading(settings, strict, cl_units=units, dialect=dialect))
     if not toolpaths:
         raise InputError(argument_problem("cl", Wording("ARG130", "no_cl_file")))
     files = tuple(map(_file, toolpaths))

@@ -12,7 +12,7 @@ from trunnion.cl.read import AS_IT_SAYS, ClReading
 from trunnion.controls.definition_files import is_control_file
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
-from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.errors import InputError, Problem, argument_problem, setting_problem, unusable_file
 from trunnion.jobs.inputs.arguments import (
     check_choice,
     check_observer,
@@ -23,13 +23,15 @@ from trunnion.jobs.inputs.arguments import (
 )
 from trunnion.jobs.inputs.cl_or_program import read_cl_file
 from trunnion.jobs.inputs.cl_statements import check_statements
-from trunnion.jobs.inputs.settings import number_setting
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
+from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
 from trunnion.jobs.inputs.stated_cycles import stated_cycles
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.words import CL_SETTINGS
 
 #: A path as text or as a ``Path``.
 FilePath: TypeAlias = str | os.PathLike[str]
@@ -123,6 +125,32 @@ def _read(cl: object, how: ClReading, observer: Observer, argument: str) -> list
     if within is not None and not _is_spline_tolerance(within):
         raise wrong_argument("spline_tolerance", within, phrase("give_fine_tolerance"))
     return read_cl_file(path, observer.progress, how)
+
+
+def stated_reading(settings: Settings | None, strict: bool = False, **arguments: str | None) -> ClReading:
+    """Return how settings that say nothing else, and arguments that stand for some of them, say that CL files are read.
+
+    arguments  by the names of the settings
+
+    Raises ``InputError`` for other settings, for what is stated twice, and as ``cl_reading`` does.
+    """
+    texts, given = as_texts(settings), {key: value for key, value in arguments.items() if value is not None}
+    wording = Wording("ARG210", "not_of_reading", allowed=CL_SETTINGS)
+    problems = [setting_problem(key, wording) for key in texts if key not in CL_SETTINGS]
+    names = {"cl_units": "units"}
+    problems += [
+        argument_problem(names.get(key, key), Wording("ARG130", "setting_too", key=key))
+        for key in given
+        if key in texts
+    ]
+    problems += [
+        setting_problem(key, RUN_SETTINGS[key].fault(key, value))
+        for key, value in texts.items()
+        if key in CL_SETTINGS and RUN_SETTINGS[key].choices and value not in RUN_SETTINGS[key].choices
+    ]
+    if problems:
+        raise InputError(problems)
+    return cl_reading({**texts, **given}, strict)
 
 
 def cl_reading(settings: Mapping[str, str], strict: bool = False) -> ClReading:

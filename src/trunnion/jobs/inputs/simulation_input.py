@@ -46,8 +46,6 @@ class SetupInput:
     tool_libraries: Sequence[FilePath] = ()
     unit: str | None = None
     cl: ToolpathLike | Iterable[ToolpathLike] = ()
-    units: str | None = None
-    dialect: str | None = None
     strict: bool = False
     hooks: Sequence[FilePath] = ()
     subprograms: Sequence[FilePath] = ()

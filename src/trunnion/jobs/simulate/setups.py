@@ -13,14 +13,13 @@ from typing import Final
 import numpy as np
 
 from trunnion import readers
-from trunnion.cl.read import ClReading
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.errors import InputError, Problem, Severity, argument_problem, warning
 from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
 from trunnion.jobs.inputs.control_settings import rapid_feed_of, register_value_of
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
-from trunnion.jobs.inputs.reading import FilePath, as_machine, as_run, as_toolpaths
+from trunnion.jobs.inputs.reading import FilePath, as_machine, as_run, as_toolpaths, stated_reading
 from trunnion.jobs.inputs.settings import work_offset_setting
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.inputs.stated_setup import set_up_machine
@@ -34,6 +33,7 @@ from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.model.unknown_setups import tools_without_length
+from trunnion.options.words import CL_SETTINGS
 from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.offset_places import cuts_at_unknown_places
@@ -56,7 +56,8 @@ def prepare_setup(
     Raises ``InputError`` when a file or an argument cannot be used, or nothing says the form of a tool.
     """
     machine, left = with_stated(as_machine(given.machine), given.settings, given.assume)
-    refuse_settings(left, machine)
+    of_reading = {key: value for key, value in left.items() if key in CL_SETTINGS and given.cl}
+    refuse_settings(left.keys() - of_reading.keys(), machine)
     readers.reader_of(machine)
     machine = set_up_machine(machine, given.zero, given.tool_length)
     angles = checked_angles(given.turn, given.tilt)
@@ -78,7 +79,7 @@ def prepare_setup(
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
     toolpaths = hooked_toolpaths(
-        as_toolpaths(given.cl, observer, ClReading(given.units, given.dialect, given.strict)), machine, given.hooks
+        as_toolpaths(given.cl, observer, stated_reading(of_reading, given.strict)), machine, given.hooks
     )
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)

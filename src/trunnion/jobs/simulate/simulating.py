@@ -72,8 +72,8 @@ def simulate(
     radius_register
         As for ``verify``: the tool's centre goes beside the path under radius compensation.
     settings, assume
-        Values of variables that the programs read and do not set, and what words do that the reader does not know, as
-        for ``verify``.
+        How the CL files are read, as for ``trunnion.post``; values of variables that the programs read and do not set,
+        and what words do that the reader does not know, as for ``verify``.
     zero, tool_length
         As for ``verify``: without both, machine positions (G53, M91) are taken as retracts along the tool axis.
     turn, tilt
@@ -114,6 +114,8 @@ def as_simulation_input(nc: FilePath | Run | Iterable[FilePath | Run], given: Si
     Raises ``InputError`` if they contradict each other, or what a project would state is missing.
     """
     own: dict[str, Any] = {**taken(SimulateArguments, "simulate", given)}
+    for each in ("units", "dialect"):  # which are settings
+        own.pop(each)
     until, whole = own.pop("until"), {name: own.pop(name) for name in _WHOLE}
     programs = listed("nc", nc, Run)
     project = next((Path(each) for each in programs if not isinstance(each, Run) and is_project(Path(each))), None)
@@ -138,8 +140,15 @@ def _overruled(
     if several:
         raise InputError([argument_problem(name, Wording("SIM111", "of_all_setups")) for name in several])
     last: dict[str, Any] = {} if until is None else {"until": until}
+    settings = stated.pop("settings", {})
     setups = [
-        replace(each, **stated, **(last if each is project.setups[-1] else {}), places=_without(each.places, stated))
+        replace(
+            each,
+            settings={**(each.settings or {}), **settings},
+            places=_without(each.places, stated),
+            **stated,
+            **(last if each is project.setups[-1] else {}),
+        )
         for each in project.setups
     ]
     over = {name: value for name, value in whole.items() if value is not None}

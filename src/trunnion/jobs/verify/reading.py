@@ -7,14 +7,12 @@ Out:    the run and the toolpaths; warnings about them have been reported.
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from trunnion.cl.read import ClReading
 from trunnion.controls import Control
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
 from trunnion.jobs.inputs.hooked import hooked_toolpaths
-from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
+from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths, stated_reading
 from trunnion.jobs.inputs.settings import as_texts
-from trunnion.jobs.inputs.stated_cycles import stated_cycles
 from trunnion.jobs.inputs.stated_operations import with_stated_operations
 from trunnion.jobs.inputs.tool_lengths import with_lengths_of_tools
 from trunnion.jobs.observer import Observer
@@ -25,6 +23,7 @@ from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, tur
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.words import CL_SETTINGS
 from trunnion.placing.program_heads import stated_place, unlike_cl_files, unlike_zero
 
 
@@ -55,8 +54,9 @@ def read_program(nc: FilePath | Run, on: VerifiedMachine, given: VerifyArguments
     Raises ``InputError`` if a file cannot be used, or a CL file states that its part is clamped otherwise.
     """
     settings = as_texts(given["settings"])
-    how = ClReading(
-        given["units"], given["dialect"], given["strict"], cutcom=given["cutcom"], open_cycles=stated_cycles(settings)
+    of_reading = {key: text for key, text in settings.items() if key in CL_SETTINGS}
+    how = stated_reading(
+        of_reading, given["strict"], cl_units=given["units"], dialect=given["dialect"], cutcom=given["cutcom"]
     )
     toolpaths = as_toolpaths(given["cl"], observer, how)
     on = replace(on, machine=with_lengths_of_tools(on.machine, toolpaths))

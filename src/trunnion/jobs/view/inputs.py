@@ -34,6 +34,7 @@ from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import stated_clamping
 from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.words import CL_SETTINGS
 from trunnion.placing.program_heads import stated_place
 from trunnion.verification import Verification, restore_rapids
 
@@ -41,9 +42,6 @@ from trunnion.verification import Verification, restore_rapids
 _VIEWED: Final = {each.name for each in JOBS["view"].options}
 _OF_SETUP: Final = tuple(each.name for each in OF_SETUP if each.name in _VIEWED)
 _OF_PROJECT: Final = tuple(each.name for each in OF_PROJECT if each.name in _VIEWED)
-
-#: Settings that say how CL files are read.
-_OF_READING: Final = frozenset(("cl_units", "dialect", "spline_tolerance", "cutcom", "open_cycle"))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +85,7 @@ def view_program(
         }  # fmt: skip
         return _posted(files, machine, stated, observer)
     cl, texts_of_settings = given["cl"], as_texts(settings)
-    if not _OF_READING.issuperset(texts_of_settings) or (texts_of_settings and not cl):
+    if not {*CL_SETTINGS}.issuperset(texts_of_settings) or (texts_of_settings and not cl):
         raise InputError(Problem(str(files[0]), 0, Wording("PAG111", "settings_for_program")))
     others = [*files[1:], *subprograms]
     run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))

@@ -32,6 +32,7 @@ _NUMBERED: Final = (
 CURES: Final = (
     _set("ARG210 unknown", "colour=1", "tolerance=0.02"),
     script("ARG210 not_of_proof", "trunnion verify part.mpf --machine yl569 --set numbers=on", " --set numbers=on", ""),
+    script("ARG210 not_of_reading", "trunnion info part.cls --set spindle=500", " --set spindle=500", ""),
     script("ARG220 length_of_tool_missing",
            "trunnion reach part.cls --machine yl569 --step 30 --zero 0,0,0 --tool-length 2=110", "2=110", "2=110,1=85"),
     script("ARG220 mode_without_tcp", _WITHOUT_TCP + "mode=tcp", "mode=tcp", "mode=tilted"),

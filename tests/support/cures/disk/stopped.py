@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any, Final, NoReturn
 from unittest.mock import patch
 
-import numba
 import pytest
 
 from tests.support.cures.cure import Cure, Outcome, Trial
@@ -153,7 +152,7 @@ def _kernels(*, named: bool) -> Trial:
         log.addHandler(hears)
         try:
             with (
-                patch.object(numba.config, "CACHE_DIR", str(folder) if named else ""),
+                patch.dict(os.environ, {"NUMBA_CACHE_DIR": str(folder) if named else ""}),
                 patch.object(tempfile, "TemporaryFile", refusing),
             ):
                 found = store.cache_folder.__wrapped__()
