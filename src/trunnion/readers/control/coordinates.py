@@ -63,7 +63,7 @@ class CoordinateControl(RowRecorder):
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(machine, note)
         self._zero_slides, self._zero_tip = self._zero_positions()
-        self.absolute, self._plane_axis = True, 2
+        self.absolute = True
         self.usual_modes = dict(USUAL_MODES)
         self.length_unit = self.feed_unit = 1.0
         self.tcp = self.at_ends = self.tilted = False
@@ -102,16 +102,6 @@ class CoordinateControl(RowRecorder):
     def frame(self) -> AffineMap:
         """The map from programmed positions to the work offset."""
         return self._plane.compose(self._program)
-
-    @property
-    def plane_axis(self) -> int:
-        """Index of the axis across the working plane: 2 for G17."""
-        return self._plane_axis
-
-    @plane_axis.setter
-    def plane_axis(self, axis: int) -> None:
-        self._plane_axis = axis
-        self.modal.working_plane.set(self.row, axis)
 
     @property
     def _length_axis(self) -> int:

@@ -22,7 +22,6 @@ from trunnion.readers.families.heidenhain.cycles import (
     legacy_cycle_motions,
     legacy_spindle_work,
     spindle_work,
-    unusual_values,
 )
 from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
@@ -31,6 +30,7 @@ from trunnion.readers.families.heidenhain.patterns import WITH_PATTERNS, Pattern
 from trunnion.readers.families.heidenhain.plane_blocks import store_rotary_angles
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
+from trunnion.readers.families.heidenhain.unusual_pecks import unusual_values
 from trunnion.readers.families.heidenhain.words import (
     ACT_WHEN_DEFINED,
     AXIS_SCALING,

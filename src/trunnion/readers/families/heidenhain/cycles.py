@@ -4,7 +4,7 @@ Heights are positions along the tool axis, in the units of the program; depths c
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Final
 
@@ -13,7 +13,6 @@ from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import (
     MAX_FEED,
     MAX_PECKS,
-    SAME_GAP,
     CycleExecutionError,
     HoleMotion,
     chip_break,
@@ -28,10 +27,6 @@ from trunnion.readers.program.word_values import one_of
 
 #: How far the tool moves off the wall of a bored hole, mm: a fixed value of the control.
 BORING_LIFT_OFF: Final = 0.2
-
-#: How far a peck lifts to break chips, and how far above the drilled depth a rapid into the hole ends, usually, mm.
-CHIP_BREAK: Final = 0.2
-ADVANCED_STOP: Final = 0.2
 
 #: Q parameters of feeds that may be rapid, which is infinite here.
 MAY_BE_RAPID: Final = frozenset({208})
@@ -314,21 +309,6 @@ CYCLES: Final[dict[int, Callable[[Hole], list[HoleMotion]]]] = {
     240: _centre,
     241: _gun_drill,
 }
-
-
-def unusual_values(number: int, values: Mapping[int, float], unit: float) -> Iterator[str]:
-    """Yield values of pecks that no CL file states and that are not those that are usual: ``Q256 2``.
-
-    How far the tool lifts to break chips, how far above the drilled depth it feeds on, and the factor of the speed at
-    which a tap leaves. ``unit``: millimetres of a length.
-    """
-    usual = {205: {258: ADVANCED_STOP, 259: ADVANCED_STOP, 256: CHIP_BREAK}, 203: {256: CHIP_BREAK}}.get(number, {})
-    for parameter, wanted in usual.items():
-        breaks = parameter != 256 or number == 203 or values.get(257, 0.0) > 0.0
-        if breaks and abs(values.get(parameter, 0.0) * unit - wanted) > SAME_GAP:
-            yield f"Q{parameter} {values.get(parameter, 0.0):g}"
-    if number == 209:
-        yield from (f"Q{each} {values[each]:g}" for each in (256, 403) if values.get(each, 1.0) not in (0.0, 1.0))
 
 
 def spindle_work(number: int, values: Mapping[int, float], unit: float) -> SpindleWork | None:
