@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from trunnion.arrays import distinct
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.arc_extremes import RunArcs
 from trunnion.model.toolpath import Toolpath
@@ -40,7 +41,7 @@ def verification_figures(found: Verification) -> dict[str, Any]:
     axes = [axis_extent(run, k, axis, arcs) for k, axis in enumerate(run.machine.axes)]
     return {
         "motions": len(run),
-        "tools": sorted({run.tools[int(index)] for index in np.unique(run.tool)} - {""}),
+        "tools": sorted({run.tools[int(index)] for index in distinct(run.tool)} - {""}),
         "seconds": _rounded(float(np.nansum(found.seconds))) if len(found.seconds) else None,
         "axes": {each.name: to_data(each, decimals=_DECIMALS, only=_OF_AXIS) for each in axes},
         "margin_mm": _least(each.margin for each in axes if each.unit == "mm" and each.zero_known),

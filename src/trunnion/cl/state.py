@@ -254,6 +254,8 @@ class ReaderState:
         may be, damaged or in one line.
         """
         events = self.builder.events
+        if "" in words:
+            what = f"{statement.major} has nothing behind a comma"
         if self.strict:
             self.diagnostics.error(self.line, Wording("CL210", "unknown_in_strict", unknown=what))
         found = UnknownStatement(self.operation_row, self.line, statement.source, words, what, acts, meant)

@@ -59,6 +59,8 @@ def unknown_statement_errors(toolpath: Toolpath) -> tuple[Problem, ...]:
 
 def _said(event: UnknownStatement, otherwise: Wording) -> Wording:
     """Return what is said of a statement: without the word that is meant, a program would lack what it does."""
+    if "" in event.words:
+        return Wording("CL210", "empty_value", unknown=event.what)
     if not event.meant:
         return otherwise
     if len(event.meant) > 1:

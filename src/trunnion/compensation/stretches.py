@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import distinct
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import tool_additions
@@ -54,7 +55,7 @@ def compensated_stretches(run: Run) -> Iterator[Stretch]:
     if set(state.compensation.distinct().tolist()) <= {0}:
         return
     columns = (state.compensation, state.compensation_plane, state.compensation_style, state.machine_frame)
-    bounds = np.unique(np.concatenate([np.zeros(1, np.int64), *(column.rows for column in columns)]))
+    bounds = distinct(np.concatenate([np.zeros(1, np.int64), *(column.rows for column in columns)]))
     before: Stretch | None = None
     for first, end in zip(bounds.tolist(), [*bounds[1:].tolist(), len(run)], strict=True):
         if first >= len(run) or not state.compensation[first] or state.machine_frame[first]:

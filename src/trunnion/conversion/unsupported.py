@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Ints, distinct
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.states import SAID_ANYHOW
 from trunnion.errors import Problem, Severity, warning
@@ -102,7 +102,7 @@ def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warn
             _warn_at_rows(
                 run,
                 rows[differing],
-                Wording("CNV160", "other_rotary_positions", count=len(np.unique(differing)), name=name),
+                Wording("CNV160", "other_rotary_positions", count=len(distinct(differing)), name=name),
                 warn,
             )
 

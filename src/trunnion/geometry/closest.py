@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.extras import import_extra
 from trunnion.geometry.curves import BSplineCurve
 
@@ -85,7 +85,7 @@ def _samples(curve: BSplineCurve) -> tuple[Floats, float, Any]:
 
     Hub and shroud are asked again and again.
     """
-    knots = np.unique(curve.knots)
+    knots = distinct(curve.knots)
     spans = curve.lengths(knots)
     # In long spans there are more of them, so that none are much farther apart than others.
     each = max(_SAMPLES, math.ceil(_ALL_SAMPLES / len(spans)))

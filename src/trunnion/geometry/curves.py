@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, distinct
 from trunnion.extras import import_extra
 
 #: Every curve is cubic: the lowest degree whose curvature is continuous.
@@ -62,7 +62,7 @@ class BSplineCurve:
     def lengths(self, parameters: Floats) -> Floats:
         """Length of the curve, mm, between one parameter and the next, (m - 1,); parameters rise."""
         nodes, weights = np.polynomial.legendre.leggauss(_GAUSS_POINTS)
-        at = np.unique(np.r_[self.knots, parameters])
+        at = distinct(np.r_[self.knots, parameters])
         at = at[(at >= parameters[0]) & (at <= parameters[-1])]
         middle, half = (at[1:] + at[:-1]) / 2.0, np.diff(at) / 2.0
         speed = np.linalg.norm(self.derivatives((middle[:, None] + half[:, None] * nodes).ravel(), 1)[1], axis=1)

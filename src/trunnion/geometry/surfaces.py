@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, distinct
 from trunnion.extras import import_extra
 from trunnion.geometry.curves import DEGREE, BSplineCurve
 from trunnion.geometry.surface_kernel import SurfaceData, surface_points
@@ -71,7 +71,7 @@ def loft(curves: Sequence[BSplineCurve]) -> BSplineSurface:
 
 def _merged(vectors: Sequence[Floats]) -> Floats:
     """All inner knots of several knot vectors, those that are the same once."""
-    inner = np.unique(np.concatenate([knots[DEGREE + 1 : -DEGREE - 1] for knots in vectors]))
+    inner = distinct(np.concatenate([knots[DEGREE + 1 : -DEGREE - 1] for knots in vectors]))
     kept = inner[np.r_[True, np.diff(inner) > _SAME_KNOT]] if len(inner) else inner
     return np.concatenate((np.zeros(DEGREE + 1), kept, np.ones(DEGREE + 1)))
 

@@ -13,7 +13,7 @@ from typing import Annotated, Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats, Ints, distinct
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.blade import Blade
@@ -109,7 +109,7 @@ def is_closed(faces: Ints) -> bool:
     a, b = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     size = int(faces.max(initial=0)) + 1
     edges, count = np.unique(a * size + b, return_counts=True)
-    return len(faces) > 0 and bool((count == 1).all()) and np.array_equal(edges, np.unique(b * size + a))
+    return len(faces) > 0 and bool((count == 1).all()) and np.array_equal(edges, distinct(b * size + a))
 
 
 def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Ints, distinct
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,7 +65,7 @@ class StepColumn:
 
     def distinct(self) -> NDArray[Any]:
         """Return the values that occur, each once, ascending."""
-        return np.unique(self.values[: np.searchsorted(self.rows, self.n)])
+        return distinct(self.values[: np.searchsorted(self.rows, self.n)])
 
     def rows_changing_to(self, value: float) -> list[int]:
         """Return the rows at which the column changes to a value."""

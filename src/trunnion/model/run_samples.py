@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, distinct
 from trunnion.model.run import Run
 
 _EVEN: Final = 54
@@ -21,7 +21,7 @@ def joint_samples(run: Run) -> Floats:
         return np.zeros((0, 5))
     ends = [row for columns in (run.xyz, run.rotary) for column in columns.T for row in _extremes(column)]
     between = np.linspace(0, len(run) - 1, min(len(run), _EVEN)).astype(np.int64)
-    return run.positions(np.unique(np.concatenate((ends, between)))).joints
+    return run.positions(distinct(np.concatenate((ends, between)))).joints
 
 
 def _extremes(column: Floats) -> tuple[int, int]:

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Ints, distinct
 from trunnion.machines import Machine
 from trunnion.model.columns import StepColumn
 
@@ -43,7 +43,7 @@ class RunSetups:
     def by_machine(self, rows: Ints) -> Iterator[tuple[Machine, Ints]]:
         """Yield the machines of rows, in any order, each with the indices of its rows."""
         numbers = self.number.at(np.maximum(rows, 0))
-        for number in np.unique(numbers).tolist():
+        for number in distinct(numbers).tolist():
             yield self.each[number].machine, np.flatnonzero(numbers == number)
 
     def length_of(self, tool: str) -> float | None:

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Ints, distinct
 from trunnion.messages import Wording, phrase
 from trunnion.model.columns import StepColumn
 from trunnion.model.programmed_words import ROTARY_WORDS, names_no_axis
@@ -67,7 +67,7 @@ def _used(run: Run) -> Iterator[tuple[Setup, Ints]]:
     moves = named | names_no_axis(run.programmed) | (run.tcp & ((run.programmed & int(ROTARY_WORDS)) != 0))
     rows = np.flatnonzero(moves & ~run.machine_frame)
     numbers = run.setups.number.at(rows)
-    for number in np.unique(numbers).tolist():
+    for number in distinct(numbers).tolist():
         yield run.setups.each[number], rows[numbers == number]
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Floats, Floats2, Floats3, Ints
+from trunnion.arrays import Floats, Floats2, Floats3, Ints, distinct
 from trunnion.jit import kernel
 from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.machines.inverse import solve_slides_cos_sin
@@ -48,7 +48,7 @@ def axis_equations(
     if length is None or not len(length):
         return normals, offsets, _fill_forms(kinematic_parameters(machine), tip, angles, normals, offsets)
     first = len(tip)
-    for own in np.unique(length).tolist():
+    for own in distinct(length).tolist():
         there = machine if math.isnan(own) else replace(machine, tool_length=own)
         which = np.flatnonzero(np.isnan(length) if math.isnan(own) else length == own)
         normal, offset = np.empty((len(which), 3, 3)), np.empty((len(which), 3))

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.extras import import_extra
 from trunnion.machines import Machine, kinematic_parameters
 from trunnion.machines.machine import Axis
@@ -75,7 +75,7 @@ def rows_that_stand(rows: PathRows, held: Flags) -> Flags:
     for first, end in zip(firsts, [*firsts[1:], len(rows)], strict=True):
         inside = first + np.flatnonzero(held[first:end])
         length = rows.length_at(inside)
-        for own in [None] if length is None else np.unique(length).tolist():
+        for own in [None] if length is None else distinct(length).tolist():
             like = inside if own is None or length is None else inside[_is_like(length, own)]
             keep[like[hull_points(rows.tip[like])]] = True
     return keep

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import distinct
 from trunnion.errors import Problem, warning
 from trunnion.machines import Machine, inverse, spindle_speed_fault
 from trunnion.messages import Wording, phrase
@@ -139,7 +140,7 @@ def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
 def pose_problems(file: str, operation: Operation, poses: PlannedPoses, request: PlanRequest) -> Iterable[Problem]:
     """Errors of poses: each kind of trouble at its first few rows, then how many more there are."""
     outcome, moves = poses.outcome, operation.moves
-    for code in np.unique(outcome[outcome > 0]).tolist() if outcome.any() else []:
+    for code in distinct(outcome[outcome > 0]).tolist() if outcome.any() else []:
         if code == REWIND:
             continue
         rows = np.flatnonzero(outcome == code)

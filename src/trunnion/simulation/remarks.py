@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import distinct
 from trunnion.errors import Problem, Severity, merge_repeated, warning
 from trunnion.machines import Machine
 from trunnion.machines.inverse import slide_positions
@@ -99,7 +100,7 @@ def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Proble
 
 def _edges(run: Run) -> Iterator[Problem]:
     """Cutting edges (Sinumerik: D2) whose offsets nobody knows."""
-    for edge in np.unique(run.edge[run.edge > 1]).tolist():
+    for edge in distinct(run.edge[run.edge > 1]).tolist():
         row = int(np.flatnonzero(run.edge == edge)[0])
         yield warning(file_of_row(run, row), int(run.line[row]), Wording("SIM161", "works_edge_d", edge=edge))
 
@@ -121,7 +122,7 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
             row = int(rows[np.argmax(without)])
             found.append(Problem(file_of_row(run, row), int(run.line[row]), Wording("SIM160", "cuts_without_tool")))
         if run.uses_length_numbers:
-            for number in np.unique(edge[edge > 0]).tolist():
+            for number in distinct(edge[edge > 0]).tolist():
                 own = np.flatnonzero(edge == number)
                 others = own[tool[own] != tool[own[0]]]
                 if len(others):

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.errors import InputError, Problem
 from trunnion.machines.links import link_chain
 from trunnion.messages import Wording
@@ -136,7 +136,7 @@ class _Motion:
         run = self.run
         xyz, rotary = run.xyz[first:end], run.rotary[first:end]
         joints = np.empty((end - first, 5))
-        for each in np.unique(length).tolist():
+        for each in distinct(length).tolist():
             of = length == each
             joints[of] = self._inside.solved(each, xyz_is_tip[of], xyz[of], rotary[of])
         from_work = ~xyz_is_tip & self._active(first, end)

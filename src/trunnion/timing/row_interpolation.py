@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.machines import Machine, forward, kinematic_parameters
 from trunnion.model.axis_positions import RotaryWords, joints_from_rows, resolve_angles
 from trunnion.model.run import Orientation, Run
@@ -128,7 +128,7 @@ class RowInterpolation:
         great &= run.orientation_between(first, end)[rows] == Orientation.GREAT_CIRCLE
         if great.any():
             joints[np.ix_(great, columns)] = self._on_great_circles(start[great], before[rows[great] + 1], done[great])
-        for each in np.unique(length[rows]).tolist():
+        for each in distinct(length[rows]).tolist():
             of = length[rows] == each
             tips = self._tips(first, rows[of], done[of], before, each)
             joints[of] = self.solved(each, np.ones(len(tips), np.bool_), tips, joints[np.ix_(of, columns)])

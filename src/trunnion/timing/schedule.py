@@ -18,7 +18,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats, Ints, distinct
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Kind
 from trunnion.timing.dynamics import AxisDynamics
@@ -189,7 +189,7 @@ def _wanted(run: Run, rows: Ints) -> tuple[Ints, Floats, Floats]:
     """
     state, n = run.state, len(run)
     columns = [(np.minimum(column.rows, n), column.values) for column in (state.rpm, state.spindle)]
-    rows = np.unique(np.concatenate([*(each for each, _ in columns), rows]))
+    rows = distinct(np.concatenate([*(each for each, _ in columns), rows]))
     rpm, sense = (values[np.searchsorted(each, rows, "right") - 1] for each, values in columns)
     return rows, np.asarray(rpm * sense, np.float64), np.asarray(rpm, np.float64)
 

@@ -207,7 +207,7 @@ def _couplet(state: ReaderState, statement: Statement, found: CycleParts, word: 
         found.couplets.append((meant, _one_number(word, given, _STEP_NUMBERS if meant == "STEP" else 1)))
         return
     if given or word != "OPTION":
-        state.note_unknown(statement, f"CYCLE with {word or 'nothing between two commas'} is not known", word)
+        state.note_unknown(statement, f"CYCLE with {word} is not known", word)
     if given:
         found.couplets.append((word, given))
     else:

@@ -62,6 +62,8 @@ def fedrat(state: ReaderState, statement: Statement) -> None:
             state.feed_factor, state.feed_per_rev = 1.0, FILE_UNIT_FEEDS[word]
             state.feed_inverse, state.bare_feeds = False, True
             continue
+        if not word:
+            raise StatementError(Wording("CL310", "nothing_behind_comma", major=statement.major))
         if word not in FEED_UNITS:
             raise StatementError(Wording("CL710", "fedrat_not_known", listed=statement.listed()))
         state.feed_factor, state.feed_per_rev = FEED_UNITS[word]

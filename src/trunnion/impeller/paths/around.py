@@ -16,7 +16,7 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, distinct
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.fillet import Stations
@@ -84,7 +84,7 @@ def side_end(impeller: Impeller, blade: Blade, reach: float) -> float:
 def dense_stations(build: Callable[[Floats], Sheet], last: float, tolerance: float) -> Floats:
     """Numbers (k,) of stations from 0 to ``last`` whose chords are within a tolerance."""
     share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, _FIRST))
-    s = np.unique(np.concatenate([part + share for part in range(int(last))]))
+    s = distinct(np.concatenate([part + share for part in range(int(last))]))
     for _ in range(_ROUNDS):
         middle = (s[1:] + s[:-1]) / 2.0
         every = np.sort(np.concatenate((s, middle)))

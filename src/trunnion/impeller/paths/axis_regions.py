@@ -14,7 +14,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.extras import import_extra
 from trunnion.impeller.progress import Advance, ignore
 
@@ -93,7 +93,7 @@ def sphere(count: int) -> Floats:
 def grow_regions(places: Floats, margin: Margin, advance: Advance = ignore) -> Regions:
     """Regions at places (n, k), from the narrowest of some of them to all others; none if some of them have none."""
     count = len(places)
-    seeds = np.unique(np.linspace(0, count - 1, _SEEDS).astype(int))
+    seeds = distinct(np.linspace(0, count - 1, _SEEDS).astype(int))
     starts = _most_central(seeds, margin)
     middle = np.full((count, 3), np.nan)
     if len(starts) < len(seeds):

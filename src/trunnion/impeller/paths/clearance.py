@@ -17,7 +17,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
+from trunnion.arrays import Flags, Floats, distinct
 from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.impeller import Impeller
@@ -265,7 +265,7 @@ def _widened(corners: Floats, extra: float, slope: float) -> Floats:
     """Return a side, wider by ``extra``; near the ball's centre by as much as a line of a slope allows."""
     z = corners[:, 1]
     full = (extra + SLACK) / slope
-    heights = np.unique(np.r_[z, full]) if z[0] < full < z[-1] else z
+    heights = distinct(np.r_[z, full]) if z[0] < full < z[-1] else z
     r = np.interp(heights, z, corners[:, 0]) if len(heights) > len(z) else corners[:, 0]
     return np.column_stack((np.maximum(r + np.minimum(extra, heights * slope - SLACK), 0.0), heights))
 

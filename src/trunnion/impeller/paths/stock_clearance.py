@@ -13,7 +13,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats
+from trunnion.arrays import Flags, Floats, distinct
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.definition import ImpellerDefinition
@@ -60,7 +60,7 @@ def stock_clearances(
     for one, axes in passes:
         stock = before(one)
         tree = import_extra("scipy.spatial", "impeller").cKDTree(stock)
-        rows = np.unique(np.linspace(0, len(one) - 1, _POSES).astype(int))
+        rows = distinct(np.linspace(0, len(one) - 1, _POSES).astype(int))
         for role, outline in outlines:
             off = _distances(one.centre[rows], axes[rows], outline, stock, tree).min(axis=1)
             k = int(off.argmin())

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.errors import InputError, Problem
 from trunnion.impeller.paths.axis_field import AxisField, FieldFit, fit_field
 from trunnion.impeller.paths.axis_regions import Margin, Regions, climb, grow_regions, regions_about, sphere
@@ -249,7 +249,7 @@ class _Search:
 
     def fault(self, tool: ToolShape, body: ToolBody) -> Problem:
         """Why there is no field: where it is worst of the places in the way, the lowest part that finds no room."""
-        asked = self._bad[np.unique(np.linspace(0, len(self._bad) - 1, _ASKED).astype(int))]
+        asked = self._bad[distinct(np.linspace(0, len(self._bad) - 1, _ASKED).astype(int))]
         name = tool.name or "the tool"
         directions = sphere(_DIRECTIONS)
         clear = np.ones((len(asked), _DIRECTIONS), np.bool_)
@@ -318,7 +318,7 @@ def _nodes(places: Floats, lengths: Floats) -> Ints:
     low, high = 0.01, float(lengths.max())
     for _ in range(40):
         size = math.sqrt(low * high)
-        if len(np.unique(_cells(places, np.maximum(np.round(lengths / size), 1.0)))) > _NODES:
+        if len(distinct(_cells(places, np.maximum(np.round(lengths / size), 1.0)))) > _NODES:
             low = size
         else:
             high = size

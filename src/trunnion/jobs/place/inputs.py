@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from trunnion import readers
-from trunnion.arrays import Ints
+from trunnion.arrays import Ints, distinct
 from trunnion.cl.read import ClReading
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.arguments import PlaceArguments
@@ -56,7 +56,7 @@ class PlacedInput:
     @property
     def used_tools(self) -> list[int]:
         """The numbers in ``tools`` of those that are in the spindle in some row."""
-        return [int(number) for number in np.unique(self.tool)]
+        return [int(number) for number in distinct(self.tool)]
 
 
 def read_input(

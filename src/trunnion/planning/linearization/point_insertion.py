@@ -18,7 +18,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats, Ints, distinct
 from trunnion.errors import Problem
 from trunnion.machines import Machine, forward, slide_positions
 from trunnion.messages import Wording
@@ -196,7 +196,7 @@ def _limit_problems(file: str, operation: Operation, machine: Machine, path: Div
         ends = np.searchsorted(source, rows[found] - before, "right") - 1
         at_ends = slide_positions(machine, path.tip[ends], path.rotary[ends])
         found = found[~outside_limits(at_ends, *limits).any(axis=1)]
-    for row in np.unique(rows[found])[:_NAMED].tolist():
+    for row in distinct(rows[found])[:_NAMED].tolist():
         of_row = found[rows[found] == row]
         column = int(np.argmax(outside[of_row[0]]))
         values = joints[of_row, column]

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import distinct
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector, tool_key
@@ -78,7 +79,7 @@ class SetupRecorder:
         number = self._column.steps(len(run), np.uint16)
         setups = RunSetups(tuple(self._setups), number)
         at_part = ~run.state.machine_frame.column()
-        used = [self._setups[k] for k in np.unique(number.column()[at_part]).tolist()] or self._setups
+        used = [self._setups[k] for k in distinct(number.column()[at_part]).tolist()] or self._setups
         return replace(run, machine=max(used, key=known_values).machine, setups=setups)
 
 

@@ -123,11 +123,15 @@ def split_line(raw: str, *, semicolon: bool) -> Line:
 
 
 def read_block(
-    reader: ExpressionReader, on_repeated_word: Callable[[str], None], corners: Collection[str] = ()
+    reader: ExpressionReader,
+    on_repeated_word: Callable[[str], None],
+    corners: Collection[str] = (),
+    signs: Collection[str] = (),
 ) -> Block:
     """Read the rest of a block; ``on_repeated_word`` is called with the letter of a word that is written twice.
 
     corners  letters that may stand behind a comma: such a word is another one than that of the letter
+    signs    that stand for a letter of a word
     """
     block = Block()
     if (plain := _PLAIN.fullmatch(reader.text, reader.at)) is not None:
@@ -143,7 +147,7 @@ def read_block(
             continue
         if letter == "," and reader.rest[:1] in corners:
             letter += reader.letter()
-        elif not "A" <= letter <= "Z":
+        elif not ("A" <= letter <= "Z" or letter in signs):
             raise BlockError(Wording("NC210", "not_a_word", found=repr(letter)))
         begin = reader.at
         value, whole = reader.signed_value()

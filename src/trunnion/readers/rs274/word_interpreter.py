@@ -41,6 +41,9 @@ class WordInterpreter(Rs274Interpreter[A]):
     #: Letters that make words of corners behind a comma.
     corner_letters: tuple[str, ...] = ()
 
+    #: Signs that are letters of words.
+    signs: tuple[str, ...] = ()
+
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
         self._acts: dict[str, Callable[[Word, Block], None]] = {
@@ -61,7 +64,7 @@ class WordInterpreter(Rs274Interpreter[A]):
 
     def _read_block(self, reader: ExpressionReader) -> Block:
         """Read the words of a block as those of the family."""
-        block = read_block(reader, self._report_repeated_word, self.corner_letters)
+        block = read_block(reader, self._report_repeated_word, self.corner_letters, self.signs)
         for word in self.control.own_words.translate(block):
             self._note(Wording("NC211", "unknown_own_word", word=word), Severity.ERROR)
         self._check_groups(block)

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats, Ints, distinct
 from trunnion.extras import import_extra
 from trunnion.simulation.collisions.bodies import section_outline
 from trunnion.simulation.collisions.hull_points import HullPoints, hull_points
@@ -91,7 +91,7 @@ def _parts(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
     graph = sparse.coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(places), len(places)))
     _, label = sparse.csgraph.connected_components(graph, directed=False)
     of_face = label[faces[:, 0]]
-    for part in np.unique(of_face).tolist():
+    for part in distinct(of_face).tolist():
         yield _some_faces(mesh, np.flatnonzero(of_face == part))
 
 

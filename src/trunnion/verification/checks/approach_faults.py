@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Flags, Ints, distinct
 from trunnion.machines import Mount
 from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord, Run
@@ -38,7 +38,7 @@ def approaches_through_part(context: Context) -> Iterator[Place]:
     if part is None:
         return
     shares = np.linspace(0.0, 1.0, _PLACES)[:, None]
-    for row in np.unique(np.concatenate((rows, rows + 1))).tolist():
+    for row in distinct(np.concatenate((rows, rows + 1))).tolist():
         start, end = run.positions(np.array([row - 1, row])).tip
         inside = ((start + shares * (end - start) > part.low) & (start + shares * (end - start) < part.high)).all(
             axis=1

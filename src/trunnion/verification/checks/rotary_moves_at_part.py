@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.machines import SAFE_DISTANCE, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
@@ -123,7 +123,7 @@ class _Judge:
         """Return the rows home along the spindle, and those before which a word retracts the tool; None: neither."""
         if self._safe_height is None and not len(self._retracts):
             return None
-        return np.unique(np.concatenate((np.array(sorted(self._homes), np.int64), self._retracts)))
+        return distinct(np.concatenate((np.array(sorted(self._homes), np.int64), self._retracts)))
 
     def stands_away(self, place: int) -> bool:
         """Whether the tool is away from the part at an event, as far as the program shows it."""

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Ints, distinct
 from trunnion.messages import Wording
 from trunnion.model.run import EventValue, Run, RunEvent
 from trunnion.model.spindle_work import SpindleHole, SpindleTask
@@ -68,7 +68,7 @@ class PathEvents:
         self._events: dict[int, list[Wording]] = {}
         for motion, (_, said) in zip(at.tolist(), found, strict=True):
             self._events.setdefault(motion, []).append(said)
-        self.motions: Ints = np.unique(at).astype(np.int64)
+        self.motions: Ints = distinct(at).astype(np.int64)
 
     def take(self, first: int, end: int) -> dict[str, list[Wording]]:
         """Return what comes before the motions from ``first`` to ``end`` (exclusive) and has not been taken yet, by

@@ -15,7 +15,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Flags, Ints, distinct
 from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
@@ -131,7 +131,7 @@ def _offset_column(run: Run) -> StepColumn:
     lost = _column(
         run, [0, *(each.before_row for each in events)], [False, *(each.value == "TRAORI" for each in events)]
     )
-    rows = np.unique(np.concatenate((column.rows, lost.rows)))
+    rows = distinct(np.concatenate((column.rows, lost.rows)))
     rows = rows[rows < len(run)]
     return StepColumn(len(run), rows, np.where(lost.at(rows), _LOST, column.at(rows).astype(np.int64)))
 

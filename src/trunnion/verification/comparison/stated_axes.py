@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Flags, Ints, distinct
 from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import ProgrammedWord, Run
@@ -31,13 +31,13 @@ _ELSEWHERE: Final = {
 def first_statements(run: Run) -> Ints:
     """Return the rows that state an axis for the first time: they move it from wherever it has been."""
     stated = [np.flatnonzero(run.programmed & np.uint8(word))[:1] for word in AXIS_WORDS]
-    return np.unique(np.concatenate(stated)).astype(np.int64)
+    return distinct(np.concatenate(stated)).astype(np.int64)
 
 
 def rows_behind_retracts(run: Run) -> Ints:
     """Return the rows behind words that take the tool along its axis as far as it goes (k,), ascending."""
     events = [event.before_row for event in run.events if event.kind == "retract" and event.before_row < len(run)]
-    rows = np.unique(np.array(events, np.int64))
+    rows = distinct(np.array(events, np.int64))
     return np.asarray(rows[~run.state.machine_frame.at(rows)])
 
 

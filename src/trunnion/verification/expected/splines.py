@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats, Ints, distinct
 from trunnion.model.splines import Splines
 
 #: Shares of a span at which two splines are compared: more than a polynomial of degree 5 has coefficients.
@@ -25,7 +25,7 @@ def dense_points(splines: Splines, begin: int, end: int) -> Floats:
     which, span = _spans(splines, begin, end)
     which += begin
     points = np.empty((len(span), len(_SHARES), 3))
-    for degree in np.unique(splines.degree[begin:end]).tolist():
+    for degree in distinct(splines.degree[begin:end]).tolist():
         here = splines.degree[which] == degree
         points[here] = _points(splines, which[here], span[here], degree)
     return points

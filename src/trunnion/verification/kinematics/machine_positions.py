@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Ints
+from trunnion.arrays import Codes, Flags, Ints, distinct
 from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.unknown_setups import rows_without_values
@@ -90,7 +90,7 @@ class MachinePositions:
         In a tilted plane or under TCP all slides may follow from it, so that nobody knows where any of them is.
         """
         found = [_tip_rows(run, first + 1, end) for first, end in self.left_at_machine()]
-        return np.unique(np.concatenate([np.zeros(0, np.int64), *found]))
+        return distinct(np.concatenate([np.zeros(0, np.int64), *found]))
 
     def crossed(self, rows: Ints) -> Flags:
         """Which rows move a slide between the two kinds of coordinates: nobody knows how far, (k,) bool."""

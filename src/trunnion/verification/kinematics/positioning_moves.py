@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Ints
+from trunnion.arrays import Codes, Flags, Ints, distinct
 from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
@@ -73,7 +73,7 @@ def tool_axis_exit_rows(run: Run) -> Ints:
     announced = [event.before_row for event in run.events if event.kind == "leave"]
     if not announced:
         return np.zeros(0, np.int64)
-    rows = np.unique(np.array(announced, np.int64))
+    rows = distinct(np.array(announced, np.int64))
     rows = rows[(rows > 0) & (rows + 1 < len(run))]
     rows = rows[run.state.machine_frame.at(rows + 1) & (run.kind[rows] == Kind.RAPID)]
     before, after = run.positions(rows - 1), run.positions(rows)

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.arrays import Codes, Flags, Floats, Ints, distinct
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.expected.arcs import arc_of, circle_of
@@ -330,7 +330,7 @@ class _PathMatcher:
         """
         if self._least_turn == 0.0:
             return found.motions, found.points
-        for point in np.unique(found.cl_point[~found.arrives]).tolist():
+        for point in distinct(found.cl_point[~found.arrives]).tolist():
             step = np.flatnonzero(found.cl_point == point)
             each = np.concatenate(([rows[step[0]] - 1], rows[step]))
             turn = np.abs(np.diff(self._run.rotary[np.maximum(each, 0)], axis=0)).sum()

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Ints, distinct
 from trunnion.model.programmed_words import POSITION_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -56,7 +56,7 @@ def _behind_ways_home(run: Run) -> Iterator[tuple[int, int, int]]:
     known = MachinePositions.of(run).known
     if known:
         frame, retracts = frame[:0], retracts[~np.isin(retracts, frame)]
-    ways: Ints = np.unique(np.concatenate((frame, retracts)))
+    ways: Ints = distinct(np.concatenate((frame, retracts)))
     # A program that goes home before all else finds the axes where they were left.
     left = _ALL if len(ways) and not known and first_workpiece_position(run, 0, int(ways[0])) is None else 0
     begin: int | None = None

@@ -53,6 +53,7 @@ CURES: Final = (
     _within("CL160", "dollar_sign_within", "GOTO/20,$ 0,5", "GOTO/20,$\n0,5"),
     _within("CL160", "within_statement_without", "COOLNT/FLOOD GOTO/15,0,5", "COOLNT/FLOOD\nGOTO/15,0,5"),
     _within("CL210", "unknown_in_strict", "CLAMP/ON", _OUT, strict="yes"),
+    _within("CL310", "nothing_behind_comma", "FEDRAT/MMPM,500,", "FEDRAT/MMPM,500"),
     _within("CL310", "number_expected", "GOTO/1,2", "GOTO/1,2,3"),
     _within("CL310", "where_number_belongs", "GOTO/1,2 5,3", "GOTO/1,2.5,3"),
     _within("CL310", "where_whole_number", "LOAD/TOOL,1.5", "LOAD/TOOL,1"),

@@ -155,6 +155,7 @@ CURES: Final = (
         "CL430", "does_not_state", _together, _STATED.format("").replace("MSYS/0", "MSYS/100"), ((_OP2, _OP2 + _MSYS),)
     ),
     Cure("CL190", "named_twice", _named, "a.cls a.cls", ((" a.cls", ""),)),
+    marked("CL210 empty_value", post(), "- SPINDL/RPM,4000,CLW,", "+ SPINDL/RPM,4000,CLW", head=HEAD, foot=FOOT),
     marked(
         "CL210 in_one_line", post(), "- OPSTOP,RAPID", "+ OPSTOP", "+ RAPID", "+ GOTO/20,0,50", head=HEAD, foot=FOOT
     ),

@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import distinct
 from trunnion.controls.family_writer import Formats
 from trunnion.controls.words import NumberFormat
 from trunnion.model.splines import Spline
@@ -30,7 +31,7 @@ def takes_spline(spline: Spline) -> bool:
     _, repeats = np.unique(inner, return_counts=True)
     clamped = bool((first == first[0]).all() and (last == last[0]).all())
     apart = bool(((inner > first[0]) & (inner < last[0])).all()) and repeats.max(initial=0) <= spline.degree
-    as_many = len(np.unique(counts)) == len(np.unique(spline.knots))
+    as_many = len(distinct(counts)) == len(distinct(spline.knots))
     weights = spline.weights * 10**_DECIMALS
     exact = bool((np.abs(weights - np.rint(weights)) < _EXACT).all() and (weights >= 1.0).all())
     return clamped and apart and as_many and exact and float(spline.weights.max()) <= _GREATEST_WEIGHT

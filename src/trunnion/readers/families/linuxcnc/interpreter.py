@@ -18,6 +18,7 @@ from trunnion.readers.families.linuxcnc.control import ORDER
 from trunnion.readers.families.linuxcnc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.linuxcnc.flow import ActiveProgram
 from trunnion.readers.families.linuxcnc.parameters import ARITHMETIC
+from trunnion.readers.families.linuxcnc.polar_positions import SIGNS, polar_words
 from trunnion.readers.families.linuxcnc.spline_blocks import SplineBlocks
 from trunnion.readers.families.linuxcnc.text import LinuxcncText
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -44,6 +45,7 @@ class LinuxcncInterpreter(CycleInterpreter):
     table = words.TABLE
     semicolon = True
     motion_code = CANCEL
+    signs = SIGNS
     has_builders_words = False
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
@@ -307,7 +309,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         code = selected if selected is not None else self.motion_code
         if code != CANCEL and code not in self.table.cycles:
             self._initial = None
-        axes = self._axis_words(block)
+        axes = {**self._axis_words(block), **polar_words(block, self.control, code)}
         if code in words.SPLINES:
             self._spline(code, block, axes)
             return
