@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.locations import TESTS
 from trunnion.cli import SpokenLog, main
-from trunnion.cli.command_line.language import speaking, with_language
+from trunnion.cli.command_line.language import speaking, spoken_language, stated_language, with_language
 from trunnion.messages import phrase
 
 CHINESE = "有错误"
@@ -18,9 +18,16 @@ CHINESE = "有错误"
 
 @pytest.fixture(autouse=True)
 def _plain(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("LC_ALL", "LC_MESSAGES", "LANG", "PYTHONIOENCODING"):
+    for name in ("TRUNNION_LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG", "PYTHONIOENCODING"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
+
+
+def chosen(words: list[str]) -> tuple[list[str], str, str]:
+    """The words without a language, the language that is spoken, and the one that is stated."""
+    rest, stated = with_language(words)
+    with speaking(stated):
+        return rest, spoken_language(), stated_language()
 
 
 @pytest.mark.parametrize(
@@ -44,7 +51,25 @@ def _plain(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_surroundings_choose(stated: dict[str, str], language: str, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in stated.items():
         monkeypatch.setenv(name, value)
-    assert with_language(["check", "a"]) == (["check", "a"], language)
+    assert chosen(["check", "a"]) == (["check", "a"], language, "")
+
+
+@pytest.mark.parametrize(
+    ("variable", "words", "language", "stated"),
+    [
+        ("zh", [], "zh", "zh"),
+        ("zh_CN.UTF-8", [], "zh", "zh"),
+        ("zh", ["--language", "en"], "en", "en"),
+        ("fr", [], "de", ""),
+        ("", [], "de", ""),
+    ],
+)
+def test_the_own_variable_goes_before_the_surroundings(
+    variable: str, words: list[str], language: str, stated: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LANG", "de_DE.UTF-8")
+    monkeypatch.setenv("TRUNNION_LANGUAGE", variable)
+    assert chosen(words) == ([], language, stated)
 
 
 @pytest.mark.parametrize(
@@ -60,7 +85,7 @@ def test_the_surroundings_choose(stated: dict[str, str], language: str, monkeypa
     ],
 )
 def test_the_option_chooses(words: list[str], rest: list[str], language: str) -> None:
-    assert with_language(words) == (rest, language)
+    assert chosen(words)[:2] == (rest, language)
 
 
 def test_a_language_that_is_none_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
@@ -89,9 +114,9 @@ def test_output_follows_the_terminal(encoding: str, monkeypatch: pytest.MonkeyPa
 def test_a_terminal_that_lacks_the_letters_is_told_in_english(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LANG", "zh_CN.UTF-8")
     monkeypatch.setattr(sys, "stderr", Terminal(io.BytesIO(), encoding="latin-1"))
-    assert with_language([])[1] == "en"
+    assert chosen([])[1] == "en"
     monkeypatch.setenv("LANG", "de_DE")
-    assert with_language([])[1] == "de"
+    assert chosen([])[1] == "de"
 
 
 def test_pipes_are_utf8_unless_python_is_told_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -272,3 +272,65 @@ def test_the_rise_above_a_hole_is_skipped_with_the_hole_alone(
     capsys.readouterr()
     assert main(["verify", str(program), "--machine", "yl569", "--cl", str(cl)]) == 1
     assert "may be skipped (/), and the CL file has no OPSKIP there" in capsys.readouterr().out
+
+
+#: What the operator may skip, from a cut to another one, with turns of the tool: each ends at rapid above all cuts.
+_UP = "RAPID\nGOTO/15.527708,0,60,{a}\n"
+_SKIPPED = {
+    "a retract": f"OPSKIP/ON\n{_UP}OPSKIP/OFF\n",
+    "a cut and its retract": "OPSKIP/ON\nGOTO/10,9,6,{a}\nRAPID\nGOTO/10,9,60,{b}\nOPSKIP/OFF\n",
+    "a turn": f"{_UP}OPSKIP/ON\nRAPID\nGOTO/20,10,60,{{b}}\nOPSKIP/OFF\n",
+    "the first point": "",
+}
+_LEANING = {"a": "0.1,0,0.99498743710662", "b": "0,-0.5,0.86602540378444"}
+_OVER = "RAPID\nGOTO/30,10,60,{b}\n"
+
+
+def _skipping(what: str) -> str:
+    """CL text in which the operator may skip something; the way on behind it is aslant, or a plunge."""
+    head, _, cut = HEAD.format(name="ONE", tool=1).partition("RAPID\n")
+    first = "OPSKIP/ON\n" if what == "the first point" else ""
+    last = f"{_UP}OPSKIP/OFF\n{_OVER}" if first else _SKIPPED[what] + ("" if what == "a turn" else _OVER)
+    text = f"{head}{first}RAPID\n{cut}GOTO/10,0,5,{{a}}\n{last}FEDRAT/MMPM,300\nGOTO/30,12,5,{{b}}\nGOTO/30,20,5\n"
+    return text.format(**_LEANING) + "RAPID\nGOTO/30,20,60\nEND-OF-PATH\n"
+
+
+@pytest.mark.third
+@pytest.mark.parametrize("what", _SKIPPED)
+@pytest.mark.parametrize(
+    "machine", [*MACHINES, "haas_umc750", "mikron_600u", "ucp800", "generic_head_table_bc", "generic_nutated_b45_c"]
+)
+def test_place_and_posture_are_stated_again_behind_what_may_be_skipped(
+    machine: str, what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cl, program = tmp_path / "skip.cls", tmp_path / "skip.nc"
+    cl.write_text(_skipping(what), encoding="utf-8")
+    assert main(["post", str(cl), "--machine", machine, "--output", str(program)]) == 0, capsys.readouterr().out
+    run = run_program(program, load_machine(machine), RunOptions(skip=True))
+    # Out of the cut the tool goes straight up along its axis, or home; into the next one as in the CL file.
+    plunge = int(np.flatnonzero(np.abs(run.tip - (30.0, 12.0, 5.0)).max(axis=1) < 0.01)[0])
+    rows = np.flatnonzero(~run.machine_frame & (run.kind == Kind.RAPID) & (run.programmed != 0))
+    rows = rows[(rows > 0) & (rows < plunge) & (run.tip[rows - 1, 2] < 10.0) & run.tcp[rows] & run.tcp[rows - 1]]
+    for row in rows.tolist():
+        step, axis = run.tip[row] - run.tip[row - 1], run.axis[row - 1]
+        assert np.linalg.norm(step - (step @ axis) * axis) < 0.01
+        assert np.abs(run.axis[row] - axis).max() < 1e-4
+    assert np.abs(run.axis[plunge] - run.axis[plunge - 1]).max() < 1e-4
+    # Without the way behind the skipped blocks the program fails.
+    lines = program.read_text(encoding="utf-8").splitlines()
+    last = max(k for k, line in enumerate(lines) if line.startswith("/"))
+    again = next(k for k in range(last + 1, len(lines)) if re.search(r"[XY]", lines[k]) and ";" not in lines[k])
+    if what != "the first point":
+        program.write_text("\n".join(lines[:again] + lines[again + 1 :]) + "\n", encoding="utf-8")
+        assert main(["verify", str(program), "--machine", machine, "--cl", str(cl)]) == 1
+
+
+def test_a_cycle_that_ends_among_skipped_blocks_ends_in_both_cases(tmp_path: Path) -> None:
+    text = (
+        "RAPID\nGOTO/0,0,30\nCYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,100\nGOTO/0,0,0\nOPSKIP/ON\nGOTO/10,0,0\n"
+        "CYCLE/OFF\nRAPID\nGOTO/10,0,30\nOPSKIP/OFF\nRAPID\nGOTO/20,9,30\nFEDRAT/MMPM,200\nGOTO/20,9,5\nGOTO/30,9,5\n"
+    )
+    cl = tmp_path / "part.cls"
+    cl.write_text(HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n", encoding="utf-8")
+    for machine in ("yl569", "dmu65"):
+        assert main(["post", str(cl), "--machine", machine, "--output", str(tmp_path / f"{machine}.nc")]) == 0

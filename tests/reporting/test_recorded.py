@@ -10,6 +10,7 @@ from playwright.sync_api import Browser
 
 from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file
+from tests.support.locations import ROOT
 from tests.support.page_columns import decode_column
 from tests.support.recordings import BLADE_FINISH, IMPELLER, blade, impeller, recorded, with_gap
 from trunnion import read_program, verify, write_report
@@ -64,6 +65,27 @@ def test_the_page_draws_axes_and_spindle_from_the_recording(folder: Path, record
     assert [(round(time, 3), name) for time, name in told["marks"]] == [
         (round(seconds[GAP[0] - 1], 3), "gap"), (round(seconds[GAP[0]], 3), "connected again"),
     ]  # fmt: skip
+
+
+def test_recorded_velocities_and_accelerations_are_drawn_below_their_axes(tmp_path: Path) -> None:
+    """The published figure: position, speed and acceleration of an axis over time."""
+    found = verify(
+        ROOT / "examples" / "simulation" / "plate_bottom.mpf",
+        machine=str(ROOT / "examples" / "published" / "machine.toml"),
+        zero=(0.0, 0.0, -200.0),
+        tool_length=110.0,
+        recorded=ROOT / "examples" / "published" / "plate_bottom.csv",
+    )
+    write_report(found, tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    told = json.loads(script(page, "recorded-report"))
+    titles = [plot["title"] for plot in told["plots"]]
+    assert titles == [f"{axis}{what}" for axis in "XYZCB" for what in ("", " velocity", " acceleration")] + ["Spindle"]
+    units = {plot["title"]: plot["unit"] for plot in told["plots"]}
+    assert (units["X velocity"], units["B acceleration"]) == ("mm/s", "°/s²")
+    columns = {plot["title"]: plot["lines"][0]["column"] for plot in told["plots"]}
+    assert np.abs(column(page, columns["Z velocity"])).max() == pytest.approx(5000.0 / 60.0, rel=1e-3)  # its rapid
+    assert np.abs(column(page, columns["Y acceleration"])).max() == pytest.approx(1000.0, rel=1e-3)
 
 
 def test_the_data_have_how_far_off_each_motion_was(folder: Path) -> None:

@@ -205,11 +205,15 @@ def test_a_client_reads_how_axes_move_and_which_switches_are_on() -> None:
             found["unit"] = (await unit.read_value()).DisplayName.Text
             for name in ("ToolInSpindle", "SpindleTurns"):
                 found[name] = await client.get_node(f"ns=3;s=Twin.{name}").read_value()
+            for name in ("DoorClosed", "ClampClosed", "Forces.Z"):
+                value = await client.get_node(f"ns=3;s=Twin.{name}").read_data_value(raise_on_bad_status=False)
+                found[name] = value.StatusCode.name
         return found
 
     with served(BLADE_FINISH, "--hold") as twin:
         seen = asyncio.run(read(twin.opcua))
     assert seen == {
         "Velocity": 0.0, "Acceleration": 0.0, "Jerk": 0.0, "AtPlus": "BadNotSupported", "unit": "mm/s²",
-        "ToolInSpindle": False, "SpindleTurns": False,
+        "ToolInSpindle": False, "SpindleTurns": False, "DoorClosed": "BadNotSupported",
+        "ClampClosed": "BadNotSupported", "Forces.Z": "BadNotSupported",
     }  # fmt: skip

@@ -138,7 +138,7 @@ LEVELS = (
     "OPSKIP/ON\nGOTO/5,0,6\nSTOP\nSPINDL/RPM,1000,CLW\nGOTO/5,7,6\nRAPID\nGOTO/5,7,25\nOPSKIP/OFF\n"
     "OPSKIP/ON\nRAPID\nGOTO/6,9,25\nGOTO/6,9,6\nGOTO/8,9,6\nOPSKIP/OFF\n"
     "OPSKIP/ON\nGOTO/9,9,6\nSTOP\nSPINDL/RPM,1000,CLW\nGOTO/9,8,6\nOPSKIP/OFF\n"
-    "RAPID\nGOTO/9,8,30\nRAPID\nGOTO/10,7,30\nGOTO/10,7,6\nGOTO/30,0,6\nRAPID\nGOTO/30,0,50\nEND-OF-PATH\n"
+    "GOTO/9,8,6.5\nRAPID\nGOTO/9,8,30\nRAPID\nGOTO/10,7,30\nGOTO/10,7,6\nGOTO/30,0,6\nRAPID\nGOTO/30,0,50\nEND-OF-PATH\n"
 )
 
 #: Controls with several levels of block skip: Klartext has one.
@@ -327,12 +327,13 @@ _AGAIN = "RAPID\nGOTO/20,40,2\nFEDRAT/MMPM,500\nGOTO/20,40,-5\n"
 @pytest.mark.parametrize(
     ("rest", "said"),
     [
-        (f"OPSKIP/ON\n{_UP}OPSKIP/OFF\n{_OVER}{_DOWN}{_ON}", "leaves the cut sideways at rapid"),
-        (f"OPSKIP/ON\n{_UP}{_OVER}{_DOWN}OPSKIP/OFF\n{_ON}", "leaves the cut sideways at a feed"),
+        (f"OPSKIP/ON\n{_UP}OPSKIP/OFF\n{_OVER}{_DOWN}{_ON}", ""),
+        (f"OPSKIP/ON\n{_UP}{_OVER}{_DOWN}OPSKIP/OFF\n{_ON}", "goes from line 13 aslant to line 22"),
+        (f"OPSKIP/ON\nGOTO/30,40,-5\nOPSKIP/OFF\nRAPID\nGOTO/30,40,40\n{_OVER}{_DOWN}{_ON}", "from line 13 aslant"),
         (f"{_UP}OPSKIP/ON\n{_OVER}{_DOWN}GOTO/-30,9,-5\n{_OVER}OPSKIP/OFF\nRAPID\nGOTO/-30,30,40\nEND-OF-PATH\n", ""),
         (f"OPSKIP/ON\n{_UP}{_AGAIN}OPSKIP/OFF\nGOTO/-30,40,-5\n{_ON}", ""),
     ],
-    ids=["a retract", "a link", "a pass", "there and back"],
+    ids=["a retract", "a link", "a cut", "a pass", "there and back"],
 )
 def test_a_retract_that_the_cl_file_lets_the_operator_skip_is_judged(
     machine: str, rest: str, said: str, tmp_path: Path

@@ -176,14 +176,6 @@ def test_colours_are_told(view: Page) -> None:
     view.locator("#colour").select_option("kind")
 
 
-@pytest.mark.parametrize(("wanted", "language"), [("de", "de"), ("zh", "zh"), ("fr", "en")])
-def test_the_page_says_its_language(wanted: str, language: str, tmp_path: Path, browser: Browser) -> None:
-    write_view(CL.with_name("3_blade_finish.expected.mpf"), machine="yl569", output=tmp_path / "view.html")
-    with open_page(browser, f"{open_file(tmp_path / 'view.html')}?lang={wanted}") as (page, errors):
-        assert page.locator("html").get_attribute("lang") == language
-        assert errors == []
-
-
 def test_the_curves_show_and_set_the_cursor(view: Page) -> None:
     box = view.locator("#curves").bounding_box()
     assert box is not None

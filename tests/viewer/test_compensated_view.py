@@ -49,7 +49,7 @@ def test_the_page_moves_the_centre_or_says_so(
 ) -> None:
     content = prepare_view(program, machine="yl569", zero=(0.0, 0.0, -200.0), tool_length=150.0, **given)  # type: ignore[arg-type]
     assert widths(content) == pytest.approx((x, y), abs=1e-3)
-    remarks = " ".join(content.scene["remarks"])
+    remarks = " ".join(content.said()["remarks"])
     assert (said in remarks) if said else not remarks
 
 

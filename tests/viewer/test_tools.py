@@ -87,8 +87,8 @@ def test_two_clicks_measure_two_points_of_the_path(view: Page, run: Run) -> None
     tips = forward(run.machine, run.joints[[rows[0], rows[-1]]])[0]
     away = tips[1] - tips[0]
     words = view.locator("#status").inner_text().replace("(", "").replace(")", "").split()
-    assert (words[0], words[2]) == ("Distance", "mm")
-    np.testing.assert_allclose([float(words[1]), *map(float, words[3:])], [np.linalg.norm(away), *away], atol=2e-4)
+    assert (words[0], words[2], words[-1]) == ("Distance", "mm", "mm")
+    np.testing.assert_allclose([float(words[1]), *map(float, words[3:-1])], [np.linalg.norm(away), *away], atol=2e-4)
     assert view.evaluate("page.space.picture()") != before
     view.locator("#measure").click()
     assert view.locator("#status").inner_text() == ""

@@ -6,7 +6,7 @@ from typing import Final
 from trunnion.builder.document import with_value
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem
-from trunnion.messages import Wording
+from trunnion.messages import LIBRARY, Wording, Words, phrase
 from trunnion.schemas import first_line
 
 
@@ -37,12 +37,13 @@ CHAINS: Final = {
 _SLIDES: Final = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
 
-def chain_text(chain: str, name: str, control: str) -> str:
+def chain_text(chain: str, name: str, control: str, words: Words = LIBRARY) -> str:
     """Return a whole definition with an order of axes; what only the machine can tell is left out or marked.
 
     chain    a name of ``CHAINS``
     name     of the machine
     control  a shipped control
+    words    of who measures: comments are in their language
 
     Raises ``InputError`` if there is no such chain.
     """
@@ -56,19 +57,20 @@ def chain_text(chain: str, name: str, control: str) -> str:
         raise InputError(Problem("the builder", 0, wording))
     part, _, tool = CHAINS[chain].order.partition("|")
     carried = [(axis, "part") for axis in part.split()] + [(axis, "tool") for axis in tool.split()]
-    tables = [_axis_table(axis, side, dict(CHAINS[chain].lines)) for axis, side in carried]
+    tables = [_axis_table(axis, side, dict(CHAINS[chain].lines), words) for axis, side in carried]
     head = f'schema = 1\n\n[control]\nextends = "{control}"\n\n[spindle]\ndirection = [0, 0, 1]\n'
     return with_value(first_line("machine") + head + "\n" + "\n".join(tables), ("name",), name)
 
 
-def _axis_table(axis: str, side: str, lines: dict[str, tuple[float, float, float]]) -> str:
+def _axis_table(axis: str, side: str, lines: dict[str, tuple[float, float, float]], words: Words) -> str:
     rotary = axis in lines
     x, y, z = lines[axis] if rotary else _SLIDES[axis]
     kind = "rotary" if rotary else "linear"
     text = f'[[axis]]\nname = "{axis}"\nkind = "{kind}"\ncarries = "{side}"\ndirection = [{x:g}, {y:g}, {z:g}]\n'
     if not rotary:
         return text  # travel that is not known is not checked, and programs warn of it
-    text += "point_mm = [0, 0, 0] # measure: a point on the line of rotation\n"
+    point, limits = (phrase(what).text("what", words) for what in ("measure_point", "enter_limits"))
+    text += f"point_mm = [0, 0, 0] # measure: {point}\n"
     if axis == "C":
         return text + 'endless = true\noutput = "0..360"\n'
-    return text + "limits_deg = [-110, 110] # enter: data sheet or software limits\n"
+    return text + f"limits_deg = [-110, 110] # enter: {limits}\n"

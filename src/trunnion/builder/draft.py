@@ -22,10 +22,11 @@ from trunnion.jobs.describe.definition_checks import machine_problems
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import jog_table
 from trunnion.machines.loading import machine_library, read_machine
-from trunnion.messages import Wording
+from trunnion.messages import LIBRARY, Wording, Words, phrase, said_in
 from trunnion.results import to_data
 from trunnion.simulation.collisions.bodies import machine_bodies
 from trunnion.viewer.content import body_scene, machine_scene
+from trunnion.viewer.shown import problem_text, said
 
 #: A longer definition is not edited here.
 MOST_LETTERS: Final = 200_000
@@ -80,18 +81,20 @@ def judge(text: str, path: Path) -> Draft:
     return Draft(text, path, with_control(table), machine, tuple(problems))
 
 
-def draft_data(draft: Draft) -> dict[str, Any]:
+def draft_data(draft: Draft, words: Words = LIBRARY) -> dict[str, Any]:
     """Return what the page shows of a definition: pages of fields, mistakes, the machine, and its jog table."""
     root = draft.root
     base = None if root is None else _base(draft)
     fields = [] if root is None else fields_of(root, _notes(root))
     return {
-        "pages": {page: [_field(each, root, base, draft) for each in fields if each.page == page] for page in PAGES},
-        "problems": [_problem(each, draft) for each in draft.problems],
-        "marks": [] if root is None else [_mark(root, *each) for each in marked_values(draft.text)],
+        "pages": {
+            page: [_field(each, root, base, draft, words) for each in fields if each.page == page] for page in PAGES
+        },
+        "problems": [_problem(each, draft, words) for each in draft.problems],
+        "marks": [] if root is None else [_mark(root, words, *each) for each in marked_values(draft.text)],
         "axes": _axes(root),
         "extends": _plain_text(root and _own(draft).get("extends")),
-        **_machine(draft.machine),
+        **_machine(draft.machine, words),
     }
 
 
@@ -102,11 +105,16 @@ def inherited_value(draft: Draft, path: tuple[Any, ...]) -> object:
     return None if found is None else _plain(found)
 
 
-def _field(each: Field, root: LocatedValue | None, base: LocatedValue | None, draft: Draft) -> dict[str, Any]:
+def _field(
+    each: Field, root: LocatedValue | None, base: LocatedValue | None, draft: Draft, words: Words
+) -> dict[str, Any]:
     found = None if root is None else value_at(root, each.path)
     below = None if base is None else value_at(base, each.path)
+    name, help_ = _texts(each, words)
     return {
         **to_data(each),
+        "name": name,
+        "help": help_,
         "value": None if found is None else _shown(found, each),
         "inherited": None if below is None else _shown(below, each),
         "own": found is not None and found.file == str(draft.path),
@@ -114,15 +122,37 @@ def _field(each: Field, root: LocatedValue | None, base: LocatedValue | None, dr
     }
 
 
-def _problem(problem: Problem, draft: Draft) -> dict[str, Any]:
+def _texts(field: Field, words: Words) -> tuple[str, str]:
+    """Return the name of a field and its help: by its own key, else by the table that it is in.
+
+    Settings, which definitions name themselves, bring what their definition says of them.
+    """
+
+    def of(part: str) -> str:
+        keys = (field.key, field.key.rpartition(".")[0])
+        return next((text for key in keys if (text := said_in(words.language, "builder", "fields", key, part))), "")
+
+    notes: list[str] = said([field.note, field.allowed], words)
+    return of("name") or str(field.path[-1]), of("help") or " — ".join(filter(None, notes))
+
+
+def _problem(problem: Problem, draft: Draft, words: Words) -> dict[str, Any]:
     own = problem.file == str(draft.path)
     path = () if draft.root is None else named_path(draft.root, problem.key)
     place = "" if own else f"{Path(problem.file).name}:{problem.line}"
-    return {**to_data(problem), "line": problem.line if own else 0, "place": place, "path": to_data(path)}
+    return {
+        "text": problem_text(problem, words),
+        "code": problem.code,
+        "line": problem.line if own else 0,
+        "place": place,
+        "path": to_data(path),
+    }
 
 
-def _mark(root: LocatedValue, key: str, line: int, text: str) -> dict[str, Any]:
-    return {"line": line, "path": to_data(named_path(root, key)), "text": text}
+def _mark(root: LocatedValue, words: Words, key: str, line: int, text: str) -> dict[str, Any]:
+    mark, _, what = text.partition(":")
+    asked = phrase("to_enter" if mark == "enter" else "to_measure", what=what.strip()).text("what", words)
+    return {"line": line, "path": to_data(named_path(root, key)), "text": asked}
 
 
 def _base(draft: Draft) -> LocatedValue | None:
@@ -180,7 +210,7 @@ def _axes(root: LocatedValue | None) -> list[str]:
     return [str(name.value) for item in items if (name := value_at(item, ("name",))) is not None]
 
 
-def _machine(machine: Machine | None) -> dict[str, Any]:
+def _machine(machine: Machine | None, words: Words) -> dict[str, Any]:
     if machine is None:
         return {"machine": None, "bodies": [], "jogs": [], "remark": ""}
     remark = ""
@@ -191,9 +221,9 @@ def _machine(machine: Machine | None) -> dict[str, Any]:
             shape = {"vertices": mesh.vertices.round(3).ravel().tolist(), "faces": mesh.faces.ravel().tolist()}
             bodies.append(body_scene(body, machine) | shape)
     except InputError as error:
-        remark = "\n".join(map(str, error.problems))
+        remark = "\n".join(problem.line_of_text(words) for problem in error.problems)
     if sum(len(body["faces"]) for body in bodies) > 3 * _MOST_TRIANGLES:
-        bodies, remark = [], f"bodies of more than {_MOST_TRIANGLES} triangles are not drawn here"
+        bodies, remark = [], phrase("bodies_not_drawn", most=_MOST_TRIANGLES).text("what", words)
     jogs = jog_table(machine)
     told = [
         {"axis": each.axis.name, "what": f"{each.tool}; {each.iron}" if each.tool else each.iron} for each in jogs.axes

@@ -1,8 +1,8 @@
 """The fields of the builder: what a definition can say, on pages in the order in which a shop knows things.
 
 In:     a merged definition, with the file and line of each value.
-Out:    pages of fields. What each is called, its help and its unit in words are texts of the page (``web/texts.js``);
-        settings and templates, which definitions name themselves, bring what their definition says of them.
+Out:    pages of fields. What each is called and its help are texts of the catalogue ``builder``; settings and
+        templates, which definitions name themselves, bring what their definition says of them.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,6 +15,7 @@ from trunnion.controls.places import TEMPLATE_ORDER
 from trunnion.controls.vocabulary import FEEDS_WITHOUT_TCP, HOLE_APPROACH_HEIGHTS, PROGRAM_CHOICES
 from trunnion.definitions import LocatedValue
 from trunnion.machines.machine import AngleOutput, AxisKind, Mount, PositiveDirection, PreferredSign
+from trunnion.messages import Wording
 from trunnion.results import NOT_DATA, Figure
 
 #: Pages, in their order.
@@ -26,7 +27,7 @@ PAGES: Final = (
 #: Ends of keys, and the unit that stands behind the field; the first that fits counts.
 _UNITS: Final = {
     "_mm_min": "mm/min", "_deg_min": "°/min", "_mm_s2": "mm/s²", "_deg_s2": "°/s²", "_mm": "mm", "_deg": "°",
-    "_mm_s3": "mm/s³", "_deg_s3": "°/s³", "_rpm": "rev/min", "_rpm_s": "rev/min/s", "_s": "s", "_kw": "kW",
+    "_mm_s3": "mm/s³", "_deg_s3": "°/s³", "_rpm": "min⁻¹", "_rpm_s": "min⁻¹/s", "_s": "s", "_kw": "kW",
     "_nm": "N·m", "rotary_tolerance": "°", "tolerance": "mm", "retract_distance": "mm", "delta_length": "mm",
     "delta_radius": "mm",
 }  # fmt: skip
@@ -64,8 +65,8 @@ class Field:
     choices   of a choice
     size      numbers of a vector
     optional  the definition may leave it out
-    note      what the definition says of it, in English; may be empty
-    allowed   what it may be, in English; may be empty
+    note      what the definition says of it; may be empty
+    allowed   what it may be; may be empty
     """
 
     page: Annotated[str, NOT_DATA]
@@ -74,8 +75,8 @@ class Field:
     choices: tuple[str, ...] = ()
     size: int = 0
     optional: bool = True
-    note: str = ""
-    allowed: str = ""
+    note: Annotated[str | Wording, NOT_DATA] = ""
+    allowed: Annotated[str | Wording, NOT_DATA] = ""
 
     @property
     @Figure()
@@ -100,8 +101,8 @@ class Field:
 class SettingNotes:
     """What is said of the settings of a control: meanings and allowed values by their names."""
 
-    meanings: Mapping[str, str] = field(default_factory=dict)
-    allowed: Mapping[str, str] = field(default_factory=dict)
+    meanings: Mapping[str, str | Wording] = field(default_factory=dict)
+    allowed: Mapping[str, str | Wording] = field(default_factory=dict)
 
 
 def fields_of(root: LocatedValue, notes: SettingNotes = SettingNotes()) -> list[Field]:

@@ -4,50 +4,53 @@ from collections.abc import Iterator
 
 from trunnion.definitions.toml_text import written
 from trunnion.machines import Axis, Machine, Mount
+from trunnion.messages import LIBRARY, Words, phrase
 from trunnion.schemas import first_line
 
-_HEAD = """\
-# Like {base} ({name}), which is another machine.
-# A number marked "measure:" is still that one's: measure yours, or read it from the control, write it, and take the
-# mark away. trunnion check reports which marks are left.
-"""
 
-
-def definition_like(machine: Machine, name: str) -> str:
+def definition_like(machine: Machine, name: str, words: Words = LIBRARY) -> str:
     """Return the text of a definition that extends a shipped machine.
 
     machine  the shipped one
     name     of the new one
+    words    of who measures: comments are in their language
     """
-    head = first_line("machine") + _HEAD.format(base=machine.key, name=machine.name)
+    remarks = phrase("head_of_definition", base=machine.key, name=machine.name).text("what", words)
+    head = first_line("machine") + "".join(f"# {line}\n" for line in remarks.splitlines())
     head += f"extends = {written(machine.key)}\nname = {written(name)}\n"
-    parts = [*_spindle(machine), *("\n".join(_axis(axis)) for axis in machine.axes)]
+    parts = [*_spindle(machine, words), *("\n".join(_axis(axis, words)) for axis in machine.axes)]
     return head + "".join(f"\n{part}\n" for part in parts)
 
 
-def _spindle(machine: Machine) -> Iterator[str]:
+def _spindle(machine: Machine, words: Words) -> Iterator[str]:
     lines = []
     has_head = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in machine.axes)
     if has_head or machine.spindle_point_is_stated:
-        point, pivot = written(list(machine.spindle_point)), "with the pivot of the head, " if has_head else ""
-        lines.append(f"gauge_point_mm = {point} # measure: {pivot}where tool lengths begin, all axes at zero")
+        point = written(list(machine.spindle_point))
+        what = "measure_pivot" if has_head else "measure_gauge_point"
+        lines.append(f"gauge_point_mm = {point} {_to_measure(what, words)}")
     if machine.spindle_max_rpm is not None:
-        lines.append(f"max_rpm = {written(machine.spindle_max_rpm)} # measure: the plate of the spindle")
+        lines.append(f"max_rpm = {written(machine.spindle_max_rpm)} {_to_measure('measure_plate', words)}")
     if lines:
         yield "\n".join(["[spindle]", *lines])
 
 
-def _axis(axis: Axis) -> Iterator[str]:
+def _axis(axis: Axis, words: Words) -> Iterator[str]:
     """Yield the table of an axis: what differs from one machine of a type to the next."""
     yield "[[axis]]"
     yield f"name = {written(axis.name)}"
     unit = "deg" if axis.is_rotary else "mm"
     if axis.is_rotary:
-        where = "of the pivot" if axis.mount is Mount.TOOL else "of the table's line of rotation"
-        yield f"point_mm = {written(list(axis.point))} # measure: a point {where}, by probe or indicator"
+        where = "measure_point_of_pivot" if axis.mount is Mount.TOOL else "measure_point_of_table"
+        yield f"point_mm = {written(list(axis.point))} {_to_measure(where, words)}"
     if axis.has_limits:
-        yield f"limits_{unit} = {written([axis.low, axis.high])} # measure: software limits of the control"
+        yield f"limits_{unit} = {written([axis.low, axis.high])} {_to_measure('measure_limits', words)}"
     elif not axis.endless:
-        yield f"# limits_{unit} = [low, high] # measure: software limits of the control; not checked without them"
+        yield f"# limits_{unit} = [low, high] {_to_measure('measure_limits_or_none', words)}"
     if axis.home_is_stated:
-        yield f"home_{unit} = {written(axis.home)} # measure: where it waits for a tool change"
+        yield f"home_{unit} = {written(axis.home)} {_to_measure('measure_home', words)}"
+
+
+def _to_measure(what: str, words: Words) -> str:
+    """Return the comment behind a value that stands for a measured one; ``what`` is the phrase that says which."""
+    return f"# measure: {phrase(what).text('what', words)}"

@@ -16,9 +16,10 @@ from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.post.result import ProofFailedError
 from trunnion.machines import Machine
+from trunnion.messages import LIBRARY, Words
 from trunnion.results import to_data
-from trunnion.verification import Check, Standing
-from trunnion.viewer.shown import checks_data
+from trunnion.verification import Check
+from trunnion.viewer.shown import checks_data, problem_text
 
 #: So many lines are shown; the proof is always that of the whole program.
 _MOST_LINES: Final = 20_000
@@ -50,49 +51,68 @@ def shipped_sample() -> bytes:
 class _Sample:
     """A sample program, what its proof says, and what differs from an earlier one.
 
+    standing what the proof says of it
     lines    as many of ``all`` as are shown
     changed  numbers of those that are new, from 0
     removed  how many are gone
     """
 
     checks: Sequence[dict[str, Any]]
-    problems: Sequence[Problem]
+    problems: Sequence[dict[str, str | int]]
     passed: bool = False
-    standing: Standing | None = None
+    standing: str = ""
     lines: Sequence[str] = ()
     all: int = 0
     changed: Sequence[int] = ()
     removed: int = 0
 
 
-def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[str]) -> dict[str, Any]:
+def sample_data(
+    machine: Machine, cl: bytes | None, name: str, before: Sequence[str], words: Words = LIBRARY
+) -> dict[str, Any]:
     """Post and prove a CL file, and mark what differs from an earlier program; return it as JSON has it.
 
     machine  the machine
     cl       the CL file; None: the shipped one
     name     of the CL file, for messages
     before   lines of the earlier program; none: nothing is marked
+    words    of who looks
     """
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
     except ProofFailedError as error:
-        return without_program(error.result.problems, error.result.checks)
+        return without_program(error.result.problems, error.result.checks, words)
     except TrunnionError as error:
-        return without_program(error.problems, ())
+        return without_program(error.problems, (), words)
     lines = (result.text or "").splitlines()
     changed, removed = _changes(before, lines)
-    shown, checks = lines[:_MOST_LINES], checks_data(result.checks)
+    shown, checks = lines[:_MOST_LINES], checks_data(result.checks, words)
+    standing = result.standing.line(words) if result.standing else ""
     found: dict[str, Any] = to_data(
-        _Sample(checks, result.problems, result.passed, result.standing, shown, len(lines), changed, removed)
+        _Sample(checks, _told(result.problems, words), result.passed, standing, shown, len(lines), changed, removed)
     )
     return found
 
 
-def without_program(problems: Sequence[Problem] = (), checks: Sequence[Check] = ()) -> dict[str, Any]:
+def without_program(
+    problems: Sequence[Problem] = (), checks: Sequence[Check] = (), words: Words = LIBRARY
+) -> dict[str, Any]:
     """Return the answer where there is no program: the CL file cannot be posted, or it fails its proof."""
     told = [each for each in problems if each.code != _NOTHING_WRITTEN]
-    found: dict[str, Any] = to_data(_Sample(checks_data(checks), told))
+    found: dict[str, Any] = to_data(_Sample(checks_data(checks, words), _told(told, words)))
     return found
+
+
+def _told(problems: Sequence[Problem], words: Words) -> list[dict[str, str | int]]:
+    """Return problems as the page lists them: how severe they are, their lines in the CL file, and what they say."""
+    return [
+        {
+            "severity": str(each.severity),
+            "line": each.line,
+            "text": " ".join(filter(None, (each.argument, problem_text(each, words)))),
+        }
+        for each in problems
+    ]
 
 
 def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]:

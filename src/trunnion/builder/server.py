@@ -12,6 +12,8 @@ from typing import Any, Final
 from trunnion.builder.session import MOST_CL_BYTES, BuilderSession, RequestError
 from trunnion.errors import InputError
 from trunnion.extras import import_extra
+from trunnion.messages import Words
+from trunnion.viewer.language import OF_BROWSERS, Speech, page_texts
 from trunnion.viewer.serving import HEADERS, Access, application_of
 from trunnion.viewer.shell import PageShell, bundle
 
@@ -21,15 +23,19 @@ _MOST_BYTES: Final = MOST_CL_BYTES * 4 // 3 + 4_000_000
 _WEB: Final = files("trunnion.builder") / "web"
 _VIEWER: Final = files("trunnion.viewer") / "web"
 
+#: Modules of the viewer's page that this one has, too.
+_SHARED: Final = ("texts", "kinematics")
+
 #: In an order in which each needs only those before it.
-_MODULES: Final = ("texts", "stage", "form", "editor", "edits", "jog", "sample", "main")
+_MODULES: Final = ("stage", "form", "editor", "edits", "jog", "sample", "main")
 
 
-def builder_application(session: BuilderSession, access: Access) -> Any:
+def builder_application(session: BuilderSession, access: Access, speech: Speech = OF_BROWSERS) -> Any:
     """Make the application.
 
     session  what its page may ask for
     access   who may see it
+    speech   the language of its page
 
     Raises ``InputError`` if Starlette is not installed, or the definition cannot be read.
     """
@@ -41,10 +47,13 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
         return responses.PlainTextResponse(text, status, HEADERS)
 
     def show_page(request: Any) -> Any:
+        words = speech.to(request)
         try:
-            return access.page(_render_builder(session.start(request.query_params.get("file", ""))))
-        except (InputError, RequestError) as error:
-            return plain(str(error) or "this is no file of a definition", 404)
+            return access.page(_render_builder(session.start(request.query_params.get("file", ""), words), words))
+        except RequestError:
+            return plain("this is no file of a definition", 404)
+        except InputError as error:
+            return plain("\n".join(problem.line_of_text(words) for problem in error.problems), 404)
 
     async def answer(request: Any) -> Any:
         # A form of another page cannot send JSON without being asked first.
@@ -59,7 +68,8 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
             given = json.loads(bytes(body))
             if not isinstance(given, dict):
                 raise RequestError
-            found = await run_in_threadpool(session.answer, request.path_params["what"], given)
+            words = speech.known(given.get("language"))
+            found = await run_in_threadpool(session.answer, request.path_params["what"], given, words)
             return None if found is None else responses.JSONResponse(found, headers=HEADERS)
         except (RequestError, ValueError, RecursionError):
             return plain("the page makes no such request", 400)
@@ -72,10 +82,11 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
     )
 
 
-def _render_builder(start: Mapping[str, Any]) -> bytes:
+def _render_builder(start: Mapping[str, Any], words: Words) -> bytes:
     """Return the page; ``start`` is what ``BuilderSession.start`` gives."""
-    kinematics = (_VIEWER / "kinematics.js").read_text(encoding="utf-8")
+    shared = ((_VIEWER / f"{name}.js").read_text(encoding="utf-8") for name in _SHARED)
     modules = ((_WEB / f"{name}.js").read_text(encoding="utf-8") for name in _MODULES)
     style, body = ((_WEB / name).read_text(encoding="utf-8") for name in ("style.css", "body.html"))
-    shell = PageShell(str(start["title"]), "\n" + style, body, bundle((kinematics, *modules)))
+    script, texts = bundle((*shared, *modules)), page_texts("builder", words.language)
+    shell = PageShell(str(start["title"]), "\n" + style, body, script, words.language, texts)
     return shell.head(start, embedded=False) + shell.foot()

@@ -33,6 +33,7 @@ from trunnion.definitions.value_marks import without_mark
 from trunnion.errors import InputError
 from trunnion.files import atomic_file
 from trunnion.machines import load_machine, shipped_machines
+from trunnion.messages import LIBRARY, Words
 from trunnion.schemas import first_line, put_beside
 
 #: A CL file for the sample program has so many bytes at most.
@@ -54,10 +55,11 @@ class BuilderSession:
     folder: Path
     name: str = ""
 
-    def start(self, file: str = "") -> dict[str, Any]:
+    def start(self, file: str = "", words: Words = LIBRARY) -> dict[str, Any]:
         """Return what the page begins with: the text of the file, and what a new definition can start from.
 
         file  name of another file of the folder, which a page has saved; empty: the one that was opened
+        words  of who looks
 
         Raises ``InputError`` if the file cannot be read.
 
@@ -70,6 +72,7 @@ class BuilderSession:
             text = read_raw(self._place(name))
         return {
             "title": name or "machine.toml",
+            "language": words.language,
             "file": name,
             "text": page_text(text),
             "seen": _digest(text) if name else "",
@@ -78,22 +81,22 @@ class BuilderSession:
             "chains": [{"key": key, "order": chain.order} for key, chain in CHAINS.items()],
         }
 
-    def answer(self, what: str, given: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Answer a request; None: there is no such request.
+    def answer(self, what: str, given: Mapping[str, Any], words: Words = LIBRARY) -> dict[str, Any] | None:
+        """Answer a request in the words of who makes it; None: there is no such request.
 
         Raises ``RequestError`` if it is not made as the page makes it.
         """
         match what:
             case "begin":
-                return self._begin(given)
+                return self._begin(given, words)
             case "judge":
-                return self._judged(_text(given, "text"), given)
+                return self._judged(_text(given, "text"), given, words)
             case "change":
-                return self._change(given)
+                return self._change(given, words)
             case "sample":
-                return self._sample(given)
+                return self._sample(given, words)
             case "save":
-                return self._save(given)
+                return self._save(given, words)
         return None
 
     def _place(self, name: str) -> Path:
@@ -106,30 +109,30 @@ class BuilderSession:
         """Return a text, as the file of the page would have it: each page has its own."""
         return judge(text, self._place(_text(given, "file") or self.name or "machine.toml"))
 
-    def _judged(self, text: str, given: Mapping[str, Any]) -> dict[str, Any]:
-        return {"text": text, **draft_data(self._draft(text, given))}
+    def _judged(self, text: str, given: Mapping[str, Any], words: Words) -> dict[str, Any]:
+        return {"text": text, **draft_data(self._draft(text, given), words)}
 
-    def _begin(self, given: Mapping[str, Any]) -> dict[str, Any]:
+    def _begin(self, given: Mapping[str, Any], words: Words) -> dict[str, Any]:
         """Return a new definition: one that extends a shipped machine, or one with an order of axes."""
         name = _text(given, "name").strip() or "Our machine"
         base, chain, control = (_text(given, key) for key in ("base", "chain", "control"))
         if base:
             if base not in shipped_machines():
                 raise RequestError
-            text = definition_like(load_machine(base), name)
+            text = definition_like(load_machine(base), name, words)
         else:
             if control not in shipped_controls() or chain not in CHAINS:
                 raise RequestError
-            text = chain_text(chain, name, control)
-        return self._judged(text, given)
+            text = chain_text(chain, name, control, words)
+        return self._judged(text, given, words)
 
-    def _change(self, given: Mapping[str, Any]) -> dict[str, Any]:
+    def _change(self, given: Mapping[str, Any], words: Words) -> dict[str, Any]:
         """Return the definition with a value set, taken out, or an axis moved; ``unclear`` where only the user can do
         that.
         """
         text, draft = _text(given, "text"), self._draft(_text(given, "text"), given)
         if draft.root is None:
-            return {"text": text, **draft_data(draft), "unclear": "broken"}
+            return {"text": text, **draft_data(draft, words), "unclear": "broken"}
         try:
             if "move" in given:
                 by = given.get("by")
@@ -141,19 +144,20 @@ class BuilderSession:
         except RequestError:
             raise
         except (UnclearPlaceError, KeyError, TypeError, ValueError, RecursionError):
-            return {"text": text, **draft_data(draft), "unclear": "unclear"}
-        return self._judged(text, given)
+            return {"text": text, **draft_data(draft, words), "unclear": "unclear"}
+        return self._judged(text, given, words)
 
-    def _sample(self, given: Mapping[str, Any]) -> dict[str, Any]:
+    def _sample(self, given: Mapping[str, Any], words: Words) -> dict[str, Any]:
         draft = self._draft(_text(given, "text"), given)
         before = given.get("before", [])
         if not isinstance(before, list) or not all(isinstance(line, str) for line in before):
             raise RequestError
         if draft.machine is None or draft.problems:
             return without_program()
-        return sample_data(draft.machine, _cl(given.get("cl")), _text(given, "clName")[:200], before)
+        name = _text(given, "clName")[:200]
+        return sample_data(draft.machine, _cl(given.get("cl")), name, before, words)
 
-    def _save(self, given: Mapping[str, Any]) -> dict[str, Any]:
+    def _save(self, given: Mapping[str, Any], words: Words) -> dict[str, Any]:
         """Write the definition, unless another one would be lost that the user has not seen."""
         text, name, seen = _text(given, "text"), _text(given, "name"), _text(given, "seen")
         if name and name != self.name and "." not in name:
@@ -175,7 +179,11 @@ class BuilderSession:
             if text.startswith(first_line("machine")):
                 put_beside(file, "machine")
         except InputError as error:
-            return {"saved": "", "why": "cannot", "problems": [str(problem) for problem in error.problems]}
+            return {
+                "saved": "",
+                "why": "cannot",
+                "problems": [problem.line_of_text(words) for problem in error.problems],
+            }
         return {"saved": str(file), "name": name, "seen": _digest(written), "mistakes": len(judge(text, file).problems)}
 
 

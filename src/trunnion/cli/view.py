@@ -7,6 +7,7 @@ from typing import Any, Final
 from trunnion.cli.printing import announce, print_result
 from trunnion.cli.record import machine_password
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import page_speech, spoken
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.recording import machine_feed
@@ -33,10 +34,11 @@ def run(given: Given) -> int:
         raise InputError(argument_problem("live", Wording("ARG130", "live_is_served")))
     shown = given.arguments("output", *_LIVE)
     if given.output is not None:
-        standing = write_view(**shown, output=given.output, observer=Terminal())
+        standing = write_view(**shown, output=given.output, observer=Terminal(), words=spoken())
         print_result(f"{given.output}: written", standing)
         return 0
 
+    speech = page_speech()
     with listen(given.host, given.port) as listening:
         live = None
         if given.live is None:
@@ -45,11 +47,13 @@ def run(given: Given) -> int:
             content, live = _live(given, shown)
         print(
             counted(len(content.scene["findings"]), "finding"),
-            *filter(None, [content.scene["standing"]]),
+            *filter(None, [content.said(spoken())["standing"]]),
             sep="\n",
             file=sys.stderr,
         )
-        serve(lambda access: view_application(content, access, live), listening, announce(browser=given.browser))
+        serve(
+            lambda access: view_application(content, access, live, speech), listening, announce(browser=given.browser)
+        )
     return 0
 
 

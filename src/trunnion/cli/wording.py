@@ -4,14 +4,17 @@ import re
 from collections.abc import Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
-from functools import cache
-from typing import Final
+from functools import cache, partial
+from typing import TYPE_CHECKING, Final
 
-from trunnion.cli.command_line.language import spoken_language
+from trunnion.cli.command_line.language import spoken_language, stated_language
 from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import Problem, TrunnionError, first_of_kinds
 from trunnion.jobs.registry import JOBS
 from trunnion.messages import ENGLISH, Wording, Words, phrase
+
+if TYPE_CHECKING:
+    from trunnion.viewer.language import Speech
 
 #: So many errors in lines are printed one by one; of more, so many kinds.
 _MOST_ERRORS: Final = 10
@@ -69,6 +72,13 @@ def speak_of(command: str) -> None:
 def spoken() -> Words:
     """Return the words of the command that runs, in its language."""
     return CommandWords(_COMMAND.get(), spoken_language())
+
+
+def page_speech() -> "Speech":
+    """Return the language of the page that the command serves: the one that is stated, else that of each browser."""
+    from trunnion.viewer.language import Speech  # most commands serve no page
+
+    return Speech(partial(CommandWords, _COMMAND.get()), stated_language())
 
 
 def said(variant: str, /, **parameters: object) -> str:

@@ -5,7 +5,7 @@ import logging
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -43,13 +43,60 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
     for one in missing:
         one.announced = True
     folder = cache_folder()
-    alone = (os.cpu_count() or 1) < 2 or not sys.executable or getattr(sys, "frozen", False)
-    if folder is not None and not alone and len(missing) >= _WORTH_A_PROCESS:
+    if folder is not None and _can_start() and len(missing) >= _WORTH_A_PROCESS:
         _start(folder, [one.name for one in reversed(missing)])
 
 
-def _start(folder: Path, names: Sequence[str]) -> None:
-    """Start the second process; without it, everything is compiled here."""
+def all_kernels() -> list[Kernel]:
+    """Return the kernels of all rooms, but for those of rooms whose extras are not installed."""
+    package = Path(__file__).parents[1]
+    found = []
+    for file in sorted(package.rglob("*.py")):
+        if "\n@kernel(" not in file.read_text(encoding="utf-8"):
+            continue
+        name = ".".join((package.name, *file.relative_to(package).with_suffix("").parts))
+        try:
+            module = import_module(name)
+        except ImportError as error:
+            _log.debug("%s: %s", name, error)
+            continue
+        found += [
+            each for each in vars(module).values() if isinstance(each, Kernel) and each.py_func.__module__ == name
+        ]
+    return found
+
+
+def compile_all(kernels: Sequence[Kernel], advance: Callable[[int], None]) -> int:
+    """Compile the kernels that are not on disk, a process for each processor; return how many there were.
+
+    advance  is told how many more are on disk
+    """
+    missing = [each for each in kernels if not each.is_kept]
+    folder, done = cache_folder(), 0
+    for each in missing:
+        each.announced = True
+    others = []
+    if folder is not None and _can_start():
+        for k in range(min((os.cpu_count() or 1), len(missing)) - 1):
+            first = -(k + 1) * len(missing) // (os.cpu_count() or 1)
+            others.append(_start(folder, [each.name for each in (*missing[first:], *missing[:first])]))
+    for wait in (False, True):  # first what no other process has begun
+        for each in missing:
+            each.prepare(wait=wait)
+            kept = sum(one.is_kept for one in missing)
+            advance(kept - done)
+            done = kept
+    for process in filter(None, others):
+        process.wait()
+    return len(missing)
+
+
+def _can_start() -> bool:
+    return (os.cpu_count() or 1) > 1 and bool(sys.executable) and not getattr(sys, "frozen", False)
+
+
+def _start(folder: Path, names: Sequence[str]) -> "subprocess.Popen[bytes] | None":
+    """Start another process that compiles; without it, everything is compiled here."""
     package = str(Path(__file__).parents[2])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
     call = f"from {__name__} import compile_named; compile_named()"
@@ -63,9 +110,10 @@ def _start(folder: Path, names: Sequence[str]) -> None:
             env={**os.environ, "PYTHONPATH": path},
         )
     except OSError as error:
-        _log.debug("no second process: %s", error)
-    else:
-        _compiling.append(started)
+        _log.debug("no other process: %s", error)
+        return None
+    _compiling.append(started)
+    return started
 
 
 def compile_named() -> None:

@@ -80,6 +80,19 @@ class Words:
 LIBRARY: Final = Words()
 
 
+class _TranslatedWords(Words):
+    """The words of the library in another language."""
+
+    def __init__(self, language: str) -> None:
+        self.language = language
+
+
+@cache
+def library_words(language: str) -> Words:
+    """Return the words of the library in a language."""
+    return LIBRARY if language == ENGLISH else _TranslatedWords(language)
+
+
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class Wording:
     """What is said, as data: a text of the catalogues and what is filled in.

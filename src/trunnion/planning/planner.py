@@ -17,6 +17,7 @@ from trunnion.planning.options import ControlCapabilities, PlanOptions
 from trunnion.planning.plan_problems import spindle_speed_problems, travel_problems, unknown_speed_problems
 from trunnion.planning.preparation import prepare_operations
 from trunnion.planning.request import PlanRequest
+from trunnion.planning.skipped_turns import turns_past_skipped
 
 #: An MSYS that is tilted by less stands upright, degrees.
 _LEAST_TILT: Final = 0.01
@@ -114,4 +115,8 @@ def _linearize(planned: Sequence[PlannedOperation]) -> list[tuple[PlannedOperati
     for machine in dict.fromkeys(one.prepared.request.machine for one, _ in without_tcp):
         operations = [motion.operation for one, motion in without_tcp if one.prepared.request.machine is machine]
         check_slides_are_known(planned[0].prepared.file, operations, machine)
-    return [(one, linearize(one.prepared.file, motion, one.prepared.request)) for one, motion in motions]
+    found = [(one, motion, linearize(one.prepared.file, motion, one.prepared.request)) for one, motion in motions]
+    return [
+        (one, replace(new, problems=(*new.problems, *turns_past_skipped(one.prepared, motion, new.motion))))
+        for one, motion, new in found
+    ]

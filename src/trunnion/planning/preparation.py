@@ -11,14 +11,14 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags
+from trunnion.arrays import Flags, Ints
 from trunnion.errors import Problem, RefusedError, warning
 from trunnion.messages import Wording
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
 from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation, Phase
 from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, SpindleStates
-from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
+from trunnion.planning.holes.operations import axis_change_rows, hole_rows, normalize_cycles, row_ranges, split_by_axis
 from trunnion.planning.linearization.arc_chords import (
     MOST_LINES,
     arc_sweeps,
@@ -37,6 +37,7 @@ from trunnion.planning.machining_mode import (
     with_exact_upright_axis,
 )
 from trunnion.planning.request import OperationPart, PlanRequest, PreparedOperation
+from trunnion.planning.skipped_ways import SkipRows, with_safe_ways
 
 #: A move at 45 degrees is no plunge, whatever the noise of its coordinates.
 _ACROSS = 1e-6
@@ -67,8 +68,9 @@ def prepare_operations(
     for (file, original), request in zip(sources, requests, strict=True):
         try:
             operation, conflicts = _in_mode(_in_frame(request, file, original, frame))
+            operation, unsafe = _with_safe_ways(operation)
             turned_over = list(_axes_turned_over(file, operation.operation))
-            errors += (*conflicts, *turned_over)
+            errors += (*conflicts, *unsafe, *turned_over)
             if not turned_over:
                 prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
         except HoleCycleError as error:
@@ -98,6 +100,28 @@ def _in_frame(request: PlanRequest, file: str, original: Operation, frame: Frame
     operation = _with_feed_limit(into_frame(normalize_cycles(original), frame), request.options.feed_limit)
     own_frame = relative_frame(original.frame, frame)
     return PreparedOperation(request, file, original, operation, own_frame, request.options.simultaneous_mode)
+
+
+def _with_safe_ways(prepared: PreparedOperation) -> tuple[PreparedOperation, list[Problem]]:
+    """Return the operation with safe ways behind blocks that may be skipped, and where there are none."""
+    from_home = np.zeros(len(prepared.operation.moves), np.bool_)
+    from_home[0] = True
+    if prepared.mode.is_simultaneous and _ranges_in_planes(prepared) is None and not _drills_along_tool(prepared):
+        from_home[_turns_at_rapid(prepared.operation)] = any(
+            isinstance(event, CycleOn) for event in prepared.operation.events
+        )
+    rows = SkipRows(hole_rows(prepared.original), from_home)
+    operation, problems = with_safe_ways(prepared.file, prepared.operation, rows)
+    return prepared.with_operation(operation), problems
+
+
+def _turns_at_rapid(operation: Operation) -> Ints:
+    """Return the rapids into which the tool axis turns.
+
+    A way behind blocks that may be skipped, with the line of the row before, is none: it stays above the part.
+    """
+    turns, moves = axis_change_rows(operation), operation.moves
+    return np.asarray(turns[(moves.kind[turns] == Kind.RAPID) & (moves.line[turns] != moves.line[turns - 1])])
 
 
 def _with_feed_limit(operation: Operation, limit: float | None) -> Operation:
@@ -189,8 +213,7 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
     objection = ""
     if mode.is_simultaneous and not _drills_along_tool(prepared):
         objection = f"no cycle along a tilted tool axis {'with' if mode is MachiningMode.TCP else 'without'} TCP"
-        turns = axis_change_rows(operation)
-        ranges = row_ranges(turns[operation.moves.kind[turns] == Kind.RAPID], len(operation.moves))
+        ranges = row_ranges(_turns_at_rapid(operation), len(operation.moves))
     from_home = np.zeros(len(operation.moves), np.bool_)
     from_home[[first for first, _ in ranges or ()]] = True
     conditions = HoleConditions(spindle, from_home, objection, capabilities.cycle_objection, options.holes_as_motion)

@@ -27,6 +27,9 @@ from trunnion.verification.results import Verification
 #: What is marked where the connection was broken, and where it was there again.
 _GAP, _AFTER_GAP = "gap", "connected again"
 
+#: Recorded columns beside those of the axes, NAME_velocity, and their units of time.
+RATES: Final = {"velocity": "s", "acceleration": "s²"}
+
 _NOTE: Final = """Between two positions the machine was not looked at. Dotted upright lines are where operations
 begin, and where the connection was broken."""
 
@@ -83,7 +86,9 @@ def _series(verification: Verification, found: RecordedComparison, elapsed: Floa
     """Rows that show all axes, as points over time."""
     recording, run = found.recording, verification.run
     curves = dict(_curves(verification, found))
-    shown = np.flatnonzero(np.isfinite(np.column_stack([column for _, column in curves.values()])).all(axis=1))
+    rates = dict(_rates(verification, found))
+    needed = [*(column for _, column in curves.values()), *(column for _, column in rates.values())]
+    shown = np.flatnonzero(np.isfinite(np.column_stack(needed)).all(axis=1))
     marks = []
     for gap in np.flatnonzero(recording.marked(Mark.GAP)).tolist():
         after = int(np.searchsorted(shown, gap))
@@ -98,13 +103,14 @@ def _series(verification: Verification, found: RecordedComparison, elapsed: Floa
     if np.any(run.file):
         lines["file"] = _as_int32(np.append(run.file, 0)[rows])
     values = {f"axis{k}": column[shown].astype(np.float32) for k, (_, column) in enumerate(curves.values())}
+    values |= {name: column[shown].astype(np.float32) for name, (_, column) in rates.items()}
     if SPINDLE in recording.values:
         values[SPINDLE] = np.nan_to_num(recording.values[SPINDLE][shown]).astype(np.float32)
     return PlotSeries(
         seconds=np.diff(elapsed[shown], prepend=elapsed[shown][:1]).astype(np.float32),
         values=values,
         lines=lines,
-        plots=tuple(_plots(verification, curves, SPINDLE in recording.values)),
+        plots=tuple(_plots(verification, curves, rates, SPINDLE in recording.values)),
         files=tuple(clean(Path(file).name) for file in run.files),
         tool_changes=tuple(marks),
         timed=True,
@@ -160,15 +166,33 @@ def _curves(verification: Verification, found: RecordedComparison) -> Iterator[t
         yield machine.names[k], (k, columns[machine.names[k].casefold()])
 
 
+def _rates(verification: Verification, found: RecordedComparison) -> Iterator[tuple[str, tuple[Plot, Floats]]]:
+    """Yield recorded velocities and accelerations of the axes by their columns, each with its plot."""
+    columns = {name.casefold(): column for name, column in found.recording.values.items()}
+    machine = verification.machine
+    for k in (*machine.linear, *machine.rotary):
+        name, unit = clean(machine.names[k]), "°" if machine.axes[k].is_rotary else "mm"
+        for what, per in RATES.items():
+            column = columns.get(f"{machine.names[k]}_{what}".casefold())
+            if column is not None and np.isfinite(column).any():
+                key = f"{what}{k}"
+                yield key, (Plot(f"{name} {what}", f"{unit}/{per}", (Curve(key, f"{name} {what}"),)), column)
+
+
 def _plots(
-    verification: Verification, curves: dict[str, tuple[int | None, Floats]], has_spindle: bool
+    verification: Verification,
+    curves: dict[str, tuple[int | None, Floats]],
+    rates: dict[str, tuple[Plot, Floats]],
+    has_spindle: bool,
 ) -> Iterator[Plot]:
+    """Yield the plots: below each axis its velocity and its acceleration, if they were recorded."""
     machine = verification.machine
     for k, (name, (axis, values)) in enumerate(curves.items()):
         if axis is None:
             yield Plot(name, "mm", (Curve(f"axis{k}", name),))
         else:
             yield _axis_plot(f"axis{k}", machine.axes[axis], values, machine.is_placed(axis))
+            yield from (rates[f"{what}{axis}"][0] for what in RATES if f"{what}{axis}" in rates)
     if has_spindle:
         limits = finite_values(machine.spindle_max_rpm)
         yield Plot("Spindle", "rev/min", (Curve(SPINDLE, "spindle", limits, "fastest"),))

@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.toolpath import Kind
 from trunnion.timing import TimedRun
+from trunnion.twin.switches import SWITCHES, switched
 
 #: G functions of the motion; an arc that turns about the positive side of its axis is G3.
 _LINEAR, _RAPID, _CLOCKWISE, _COUNTER_CLOCKWISE = 1, 0, 2, 3
@@ -46,6 +47,7 @@ class BlockState:
     tool         as the program calls it; empty before the first
     feed         programmed speed along the path, mm/min (of the tip where F counts degrees); 0 before the first
     tcp          tool centre point control is on
+    door, clamp  whether they are closed; None before the first word that operates them
     """
 
     blocks: tuple[str, str, str]
@@ -57,6 +59,8 @@ class BlockState:
     tool: str
     feed: float
     tcp: bool
+    door: bool | None = None
+    clamp: bool | None = None
 
 
 class Blocks:
@@ -75,6 +79,7 @@ class Blocks:
         for event in events:
             told = _COOLANT_M.get(str(event.value), 0) if event.kind == "coolant" else self._coolant[-1]
             self._coolant.append(told)
+        self._switches = {name: switched(run.machine, name, events) for name in SWITCHES}
         self._spindle_was_on = bool(len(run)) and bool((run.state.spindle.values != 0).any())
         self._at = lru_cache(maxsize=256)(self._made)
 
@@ -108,7 +113,8 @@ class Blocks:
     def _made(self, row: int, passed: int, is_event: bool, changed: int, sense: int) -> BlockState:
         """Return what is in force after ``passed`` events; the last of them is what happens if ``is_event``."""
         state = self._of_row(row)
-        state = replace(state, m=self._m_functions(passed, sense))
+        door, clamp = (self._switches[name][passed] for name in ("door", "clamp"))
+        state = replace(state, m=self._m_functions(passed, sense), door=door, clamp=clamp)
         if changed >= 0:
             state = replace(state, tool=str(self._timed.events[changed].event.value or ""))
         if not is_event:

@@ -8,6 +8,7 @@ Units:  mm, degrees, seconds, mm/min.
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -15,9 +16,9 @@ from numpy.typing import NDArray
 
 from trunnion.machines import Machine
 from trunnion.machines.links import link_chain
+from trunnion.messages import LIBRARY, Words
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.results import to_data
 from trunnion.simulation.collisions.bodies import Body, BodyKind, machine_bodies, tool_bodies
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
@@ -26,7 +27,7 @@ from trunnion.verification.comparison import Alignment
 from trunnion.verification.driven_rows import DrivenRows
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
-from trunnion.viewer.shown import Mark, checks_data
+from trunnion.viewer.shown import Mark, said
 from trunnion.viewer.stock import StockView
 
 Column = NDArray[np.float32] | NDArray[np.int32]
@@ -53,7 +54,7 @@ _COLOURS: Final = {
 class ViewContent:
     """What a page shows.
 
-    scene    names and numbers, as JSON has them
+    scene    names and numbers, as JSON has them, and what is said as ``shown.said`` takes it
     columns  by name, (k,) float32 or int32
     texts    UTF-8, of the program and its subprograms in the order of ``scene["files"]``, then of its CL files in that
              of ``scene["clFiles"]``
@@ -66,6 +67,11 @@ class ViewContent:
     texts: tuple[bytes, ...]
     rows: DrivenRows
     stock: StockView | None = None
+
+    def said(self, words: Words = LIBRARY) -> dict[str, Any]:
+        """Return the scene as JSON has it, in the words of who looks."""
+        found: dict[str, Any] = said(self.scene, words)
+        return found
 
 
 def view_content(
@@ -129,8 +135,8 @@ def view_content(
             {"name": one.name, "first": one.first, "end": one.end, "cl": cl_files.get(one.cl_file, -1)}
             for one in rows.operations(verification.operations)
         ],
-        "events": to_data([*_events(run), *_rewinds(run)]),
-        "findings": to_data([*_findings(verification.checks, rows), *_diagnostics(run)]),
+        "events": [*_events(run), *_rewinds(run)],
+        "findings": [*_findings(verification.checks, rows), *_diagnostics(run)],
         "timed": bool(len(seconds)),
         "remarks": [],
         **proof_scene(verification),
@@ -148,12 +154,15 @@ def with_phases(content: ViewContent, verification: Verification, toolpaths: Seq
 
 def proof_scene(verification: Verification) -> dict[str, Any]:
     """Return what the page says of the proof."""
-    stands = list(stand_lines(verification.checks))
     standing = verification.standing
     return {
-        "checks": checks_data(verification.checks), "standing": standing.told, "verdict": standing.verdict,
-        "stands": stands,
+        "checks": verification.checks, "standing": standing.line, "verdict": str(standing.verdict),
+        "stands": partial(_stands, verification.checks),
     }  # fmt: skip
+
+
+def _stands(checks: Sequence[Check], words: Words) -> list[str]:
+    return list(stand_lines(checks, words))
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
@@ -164,7 +173,7 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
                    go together
     """
     differences = [
-        Mark("difference", row, *_place(first, row), each.wording.what)
+        Mark("difference", row, *_place(first, row), each.wording)
         for each in alignment.differences
         for row in (first.rows.row(each.one),)
     ]
@@ -180,7 +189,7 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
     scene = {
         **first.scene,
         "title": " | ".join(f"{each.scene['title']} ({each.scene['machine']['key']})" for each in (first, second)),
-        "findings": [*first.scene["findings"], *to_data(differences)],
+        "findings": [*first.scene["findings"], *differences],
         "against": against,
     }
     return replace(first, scene=scene, columns={**first.columns, **columns}, texts=(*first.texts, *second.texts))
@@ -294,7 +303,7 @@ def _findings(checks: Sequence[Check], rows: DrivenRows) -> Iterator[Mark]:
         for place in () if check.passed else check.places[:_MOST_PLACES]:
             file = numbers.get(place.nc_file, 0)
             row = rows.row(place.row) if place.row >= 0 else _row_of(run, file, place.nc_line)
-            yield Mark(check.key, row, place.nc_line, file, place.told)
+            yield Mark(check.key, row, place.nc_line, file, place.said)
 
 
 def _row_of(run: Run, file: int, line: int) -> int:
@@ -316,4 +325,6 @@ def _diagnostics(run: Run) -> Iterator[Mark]:
     numbers = {name: k for k, name in enumerate(run.files)}
     for each in run.errors:
         file = numbers.get(each.file, 0)
-        yield Mark("word", _row_of(run, file, each.line), each.line, file, f"{each.text} [{each.code}]")
+        text = each.wording.with_cure()
+        text = text.within("with_code", code=each.code) if each.code else text
+        yield Mark("word", _row_of(run, file, each.line), each.line, file, text)

@@ -13,9 +13,11 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.messages import LIBRARY, Words
 from trunnion.reporting.column_encoding import COMPRESSION_LEVEL, encode_column
 from trunnion.reporting.html_text import escape
 from trunnion.viewer.content import ViewContent
+from trunnion.viewer.language import page_texts
 from trunnion.viewer.shell import PageShell, bundle
 
 _WEB: Final = files("trunnion.viewer") / "web"
@@ -43,12 +45,14 @@ MODULES: Final = (
 )
 
 
-def render_view(content: ViewContent, *, embedded: bool) -> Iterator[bytes]:
-    """Yield the page; ``embedded``: with columns and texts in it, so that it works offline."""
-    title = content.scene["title"]
-    shell = PageShell(title, "\n" + _read("style.css"), _body(title), _script())
+def render_view(content: ViewContent, words: Words = LIBRARY, *, embedded: bool) -> Iterator[bytes]:
+    """Yield the page in the language of some words; ``embedded``: with columns and texts in it, so that it works
+    offline.
+    """
+    title, texts = content.scene["title"], page_texts("viewer", words.language)
+    shell = PageShell(title, "\n" + _read("style.css"), _body(title), _script(), words.language, texts)
     types = {name: "f" if column.dtype == np.float32 else "i" for name, column in content.columns.items()}
-    yield shell.head({**content.scene, "columns": types}, embedded=embedded)
+    yield shell.head({**content.said(words), "columns": types}, embedded=embedded)
     if embedded:
         for name, column in content.columns.items():
             yield f'<script type="text/plain" id="column-{name}">'.encode() + encode_column(column) + b"</script>\n"

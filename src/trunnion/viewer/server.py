@@ -15,8 +15,10 @@ from typing import Any, Final
 import numpy as np
 
 from trunnion.extras import import_extra
+from trunnion.messages import Words
 from trunnion.viewer.bricks import NOTHING
 from trunnion.viewer.content import ViewContent
+from trunnion.viewer.language import OF_BROWSERS, Speech
 from trunnion.viewer.live import LiveView
 from trunnion.viewer.page import render_view
 from trunnion.viewer.serving import HEADERS, Access, application_of
@@ -31,22 +33,28 @@ _PATIENCE: Final = 1.0
 _NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
 
 
-def view_application(content: ViewContent, access: Access, live: LiveView | None = None) -> Any:
+def view_application(
+    content: ViewContent, access: Access, live: LiveView | None = None, speech: Speech = OF_BROWSERS
+) -> Any:
     """Make the application.
 
     content  what its page shows
     access   who may see it
     live     the machine whose motion it follows; None: it follows none
+    speech   the language of its page
 
     Raises ``InputError`` if Starlette is not installed.
     """
     responses, routing = (import_extra(f"starlette.{name}", "view") for name in ("responses", "routing"))
     if live is not None:
         content = replace(content, scene={**content.scene, "live": True})
-    page = b"".join(render_view(content, embedded=False))
 
-    def show_page(_request: Any) -> Any:
-        return access.page(page)
+    @cache
+    def page(words: Words) -> bytes:
+        return b"".join(render_view(content, words, embedded=False))
+
+    def show_page(request: Any) -> Any:
+        return access.page(page(speech.to(request)))
 
     def give_column(request: Any) -> Any:
         column = content.columns.get(request.path_params["name"])

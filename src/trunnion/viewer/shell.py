@@ -5,13 +5,14 @@ script and the vendored library run, by their hashes.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Final
 
 from trunnion.reporting.html_plots import script_json
 from trunnion.reporting.html_text import escape, source_hash
+from trunnion.viewer.language import language_tag
 
 _WEB: Final = files("trunnion.viewer") / "web"
 
@@ -23,16 +24,20 @@ _EXPORT: Final = re.compile(r"^export ", re.MULTILINE)
 class PageShell:
     """A page around its data.
 
-    title   of the browser's window
-    style   CSS
-    body    HTML of our own
-    script  of ``bundle``
+    title     of the browser's window
+    style     CSS
+    body      HTML of our own
+    script    of ``bundle``
+    language  that it speaks, of ``LANGUAGES``
+    texts     what it says in that language, by the keys of its body and its script
     """
 
     title: str
     style: str
     body: str
     script: str
+    language: str
+    texts: Mapping[str, str]
 
     def head(self, data: object, *, embedded: bool) -> bytes:
         """All up to the data, which is JSON in the element ``scene``; ``embedded``: more of it follows in the page."""
@@ -42,7 +47,7 @@ class PageShell:
             f"connect-src 'self'; base-uri 'none'; form-action 'none'"
         )
         return f"""<!DOCTYPE html>
-<html lang="en" data-embedded="{str(embedded).lower()}">
+<html lang="{language_tag(self.language)}" data-embedded="{str(embedded).lower()}">
 <head>
 <meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{policy}">
@@ -52,6 +57,7 @@ class PageShell:
 </head>
 <body>
 {self.body}
+<script type="application/json" id="texts">{script_json(self.texts)}</script>
 <script type="application/json" id="scene">{script_json(data)}</script>
 """.encode()
 

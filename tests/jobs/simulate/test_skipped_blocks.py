@@ -95,8 +95,9 @@ def test_a_post_is_simulated_with_its_blocks_skipped(tmp_path: Path) -> None:
     cl, out = tmp_path / "p.cls", tmp_path / "p.nc"
     cl.write_text(
         "TOOL PATH/ONE,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\n"
-        "RAPID\nGOTO/0,0,50,0,0,1\nRAPID\nGOTO/0,0,2\nFEDRAT/MMPM,500\nGOTO/0,0,-1\nGOTO/30,0,-1\nOPSKIP/ON\nRAPID\n"
-        "GOTO/30,0,50\nOPSKIP/OFF\nRAPID\nGOTO/0,15,50\nEND-OF-PATH\n",
+        "RAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,500\nGOTO/0,0,-1\nGOTO/30,0,-1\nRAPID\nGOTO/30,0,0\n"
+        "OPSKIP/ON\nFEDRAT/MMPM,500\nGOTO/30,0,-1\nGOTO/30,5,-1\nRAPID\nGOTO/30,5,0\nOPSKIP/OFF\n"
+        "RAPID\nGOTO/30,15,-0.5\nRAPID\nGOTO/30,15,50\nEND-OF-PATH\n",
         encoding="utf-8",
     )
     given = {"stock": "box:80,20,10,-10,-10,-10", "tools": ["1=flat:10,length=60"], "cell": 2.0}

@@ -38,7 +38,7 @@ def test_a_cl_file_is_posted_for_the_machine() -> None:
 
 def test_a_program_that_must_not_run_is_shown_with_what_is_wrong() -> None:
     content = prepare_view(CL, machine="yl569", settings={"zero": "0,0,900", "tool_length": "60"})
-    assert any(check["state"] == "FAIL" for check in content.scene["checks"])
+    assert any(check["state"] == "FAIL" for check in content.said()["checks"])
     assert b"MUST NOT RUN" in content.texts[0]
 
 

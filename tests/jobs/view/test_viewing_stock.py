@@ -29,7 +29,7 @@ def test_the_findings_are_those_of_the_simulation(tmp_path: Path) -> None:
     given |= {"cell": 1.0, "near": 6.0}
     found = trunnion.simulate(program, **given)
     content = prepare_view(program, **given)
-    marks = [mark for mark in content.scene["findings"] if mark.get("place")]
+    marks = [mark for mark in content.said()["findings"] if mark.get("place")]
     assert "collision" in {mark["kind"] for mark in marks}
     assert "near" in {mark["kind"] for mark in marks}
     wanted = [(one.line, list(one.place)) for one in found.findings]
@@ -37,11 +37,11 @@ def test_the_findings_are_those_of_the_simulation(tmp_path: Path) -> None:
     assert sorted((mark["line"], mark["place"]) for mark in marks) == wanted
     lines = content.columns["line"]
     assert all(lines[mark["row"]] == mark["line"] for mark in marks)
-    assert any(mark["kind"] == "simulation" and "part.ngc" in mark["text"] for mark in content.scene["findings"])
-    keys = {check["key"]: check["state"] == "ok" for check in content.scene["checks"]}
+    assert any(mark["kind"] == "simulation" and "part.ngc" in mark["text"] for mark in content.said()["findings"])
+    keys = {check["key"]: check["state"] == "ok" for check in content.said()["checks"]}
     assert keys["collision"] is False
     assert content.scene["stock"]["rows"] < len(lines)  # the program has an error, and is cut up to there
-    assert any("not checked" in remark for remark in content.scene["stock"]["remarks"])
+    assert any("not checked" in remark for remark in content.said()["stock"]["remarks"])
 
 
 def test_a_picture_is_coarser_than_the_finest_simulation(tmp_path: Path) -> None:
@@ -100,8 +100,8 @@ def test_more_findings_than_are_shown_are_told(tmp_path: Path, monkeypatch: pyte
     plunges = "".join(f"G0 Y{12 * (-1) ** k} Z20\nG0 Z-{4 + k}\nG0 Z20\n" for k in range(3))
     program.write_text(program.read_text().replace("N95 G0 X80\n", f"G0 X25\n{plunges}"), encoding="utf-8")
     content = prepare_view(program, **{**given, "part": None, "cell": 1.0})
-    shown = [mark for mark in content.scene["findings"] if mark["kind"] == "rapid through stock"]
+    shown = [mark for mark in content.said()["findings"] if mark["kind"] == "rapid through stock"]
     assert len(shown) == 2
     assert any(
-        re.fullmatch(r"rapid through stock: 2 of \d are shown", one) for one in content.scene["stock"]["remarks"]
+        re.fullmatch(r"rapid through stock: 2 of \d are shown", one) for one in content.said()["stock"]["remarks"]
     )

@@ -80,10 +80,10 @@ export class Editor {
 
   /**
    * Mark lines.
-   * @param {{line: number, text: string, cure: string, code: string}[]} problems
+   * @param {{line: number, text: string}[]} problems
    */
   mark(problems) {
-    this.marks = new Map(problems.filter((each) => each.line).map((each) => [each.line, `${each.text}; ${each.cure} [${each.code}]`]));
+    this.marks = new Map(problems.filter((each) => each.line).map((each) => [each.line, each.text]));
     this.#number();
   }
 

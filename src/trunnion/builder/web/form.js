@@ -1,12 +1,12 @@
 // The fields of one page: values, units, where they stand in the file, and what is wrong with them.
 
-import { fieldTexts, say } from "./texts.js";
+import { say } from "../../viewer/web/texts.js";
 
 /**
  * @typedef {(string | string[])[]} Path
- * @typedef {{path: Path, key: string, kind: string, unit: string, choices: string[], size: number, optional: boolean, note: string,
- *   allowed: string, value: any, inherited: any, own: boolean, from: string}} FieldData
- * @typedef {{line: number, place: string, path: Path, text: string, cure: string, code: string}} ProblemData
+ * @typedef {{path: Path, key: string, kind: string, unit: string, choices: string[], size: number, optional: boolean, name: string, help: string,
+ *   value: any, inherited: any, own: boolean, from: string}} FieldData
+ * @typedef {{line: number, place: string, path: Path, text: string, code: string}} ProblemData
  */
 
 /** @param {Path} path */
@@ -75,7 +75,7 @@ export class Form {
    */
   show(fields, problems, marks, before) {
     if (this.order.textContent !== (before?.textContent ?? "")) refill(this.order, before ? [before] : []);
-    const shape = JSON.stringify(fields.map(({ path, kind, choices, note, allowed }) => [path, kind, choices, note, allowed]));
+    const shape = JSON.stringify(fields.map(({ path, kind, choices, help }) => [path, kind, choices, help]));
     this.fields = new Map(fields.map((each) => [idOf(each.path), each]));
     if (shape !== this.shape) this.#build(fields);
     this.shape = shape;
@@ -117,7 +117,7 @@ export class Form {
     row.className = "field";
     row.dataset.path = idOf(field.path);
     const id = `field-${idOf(field.path)}`;
-    const [name, help] = fieldTexts(field);
+    const { name, help } = field;
     const label = Object.assign(document.createElement("label"), { htmlFor: id, textContent: name });
     const inputs = document.createElement("span");
     inputs.className = "inputs";
@@ -212,11 +212,11 @@ export class Form {
     row.dataset.from = field.own ? field.from : "";
     const reset = /** @type {HTMLButtonElement} */ (row.querySelector(".reset"));
     reset.hidden = !field.own || field.inherited === null;
-    reset.title = say("reset", String(field.inherited));
+    reset.title = say("reset", { value: String(field.inherited) });
     reset.setAttribute("aria-label", reset.title);
     /** @type {HTMLElement} */ (row.querySelector(".from")).textContent = field.from ? (field.own ? say("own") : field.from) : say("notStated");
     /** @type {HTMLElement} */ (row.querySelector(".mark")).textContent = marks.map((each) => each.text).join("\n");
-    /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.text}; ${each.cure} [${each.code}]`).join("\n");
+    /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => each.text).join("\n");
   }
 
   /**

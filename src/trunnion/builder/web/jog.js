@@ -1,7 +1,7 @@
 // The machine moved by hand: a slider and a box for each axis, and where the tool is then.
 
 import { COLOURS } from "./stage.js";
-import { say } from "./texts.js";
+import { say } from "../../viewer/web/texts.js";
 
 export class Jog {
   /**

@@ -6,7 +6,7 @@ import { Form, covers, refill } from "./form.js";
 import { Jog } from "./jog.js";
 import { Sample } from "./sample.js";
 import { Stage } from "./stage.js";
-import { LANGUAGE, say } from "./texts.js";
+import { putTexts, say } from "../../viewer/web/texts.js";
 
 /**
  * @param {string} id
@@ -14,11 +14,14 @@ import { LANGUAGE, say } from "./texts.js";
  */
 const element = (id) => document.getElementById(id);
 
-/** Pages whose names are other words of the page too. */
-const PAGE_NAMES = new Map([["home", "homePage"], ["control", "controlPage"]]);
-
 /** A CL file is not larger. */
 const MOST_CL = 4_000_000;
+
+/**
+ * What a page is called; two have names that are other words of the page too.
+ * @param {string} name
+ */
+const pageKey = (name) => /** @type {PlainKey} */ ({ home: "homePage", control: "controlPage" }[name] ?? name);
 
 class Builder {
   /** @param {any} start */
@@ -53,7 +56,7 @@ class Builder {
    */
   async post(what, given) {
     try {
-      const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ file: this.file, ...given }) });
+      const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ file: this.file, language: this.start.language, ...given }) });
       return answer.ok ? await answer.json() : { rejected: answer.status };
     } catch {
       this.tell(say("lost"), true);
@@ -77,7 +80,7 @@ class Builder {
    */
   show(data, edit) {
     if (edit?.what === "begin") this.#beginsAnew();
-    if (data.rejected) this.unclear = say("rejected", data.rejected);
+    if (data.rejected) this.unclear = say("rejected", { status: data.rejected });
     if (data.unclear) this.unclear = say(data.unclear);
     if (!data.rejected) {
       this.data = data;
@@ -120,7 +123,7 @@ class Builder {
   #showPages() {
     const { pages, problems } = this.data;
     refill(element("pages"), Object.keys(pages).map((name) => {
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: say(PAGE_NAMES.get(name) ?? name) });
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: say(pageKey(name)) });
       button.dataset.page = button.dataset.key = name;
       if (name === this.page) button.setAttribute("aria-current", "page");
       const wrong = problems.some((/** @type {any} */ each) => pages[name].some((/** @type {any} */ field) => covers(each.path, field.path)));
@@ -152,7 +155,7 @@ class Builder {
     this.data.axes.forEach((/** @type {string} */ name, /** @type {number} */ k) => {
       const item = Object.assign(document.createElement("li"), { textContent: name });
       if (!this.data.extends) {
-        for (const [by, sign, words] of /** @type {[number, string, string][]} */ ([[-1, "◀", "up"], [1, "▶", "down"]])) {
+        for (const [by, sign, words] of /** @type {[number, string, "up" | "down"][]} */ ([[-1, "◀", "up"], [1, "▶", "down"]])) {
           const button = Object.assign(document.createElement("button"), { type: "button", textContent: sign, title: `${name}: ${say(words)}` });
           button.dataset.key = `${name} ${by}`;
           button.disabled = by < 0 ? k === 0 : k === this.data.axes.length - 1;
@@ -171,13 +174,13 @@ class Builder {
 
   #showProblems() {
     const { problems, marks } = this.data;
-    const found = problems.length ? say(problems.length === 1 ? "mistake" : "mistakes", problems.length) : say("clean");
-    element("mistakes").textContent = [found, ...(marks.length ? [say("toEnter", marks.length)] : [])].join(", ");
+    const found = problems.length ? say("mistakes", { count: problems.length }) : say("clean");
+    element("mistakes").textContent = marks.length ? say("both", { mistakes: found, marks: say("toEnter", { count: marks.length }) }) : found;
     element("mistakes").className = problems.length ? "bad" : marks.length ? "warn" : "good";
     refill(element("problems"), [...problems, ...marks].map((/** @type {any} */ each) => {
-      const item = Object.assign(document.createElement("li"), { className: each.cure === undefined ? "warn" : "" });
+      const item = Object.assign(document.createElement("li"), { className: each.code === undefined ? "warn" : "" });
       const where = each.line ? `${each.line}: ` : each.place ? `${each.place}: ` : "";
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.text}${each.cure ? `; ${each.cure}` : ""}${each.code ? ` [${each.code}]` : ""}` });
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.text}` });
       button.dataset.key = button.textContent ?? "";
       button.addEventListener("click", () => this.#goToProblem(each));
       item.append(button);
@@ -209,7 +212,7 @@ class Builder {
     const found = await this.post("sample", { text, cl: this.cl?.content ?? null, clName: this.cl?.name ?? "", before: this.sample.lines.slice(0, 3000) });
     if (number !== this.sampled) return;
     if (found && !found.rejected) this.sample.show(found, this.data.marks.length);
-    else this.sample.clear(found ? say("rejected", found.rejected) : say("lost"));
+    else this.sample.clear(found ? say("rejected", { status: found.rejected }) : say("lost"));
     this.isSampled();
   }
 
@@ -236,7 +239,7 @@ class Builder {
     const { text } = this.editor;
     const found = await this.post("save", { text, name, seen: this.seen, replace });
     if (!found?.saved) {
-      const why = !found ? say("lost") : found.rejected ? say("rejected", found.rejected) : say(found.why);
+      const why = !found ? say("lost") : found.rejected ? say("rejected", { status: found.rejected }) : say(found.why);
       element("save-why").textContent = [why, ...(found?.problems ?? [])].join("\n");
       if (!found || found.rejected) return;
       element("save-replace").hidden = found.why !== "exists" && found.why !== "changed";
@@ -249,7 +252,7 @@ class Builder {
     address.searchParams.set("file", found.name);
     history.replaceState(null, "", address);
     element("saving").close();
-    this.tell(found.mistakes ? say("savedBad", found.saved, found.mistakes) : say("saved", found.saved), found.mistakes > 0);
+    this.tell(found.mistakes ? say("savedBad", { file: found.saved, count: found.mistakes }) : say("saved", { file: found.saved }), found.mistakes > 0);
   }
 
   begin() {
@@ -314,9 +317,7 @@ class Builder {
   }
 }
 
-document.querySelectorAll("[data-say]").forEach((each) => { each.textContent = say(/** @type {HTMLElement} */ (each).dataset.say ?? ""); });
-document.querySelectorAll("[data-label]").forEach((each) => each.setAttribute("aria-label", say(/** @type {HTMLElement} */ (each).dataset.label ?? "")));
-document.documentElement.lang = LANGUAGE;
+putTexts();
 const builder = new Builder(JSON.parse(element("scene").textContent));
 /** @type {any} */ (window).builder = builder;
 const ready = () => { document.documentElement.dataset.ready = "true"; };

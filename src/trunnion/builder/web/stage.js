@@ -141,7 +141,7 @@ export class Stage {
     this.root.updateMatrixWorld(true);
     const box = new THREE.Box3().setFromObject(this.root);
     const sphere = box.getBoundingSphere(new THREE.Sphere());
-    const far = (0.85 * sphere.radius) / Math.sin((this.camera.fov / 2) * (Math.PI / 180));
+    const far = (1.05 * sphere.radius) / Math.sin((this.camera.fov / 2) * (Math.PI / 180));
     this.controls.target.copy(sphere.center);
     this.camera.position.set(-0.55, -1, 0.6).setLength(far).add(sphere.center);
     this.camera.near = far / 200;

@@ -1,4 +1,4 @@
-"""The language of the command line: ``--language``, else that of the terminal or the system."""
+"""The language of the command line: ``--language``, ``TRUNNION_LANGUAGE``, else that of the terminal or the system."""
 
 import os
 import sys
@@ -12,6 +12,9 @@ from trunnion.messages import ENGLISH, LANGUAGES
 #: The option, which every command has.
 LANGUAGE: Final = "--language"
 
+#: What states the language for all commands.
+_OWN_VARIABLE: Final = "TRUNNION_LANGUAGE"
+
 #: What says the language of messages, the first that is set: as POSIX orders them.
 _VARIABLES: Final = ("LC_ALL", "LC_MESSAGES", "LANG")
 
@@ -22,6 +25,7 @@ _OF_WINDOWS: Final = {0x04: "zh", 0x07: "de", 0x09: "en"}
 _LETTERS: Final = {"zh": "中文", "de": "äöüß"}
 
 _SPOKEN: Final[ContextVar[str]] = ContextVar("language", default=ENGLISH)
+_STATED: Final[ContextVar[str]] = ContextVar("stated", default="")
 
 
 def spoken_language() -> str:
@@ -29,14 +33,20 @@ def spoken_language() -> str:
     return _SPOKEN.get()
 
 
+def stated_language() -> str:
+    """Return the language that the user has stated; empty if only the surroundings say one."""
+    return _STATED.get()
+
+
 @contextmanager
 def speaking(language: str) -> Iterator[None]:
-    """Have the command line speak a language."""
-    before = _SPOKEN.set(language)
+    """Have the command line speak a language; empty: that of the surroundings."""
+    spoken, stated = _SPOKEN.set(language or _of_surroundings()), _STATED.set(language)
     try:
         yield
     finally:
-        _SPOKEN.reset(before)
+        _SPOKEN.reset(spoken)
+        _STATED.reset(stated)
 
 
 def is_language_option(name: str) -> bool:
@@ -45,9 +55,10 @@ def is_language_option(name: str) -> bool:
 
 
 def with_language(words: Sequence[str]) -> tuple[list[str], str]:
-    """Return the words without a language that is known, and the language; the last one counts.
+    """Return the words without a language that is known, and the language that is stated; the last one counts.
 
-    Words that name none stay, and the parser says what is wrong with them.
+    Words that name none stay, and the parser says what is wrong with them. The language is empty where neither words
+    nor ``TRUNNION_LANGUAGE`` state one.
     """
     rest, chosen, k = [], "", 0
     while k < len(words) and words[k] != "--":
@@ -59,18 +70,24 @@ def with_language(words: Sequence[str]) -> tuple[list[str], str]:
             continue
         rest.append(words[k])
         k += 1
-    return [*rest, *words[k:]], chosen or _of_surroundings()
+    return [*rest, *words[k:]], chosen or _named(os.environ.get(_OWN_VARIABLE, ""))
+
+
+def _named(stated: str) -> str:
+    """Return the language of a locale such as ``zh_CN.UTF-8``; empty if there is none of ours in it."""
+    language = stated[:2].lower() if stated[2:3] in ("", "_", "-", ".", "@") else ""
+    return language if language in LANGUAGES else ""
 
 
 def _of_surroundings() -> str:
     """Return the language of the terminal or the system, where a terminal can show its letters."""
     stated = next((value for name in _VARIABLES if (value := os.environ.get(name))), "")
-    language = stated[:2].lower() if stated[2:3] in ("", "_", "-", ".", "@") else ""
+    language = _named(stated)
     if not stated and sys.platform == "win32":
         import ctypes  # nothing else needs it
 
         language = _OF_WINDOWS.get(ctypes.windll.kernel32.GetUserDefaultUILanguage() & 0x3FF, ENGLISH)
-    return language if language in LANGUAGES and _is_shown(language) else ENGLISH
+    return language if language and _is_shown(language) else ENGLISH
 
 
 def _is_shown(language: str) -> bool:

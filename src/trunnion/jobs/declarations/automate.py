@@ -141,4 +141,10 @@ _COMPLETION: Final = job(
     ],
 )  # fmt: skip
 
-JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION)
+_PREPARE: Final = job(
+    "prepare", "compile everything for this computer now, so that no later command has to",
+    run="prepare:run",
+    examples=[("trunnion prepare", "once, after the installation or an update")],
+)  # fmt: skip
+
+JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION, _PREPARE)

@@ -6,7 +6,7 @@ Out:    ``ViewContent`` with stock, deviations and findings.
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
@@ -14,25 +14,33 @@ from typing import Any, Final
 import numpy as np
 
 from trunnion.compensation.stretches import RegisterValue
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.results import to_data
+from trunnion.simulation.finding import What
+from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.verification import Verification
 from trunnion.viewer.content import ViewContent, proof_scene
 from trunnion.viewer.shown import Mark
 from trunnion.viewer.stock import StockView
+from trunnion.wording import position
 
 #: Arguments that mean nothing without stock.
 _OF_STOCK: Final = ("near", "cell", "accuracy")
+
+#: What is said of each kind of finding.
+_KINDS: Final[Mapping[str, str]] = {
+    What.RAPID: "rapid_through_stock", What.GOUGE: "gouge", What.STANDING: "cuts_without_spindle",
+    What.SHANK: "shank_into_stock", What.HOLDER: "holder_into_stock", What.BODY: "collision", What.NEAR: "near",
+}  # fmt: skip
 
 #: Findings that a page shows of each kind at most, the deepest; near misses: the nearest.
 _MOST: Final = 200
@@ -69,15 +77,19 @@ def with_stock(
     (job,) = found.simulation.programs
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))
-    warnings = [short_name(each) for each in found.remarks if each.severity is not Severity.ERROR]
+    warnings: list[Any] = [each for each in found.remarks if each.severity is not Severity.ERROR]
     warnings = [each for each in warnings if each not in content.scene["remarks"]]
     if found.not_checked_line:
         warnings.insert(0, f"{found.not_checked_line}.")
-    warnings += [f"{kind}: {_MOST} of {count} are shown" for kind, count in _counts(found) if count > _MOST]
+    warnings += [
+        phrase("some_shown", what=phrase(_KINDS[kind]), count=_MOST, all=count)
+        for kind, count in _counts(found)
+        if count > _MOST
+    ]
     checks = (*verification.checks, *simulation_checks(found))
     scene = {
         **content.scene,
-        "findings": [*content.scene["findings"], *to_data(list(_findings(found, run)))],
+        "findings": [*content.scene["findings"], *_findings(found, run)],
         **proof_scene(replace(verification, checks=checks)),
         "stock": {**stock.scene(), "remarks": warnings},
     }
@@ -101,16 +113,23 @@ def _findings(found: SimulationResult, run: Run) -> Iterator[Mark]:
     for each in found.remarks:
         if each.severity is Severity.ERROR:
             here = np.flatnonzero((run.line >= each.line) & (run.file == files.get(Path(each.file).name, -1)))
-            yield Mark.at(run, "simulation", int(here[0]) if len(here) else 0, short_name(each))
+            yield Mark.at(run, "simulation", int(here[0]) if len(here) else 0, each)
     shown = Counter[str]()
     for one in sorted(found.findings, key=lambda finding: -finding.depth):
         shown[one.kind] += 1
         if shown[one.kind] <= _MOST:
-            yield Mark.at(run, one.kind, one.row, str(one), one.place)
+            yield Mark.at(run, one.kind, one.row, _found(one), one.place)
     for miss in sorted(found.near, key=lambda miss: miss.distance)[:_MOST]:
-        yield Mark.at(run, "near", miss.row, str(miss), miss.place)
+        yield Mark.at(run, "near", miss.row, _found(miss), miss.place)
 
 
-def short_name(problem: Problem) -> str:
-    """Return a problem without the folder of its file."""
-    return str(replace(problem, file=Path(problem.file).name))
+def _found(one: SimulationFinding | NearMiss) -> Wording:
+    """Return what does what, how deep or how near, and where; in which meaning of the program, if it has several."""
+    first, second = one.between
+    place = position(one.place)
+    if isinstance(one, NearMiss):
+        what = phrase("near_each_other", first=first, second=second, distance=one.distance, place=place)
+    else:
+        kind = phrase(_KINDS[one.kind])
+        what = phrase("one_in_another", kind=kind, first=first, second=second, depth=one.depth, place=place)
+    return phrase("where_skipped", skipped=one.skipped, what=what) if one.skipped else what

@@ -23,9 +23,9 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
 from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
-from trunnion.jobs.view.stock import short_name, view_simulation, with_stock
+from trunnion.jobs.view.stock import view_simulation, with_stock
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import LIBRARY, Wording, Words
 from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import fixture_body, part_body
@@ -103,7 +103,7 @@ def _prepared(
     content = with_phases(content, viewed.verification, viewed.toolpaths)
     if notices := [replace(each, severity=Severity.WARNING) for each in compensation_notices(run, driven)]:
         observer.problems(notices)
-        content = replace(content, scene={**content.scene, "remarks": list(map(short_name, notices))})
+        content = replace(content, scene={**content.scene, "remarks": notices})
     if simulated is not None:
         content = with_stock(content, simulated, viewed.verification, viewed.toolpaths, observer)
     return content, run
@@ -119,6 +119,7 @@ def write_view(
     *,
     output: FilePath,
     observer: Observer = SILENT,
+    words: Words = LIBRARY,
     **given: Unpack[ViewArguments],
 ) -> str:
     """Show an NC program on its machine, block by block, on a page that works offline.
@@ -161,6 +162,8 @@ def write_view(
         As for ``verify``. Without a zero, the part is drawn at the machine's zero.
     observer
         Receives progress and warnings.
+    words
+        Of who looks at the page: ``trunnion.messages.library_words("zh")`` for a page in Chinese. By default English.
 
     Returns
     -------
@@ -183,8 +186,8 @@ def write_view(
         with observer.progress("states of the stock", len(content.stock.page_states), "states") as tell:
             content.stock.packed(tell)
     with atomic_file(place, inputs=_shown_files(content)) as sink:
-        sink.writelines(render_view(content, embedded=True))
-    return str(content.scene["standing"])
+        sink.writelines(render_view(content, words, embedded=True))
+    return str(content.said(words)["standing"])
 
 
 def _shown_files(content: ViewContent) -> list[Path]:

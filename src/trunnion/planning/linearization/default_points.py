@@ -64,7 +64,7 @@ def default_points(file: str, machine: Machine, motion: Motion, tolerance: float
         return DefaultPoints(None)
     turning = rotary_motion(machine, moves, motion.rotary)
     positions = turning.positions
-    rows = _rows_off_path(machine, moves, positions, tolerance)
+    rows = rows_off_path(machine, moves, positions, tolerance)
     across = set(rows[turning.changes_branch[rows]].tolist())
     divisible = np.zeros(len(moves), np.bool_)
     added, failed = list[_Added](), list[int]()
@@ -90,13 +90,17 @@ def _leaves_path(machine: Machine, motion: Motion, tolerance: float) -> bool:
     moves = motion.operation.moves
     chunks = (slice(max(0, first - 1), first + _CHUNK) for first in range(0, len(moves), _CHUNK))
     return any(
-        len(_rows_off_path(machine, moves.select(rows), continuous_positions(machine, motion.rotary[rows]), tolerance))
+        len(rows_off_path(machine, moves.select(rows), continuous_positions(machine, motion.rotary[rows]), tolerance))
         for rows in chunks
     )
 
 
-def _rows_off_path(machine: Machine, moves: Moves, positions: Floats, tolerance: float) -> Ints:
-    """Rows of a cut in which the rotary axes, turning evenly, lead the tool axis too far off its great circle."""
+def rows_off_path(machine: Machine, moves: Moves, positions: Floats, tolerance: float) -> Ints:
+    """Return the rows of a cut in which the rotary axes, turning evenly, lead the tool axis too far off its circle.
+
+    positions  (n, 2) of the rotary axes, without jumps of whole turns, degrees
+    tolerance  of the tool axis from its great circle, degrees
+    """
     cuts = (moves.kind[1:] == Kind.LINEAR) & (contact_of(moves)[1:] != NO_CONTACT)
     turns = np.abs(np.diff(positions, axis=0))
     turn = np.radians(turns[:, 0] + turns[:, 1])

@@ -23,7 +23,7 @@ from trunnion.readers.program.words_beside import has_other_codes, is_other, wit
 EFFECTS: Final = (
     "no effect", "comes back", "comes back home", "stop", "optional stop", "tool change", "spindle clockwise",
     "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant through", "coolant off",
-    "tcp on", "tcp off", "waits",
+    "tcp on", "tcp off", "waits", "door opens", "door closes", "clamp opens", "clamp closes",
 )  # fmt: skip
 
 #: Other names of effects.
@@ -41,7 +41,12 @@ _BEFORE_MOTION: Final = (
 )  # fmt: skip
 
 #: Effects that are not events of their own: the word itself says what happens.
-_SILENT: Final = frozenset({"no effect", "comes back", HOME, WAITS})
+_SILENT: Final = frozenset(
+    {"no effect", "comes back", HOME, WAITS, "door opens", "door closes", "clamp opens", "clamp closes"}
+)
+
+#: Kinds of effects of which one excludes another.
+_ONE_MODE: Final = ("spindle", "tcp", "door", "clamp")
 
 #: So many letters and points are shown of a key.
 _MOST_LETTERS: Final = 40
@@ -164,7 +169,7 @@ def _contradiction(effects: Sequence[str]) -> Wording | None:
     for k, one in enumerate(effects):
         for other in effects[k + 1 :]:
             kinds = one.partition(" ")[0], other.partition(" ")[0]
-            is_one_mode = kinds[0] == kinds[1] and (kinds[0] in ("spindle", "tcp") or "coolant off" in (one, other))
+            is_one_mode = kinds[0] == kinds[1] and (kinds[0] in _ONE_MODE or "coolant off" in (one, other))
             if one != other and (is_one_mode or "no effect" in (one, other)):
                 return Wording("NC190", "excluding_effects", one=repr(one), other=repr(other))
     return None

@@ -132,5 +132,7 @@ def _blocks(program: TwinProgram, snapshots: Snapshots) -> Columns:
         "block.m": [list(block.m) for block in blocks],
         "block.tool": [block.tool for block in blocks],
         "block.has_tool": [bool(block.tool) for block in blocks],
+        "block.door": [block.door for block in blocks],
+        "block.clamp": [block.clamp for block in blocks],
         "block.tool_number": [program.tool_number(block.tool) for block in blocks],
     }

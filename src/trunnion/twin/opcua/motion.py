@@ -1,7 +1,8 @@
 """What a published twin of a machine shows beyond the specifications: how axes move, and switches of the machine.
 
 ``Twin.Axes.NAME`` has ``Velocity``, ``Acceleration`` and ``Jerk``, and the switches ``AtMinus`` and ``AtPlus`` at the
-ends of the travel; ``Twin.ToolInSpindle`` and ``Twin.SpindleTurns`` are switches too.
+ends of the travel; ``Twin.ToolInSpindle``, ``Twin.SpindleTurns``, ``Twin.DoorClosed`` and ``Twin.ClampClosed`` are
+switches too. ``Twin.Forces`` is the place of the forces of a cut, which nothing computes yet.
 """
 
 from typing import Final
@@ -12,8 +13,16 @@ from trunnion.twin.opcua.columns import RATES, machine_axes
 from trunnion.twin.opcua.operating import OBJECT
 from trunnion.twin.opcua.space import TWIN, Space
 from trunnion.twin.snapshots import TwinProgram
+from trunnion.twin.switches import SWITCHES, has_switch
 
 AXES: Final = f"{OBJECT}.Axes"
+FORCES: Final = f"{OBJECT}.Forces"
+
+#: Columns -> the switches that show them.
+_SWITCHES: Final = (
+    ("block.has_tool", "ToolInSpindle"), ("spindle.turning", "SpindleTurns"), ("block.door", "DoorClosed"),
+    ("block.clamp", "ClampClosed"),
+)  # fmt: skip
 
 _DOUBLE, _BOOLEAN = ua.VariantType.Double, ua.VariantType.Boolean
 
@@ -39,6 +48,13 @@ async def build_motion(space: Space, program: TwinProgram) -> None:
                 space.show(f"axis.{name}.{key}", _BOOLEAN, f"{path}.{switch}")
             else:
                 await space.absent(f"{path}.{switch}")
-    for key, switch in (("block.has_tool", "ToolInSpindle"), ("spindle.turning", "SpindleTurns")):
+    for key, switch in _SWITCHES:
         await space.variable(f"{OBJECT}.{switch}", TWIN, _BOOLEAN)
-        space.show(key, _BOOLEAN, f"{OBJECT}.{switch}")
+        if (name := key.removeprefix("block.")) in SWITCHES and not has_switch(machine, name):
+            await space.absent(f"{OBJECT}.{switch}")
+        else:
+            space.show(key, _BOOLEAN, f"{OBJECT}.{switch}")
+    await space.folder(space.node(OBJECT), FORCES, "Forces")
+    for name in ("X", "Y", "Z"):
+        await space.variable(f"{FORCES}.{name}", TWIN, _DOUBLE)
+        await space.absent(f"{FORCES}.{name}")

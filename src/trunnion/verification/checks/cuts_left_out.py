@@ -26,7 +26,7 @@ from trunnion.wording import position
 def cuts_left_out(context: ComparedContext, told: Collection[int]) -> Iterator[Place]:
     """Yield where the program leaves the path in a cut and does not come back to where it left it.
 
-    told  rows that are faults themselves
+    told  rows that are faults themselves, or lead safely past blocks that may be skipped
     """
     run = context.run
     gaps = np.flatnonzero(np.diff(_leads_nowhere(context), prepend=False, append=False)).reshape(-1, 2).tolist()

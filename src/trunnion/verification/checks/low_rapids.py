@@ -14,6 +14,7 @@ from trunnion.messages import Wording
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.skipped_ways import points_behind_ways, ways_behind_skipped
 from trunnion.verification.context import ComparedContext, Context
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import approach_rows
@@ -76,14 +77,21 @@ def skipped_retracts(context: Context) -> Iterator[Place]:
     """
     if not isinstance(context, ComparedContext) or not context.expected.without_retract:
         return
-    expected = context.expected
+    expected, safe = context.expected, points_behind_ways(context)
     for nc, cl in context.matching.all_pair_chunks():
         for row, point in zip(nc.tolist(), cl.tolist(), strict=True):
             line = (expected.section_at(point).file, expected.point(point).line)
-            if line in expected.without_retract:
-                is_rapid = context.run.kind[row] == Kind.RAPID
-                how = "retract_skipped_at_rapid" if is_rapid else "retract_skipped_at_feed"
+            if line in expected.without_retract and row not in safe:
+                is_rapid, comes_down = context.run.kind[row] == Kind.RAPID, _comes_from_rapid(context, row)
+                at_feed = "plunge_skipped" if comes_down else "retract_skipped_at_feed"
+                how = "retract_skipped_at_rapid" if is_rapid else at_feed
                 yield context.place(row, 0.0, Wording("modal", how))
+
+
+def _comes_from_rapid(context: ComparedContext, row: int) -> bool:
+    """Whether the motion to the CL point before that of a row is a rapid."""
+    k = context.matching.nc.count_before(row)
+    return k > 0 and bool(context.run.kind[int(context.matching.nc[k - 1])] == Kind.RAPID)
 
 
 def _height_left_at(run: Run, row: int, axis: Floats, entry: float) -> float | None:
@@ -135,6 +143,7 @@ def _suspects(context: Context) -> Flags:
             suspects[nc[expected.kind(cl) == Kind.RAPID]] = False
         holes = match_holes(run, expected)
         suspects[list(hole_approach_rows(run, matching.extra, holes, expected.max_tip_tolerance))] = False
+        suspects[list(ways_behind_skipped(context))] = False
     else:
         holes = match_holes(run)
     suspects[hole_rows(holes)] = False

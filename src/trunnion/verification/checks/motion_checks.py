@@ -9,6 +9,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.cuts_left_out import cuts_left_out
 from trunnion.verification.checks.passages import passage_rows, settings_to_repeat
+from trunnion.verification.checks.skipped_ways import ways_behind_skipped
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.expected.arcs import arc_of
 from trunnion.verification.kinematics.machine_positions import MachinePositions
@@ -32,7 +33,8 @@ def check_order(context: ComparedContext) -> Check:
     retracts = find_rewind_retracts(run, matching.extra, tolerance)
     lawful = {row for retract in retracts for row in range(retract.first, retract.end)}
     passages = passage_rows(context)
-    lawful |= passages
+    ways = ways_behind_skipped(context)
+    lawful |= passages | ways
     lawful |= hole_approach_rows(run, matching.extra, match_holes(run, expected), tolerance)
     machine_positions = MachinePositions.of(run)
     measurable = [row for row in matching.extra if not machine_positions.crossed(np.array([row]))[0]]
@@ -48,7 +50,7 @@ def check_order(context: ComparedContext) -> Check:
         for row in extra[:MAX_PLACES]
     ]
     places += [context.place(row, 0.0, told) for row, told in zip(extra[:MAX_PLACES], posted, strict=True)]
-    left_out = list(cuts_left_out(context, set(extra)))
+    left_out = list(cuts_left_out(context, {*extra, *ways}))
     left_out += [
         context.place(row, 0.0, Wording("order", "not_stated" if row in matching.nc else "not_stated_above", axes=axes))
         for row, axes in unstated_axes(run, matching, passages)

@@ -20,6 +20,7 @@ from trunnion.messages import Wording
 from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.toolpath import (
     Arcs,
+    BlockSkip,
     CutterComp,
     Frame,
     Insert,
@@ -258,6 +259,16 @@ class ExpectedPath:
     def max_tip_tolerance(self) -> float:
         """The largest tip tolerance of all operations, mm."""
         return max(section.tolerances.tip for section in self.sections)
+
+    @cached_property
+    def behind_skipped(self) -> frozenset[int]:
+        """Rows right behind those that an OPSKIP lets the operator skip."""
+        return frozenset(
+            section.first + event.row
+            for section in self.sections
+            for event in section.operation.events
+            if isinstance(event, BlockSkip) and not event.on and event.row < len(section.operation.moves)
+        )
 
     @cached_property
     def insert_counts(self) -> dict[int, int]:

@@ -11,12 +11,15 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
-from trunnion.model.toolpath import BlockSkip, Kind, LoadTool, Operation, SelectTool
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.model.toolpath import BlockSkip, CycleOff, CycleOn, Kind, LoadTool, Moves, Operation, SelectTool
 from trunnion.verification.expected.holes import without_holes, without_rows
 
 #: Smaller motion, mm, is none.
 _STILL: Final = 1e-3
+
+#: Tool axes are the same when no component differs by more than this.
+_SAME_AXIS: Final = 1e-6
 
 
 class SkippedStretch(NamedTuple):
@@ -49,7 +52,7 @@ def skipped_stretches(operation: Operation) -> Iterator[SkippedStretch]:
 def without_stretches(operation: Operation, left_out: Collection[int]) -> tuple[Operation, Flags]:
     """Return the operation as it is while some of its stretches are skipped, and which rows are gone, (n,) bool.
 
-    Tools are called all the same.
+    Tools are called all the same, and cycles begin and end: a point behind the stretch is a hole in both cases or none.
     """
     gone = np.zeros(len(operation.moves), np.bool_)
     for number, stretch in enumerate(skipped_stretches(operation)):
@@ -59,29 +62,57 @@ def without_stretches(operation: Operation, left_out: Collection[int]) -> tuple[
         if isinstance(event, BlockSkip):
             number += event.on and not skips
             skips = event.on
-        if not (skips and number in left_out) or isinstance(event, LoadTool | SelectTool):
+        if not (skips and number in left_out) or isinstance(event, LoadTool | SelectTool | CycleOn | CycleOff):
             events.append(event)
     return without_rows(replace(operation, events=tuple(events)), gone), gone
 
 
 def rows_without_retract(operation: Operation, gone: Flags) -> Ints:
-    """Return the rows that leave the cut sideways while the rows ``gone`` (n,) bool are skipped, as a retract is gone.
+    """Return the rows to which the tool comes aslant while the rows ``gone`` (n,) bool are skipped.
 
-    The skipped rows go higher along the tool than where a cut before them ends, and do not come back there. The cycle
-    of a hole has its own retract.
+    Out of a cut, or from below the top of the cuts, where the skipped rows go higher along the tool and do not come
+    back there, or where the retract follows them; and down into a cut where a rapid of theirs leads above it. The cycle
+    of a hole has its own ways.
     """
-    tip, axis = operation.moves.tip, operation.moves.axis
-    in_cut = (operation.moves.kind != Kind.RAPID) & ~without_holes(operation)[1]
+    moves, holes = operation.moves, without_holes(operation)[1]
     edges = np.flatnonzero(np.diff(np.concatenate(([False], gone, [False])).astype(np.int8)))
-    found = list[int]()
-    for begin, end in edges.reshape(-1, 2).tolist():
-        if begin == 0 or end == len(gone) or not in_cut[begin - 1]:
-            continue
-        start, along = tip[begin - 1], axis[begin - 1]
-        rises = float(((tip[begin:end] - start) @ along).max()) > _STILL
-        comes_back = float(np.abs(tip[end - 1] - start).max()) <= _STILL
-        step = tip[end] - start
-        aside = float(np.linalg.norm(step - (step @ along) * along))
-        if rises and not comes_back and aside > _STILL:
-            found.append(end)
-    return np.array(found, np.int64)
+    ends = [(begin, end) for begin, end in edges.reshape(-1, 2).tolist() if begin and end < len(gone)]
+    way = _Ways(moves, holes)
+    return np.array([end for begin, end in ends if way.is_aslant(begin, end)], np.int64)
+
+
+class _Ways(NamedTuple):
+    """Ways past the skipped rows of an operation, of which some are holes, (n,) bool."""
+
+    moves: Moves
+    holes: Flags
+
+    def is_aslant(self, begin: int, end: int) -> bool:
+        """Whether the way past rows ``begin`` to ``end`` (exclusive) may lead through the part."""
+        moves, holes = self.moves, self.holes
+        before, last = begin - 1, end - 1
+        start, along = moves.tip[before], moves.axis[before]
+        if holes[before] or float(np.abs(moves.tip[last] - start).max()) <= _STILL or self._is_straight(before, end):
+            return False
+        from_cut, to_cut = (moves.kind[row] != Kind.RAPID for row in (before, end))
+        rises = float(((moves.tip[begin:end] - start) @ along).max()) > _STILL
+        if from_cut:
+            retracts = moves.kind[last] != Kind.RAPID and not to_cut and self._is_straight(last, end)
+            return rises or bool(retracts and not holes[last])
+        if holes[end] or holes[last]:
+            return False
+        if to_cut:  # behind skipped cuts it comes there at a feed, as the CL file asks
+            return moves.kind[last] == Kind.RAPID and float((moves.tip[end] - start) @ moves.axis[end]) < -_STILL
+        return rises and float(start @ along) < self._highest(along) - _STILL
+
+    def _is_straight(self, first: int, row: int) -> bool:
+        """Whether the way from one row to another is along the tool of the first one, and the tool does not turn."""
+        along = self.moves.axis[first]
+        step = self.moves.tip[row] - self.moves.tip[first]
+        turns = float(np.abs(self.moves.axis[row] - along).max()) > _SAME_AXIS
+        return not turns and float(np.linalg.norm(step - (step @ along) * along)) <= _STILL
+
+    def _highest(self, along: Floats) -> float:
+        """How high the cuts and holes come along a direction (3,), mm."""
+        cuts = (self.moves.kind != Kind.RAPID) | self.holes
+        return float((self.moves.tip[cuts] @ along).max(initial=-np.inf))

@@ -18,7 +18,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.expected.arcs import arc_of, circle_of
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry
-from trunnion.verification.kinematics.positioning_moves import repeats_position
+from trunnion.verification.kinematics.positioning_moves import repeats_position, stands_still
 from trunnion.verification.matching.hole_approaches import hole_approach_rows
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.intermediate_points import FollowedPath, FollowLimits, PathPoints, follow_path
@@ -160,7 +160,10 @@ class _PathMatcher:
             return 0, repeats
         if repeats_exactly(self._expected, np.array([j]))[0]:
             return 0, 1
-        if self._rows[i] in self._approaches or repeats_position(self._run, self._rows.rows(i, i + 1))[0]:
+        row = self._rows.rows(i, i + 1)
+        # Behind blocks that may be skipped a program states again where it is.
+        again = j in self._expected.behind_skipped and bool(stands_still(self._run, row)[0])
+        if self._rows[i] in self._approaches or again or repeats_position(self._run, row)[0]:
             self._extra.append(self._rows[i])
             return 1, 0
         segments = self._match_arc_segments(i, j) or self._match_circles(i, j)

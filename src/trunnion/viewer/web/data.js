@@ -8,7 +8,7 @@
  * @typedef {{title: string, machine: Machine, bodies: {name: string, link: string, kind: string, tool: string | null, colour: string}[],
  *   tools: {name: string, length: number, known: boolean}[], files: string[], clFiles: string[], clText: number,
  *   operations: {name: string, first: number, end: number, cl: number}[],
- *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, state: string, summary: string}[], standing: string, verdict: string, stands: string[], remarks: string[],
+ *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, state: string, said: string, summary: string}[], standing: string, verdict: string, stands: string[], remarks: string[],
  *   live?: boolean, against?: any, columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData
  */
 

@@ -9,23 +9,12 @@ import { Program } from "./program.js";
 import { readTextOnce } from "./program_text.js";
 import { Space } from "./space.js";
 import { Stock } from "./stock.js";
-import { LANGUAGE, say } from "./texts.js";
+import { putTexts, say } from "./texts.js";
 import { Twin } from "./twin.js";
-
-/** Put the words of the language where the page has keys for them. */
-function putTexts() {
-  document.documentElement.lang = LANGUAGE;
-  document.querySelectorAll("[data-say]").forEach((each) => { each.textContent = say(/** @type {HTMLElement} */ (each).dataset.say ?? ""); });
-  document.querySelectorAll("[data-label]").forEach((each) => {
-    const text = say(/** @type {HTMLElement} */ (each).dataset.label ?? "");
-    each.setAttribute("aria-label", text);
-    each.setAttribute("title", text);
-  });
-}
 
 /** @param {import("./data.js").SceneData} scene */
 function remarksOf(scene) {
-  const found = scene.tools.filter((tool) => !tool.known).map((tool) => say("toolForm", tool.name));
+  const found = scene.tools.filter((tool) => !tool.known).map((tool) => say("toolForm", { tool: tool.name }));
   if (!scene.machine.zero) found.unshift(say("zero"));
   if (!scene.timed) found.push(say("untimed"));
   if (scene.against?.pairs === 0) found.push(say("apart"));

@@ -128,7 +128,7 @@ export class Page {
     const tool = this.scene.tools[program.rows ? program.tool[row] : 0]?.name ?? "";
     const rows = [
       [say("tip"), `${three(tip, 4)} mm`], [say("toolAxis"), three(axis, 5)], ["F", program.rows && program.feed[row] >= 0 ? `${program.feed[row].toFixed(0)} mm/min` : ""], [say("tool"), tool],
-      [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
+      [say("against"), `${clock(this.time)} / ${clock(program.end)} min`],
     ];
     element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");
     this.text.showClLine(row);
@@ -138,10 +138,10 @@ export class Page {
     const list = element("findings");
     element("standing").textContent = this.scene.standing;
     element("basis").className = this.scene.verdict;
-    element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
+    element("findings-title").textContent = say("findings", { count: this.scene.findings.length });
     for (const check of this.scene.checks.filter((one) => one.state !== "ok")) {
       const line = document.createElement("li");
-      line.append(...prose(`${check.key}: ${check.state}: ${check.summary}`));
+      line.append(...prose(say("judged", { check: check.key, state: check.said, what: check.summary })));
       (check.state === "FAIL" ? list : element("unchecked")).append(line);
     }
     for (const text of this.scene.stands) {
@@ -152,7 +152,7 @@ export class Page {
     this.scene.findings.forEach((each) => {
       const line = document.createElement("li"), button = document.createElement("button");
       button.type = "button";
-      button.append(...prose(`${say("line")} ${each.line}: ${each.text}`));
+      button.append(...prose(say("found", { line: each.line, what: each.text })));
       button.addEventListener("click", () => this.goToFinding(each));
       line.append(button);
       list.append(line);
@@ -254,7 +254,9 @@ export class Page {
   setFrame(frame) { for (const space of this.spaces) space.setFrame(frame); }
 
   section() {
-    this.stock?.setOpen(element("section").value !== "");
+    const isOpen = element("section").value !== "";
+    element("section-at").hidden = !isOpen;
+    this.stock?.setOpen(isOpen);
     for (const space of this.spaces) space.section(element("section").value, Number(element("section-at").value));
   }
 
@@ -268,7 +270,7 @@ export class Page {
     this.measuring = [...this.measuring, piece].slice(-2);
     if (this.measuring.length < 2) return;
     const { length, away } = this.space.measure(this.measuring[0], this.measuring[1]);
-    element("status").textContent = `${say("distance")} ${length.toFixed(4)} mm (${away.map((/** @type {number} */ part) => part.toFixed(4)).join("  ")})`;
+    element("status").textContent = `${say("distance")} ${length.toFixed(4)} mm (${away.map((/** @type {number} */ part) => part.toFixed(4)).join("  ")} mm)`;
     this.measuring = [];
   }
 

@@ -9,7 +9,7 @@ const SCALE = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 
 const KINDS = [[200, 120, 40], [30, 110, 200], [20, 150, 130]];
 const PALETTE = [[31, 119, 180], [255, 127, 14], [44, 160, 44], [214, 39, 40], [148, 103, 189], [140, 86, 75], [227, 119, 194], [23, 190, 207]];
 /** Phases of motions, from 1, as trunnion.model.toolpath has them. */
-const PHASES = ["rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse"];
+const PHASES = /** @type {PlainKey[]} */ (["rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse"]);
 /** Colours that the legend tells at most. */
 const MOST_ENTRIES = 8;
 /** That of the current block, as ``space.js`` draws it. */
@@ -42,7 +42,7 @@ export class PathColours {
     const by = element("colour").value;
     if (by === "kind") {
       this.space.paint((piece) => KINDS[program.kind[program.row[piece]]] ?? QUIET);
-      this.#legend(["rapid", "straight", "circle"].map((kind, k) => [say(kind), KINDS[k]]));
+      this.#legend(/** @type {PlainKey[]} */ (["rapid", "straight", "circle"]).map((kind, k) => [say(kind), KINDS[k]]));
     } else if (by === "phase") {
       this.space.paint((piece) => PALETTE[program.phase[program.row[piece]] - 1] ?? QUIET);
       const there = new Set(program.phase);

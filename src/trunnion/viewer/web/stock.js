@@ -301,15 +301,15 @@ export class Stock {
     const { shown, states, mode } = this;
     if (mode === "off") { this.status.textContent = ""; return; }
     const cells = `${[...new Set(this.data.cell.map((width) => Number(width.toPrecision(3))))].join(" × ")} mm`;
-    const words = [say("stockCells", cells)];
-    if (this.asked >= 0) words.unshift(say("stockCutting", this.#lineAfter(this.asked)));
+    const words = [say("stockCells", { cells })];
+    if (this.asked >= 0) words.unshift(say("stockCutting", { line: this.#lineAfter(this.asked) }));
     else if (mode === "deviation") words.unshift(say("stockFinished"));
-    else if (this.#isExact()) words.unshift(shown ? say("stockAfter", this.#lineAfter(this.wanted)) : say("stockUncut"));
+    else if (this.#isExact()) words.unshift(shown ? say("stockAfter", { line: this.#lineAfter(this.wanted) }) : say("stockUncut"));
     else if (states) {
       const next = states.find((state) => state.rows > shown);
-      words.unshift(say("stockBetween", this.#lineAfter(shown), this.#lineAfter(next ? next.rows : shown), states.length));
+      words.unshift(say("stockBetween", { line: this.#lineAfter(shown), next: this.#lineAfter(next ? next.rows : shown), count: states.length }));
     }
-    if (this.data.rows < this.program.rows) words.push(say("stockEnds", this.#lineAfter(this.data.rows)));
+    if (this.data.rows < this.program.rows) words.push(say("stockEnds", { line: this.#lineAfter(this.data.rows) }));
     this.status.textContent = words.join(" ");
   }
 
@@ -327,8 +327,8 @@ export class Stock {
       pen.fillStyle = `rgb(${this.colourOf(share < 0 ? -share * low : share * high).join(",")})`;
       pen.fillRect(x, 0, 1, canvas.height);
     }
-    const name = (/** @type {string} */ key, /** @type {number} */ most_) => (Math.abs(most_) > limit ? `${say(key)} ${Math.abs(most_).toFixed(3)} mm` : `${say(key)} –`);
-    text.textContent = `${name("gouge", least)} | ± ${limit.toFixed(3)} | ${name("left", most)}`;
+    const name = (/** @type {"gouge" | "left"} */ key, /** @type {number} */ most_) => (Math.abs(most_) > limit ? `${say(key)} ${Math.abs(most_).toFixed(3)} mm` : `${say(key)} –`);
+    text.textContent = `${name("gouge", least)} | ± ${limit.toFixed(3)} mm | ${name("left", most)}`;
   }
 }
 
