@@ -328,7 +328,7 @@ _AGAIN = "RAPID\nGOTO/20,40,2\nFEDRAT/MMPM,500\nGOTO/20,40,-5\n"
     ("rest", "said"),
     [
         (f"OPSKIP/ON\n{_UP}OPSKIP/OFF\n{_OVER}{_DOWN}{_ON}", ""),
-        (f"OPSKIP/ON\n{_UP}{_OVER}{_DOWN}OPSKIP/OFF\n{_ON}", "goes from line 13 aslant to line 22"),
+        (f"OPSKIP/ON\n{_UP}{_OVER}{_DOWN}OPSKIP/OFF\n{_ON}", "goes from line 13 aslant to line 24"),
         (f"OPSKIP/ON\nGOTO/30,40,-5\nOPSKIP/OFF\nRAPID\nGOTO/30,40,40\n{_OVER}{_DOWN}{_ON}", "from line 13 aslant"),
         (f"{_UP}OPSKIP/ON\n{_OVER}{_DOWN}GOTO/-30,9,-5\n{_OVER}OPSKIP/OFF\nRAPID\nGOTO/-30,30,40\nEND-OF-PATH\n", ""),
         (f"OPSKIP/ON\n{_UP}{_AGAIN}OPSKIP/OFF\nGOTO/-30,40,-5\n{_ON}", ""),
