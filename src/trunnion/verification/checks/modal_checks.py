@@ -17,10 +17,10 @@ from trunnion.verification.checks.compensation_faults import compensated_askew, 
 from trunnion.verification.checks.lengths_at_part import lengths_lost_at_part
 from trunnion.verification.checks.low_rapids import low_rapids, rapids_at_unknown_heights, skipped_retracts
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
-from trunnion.verification.checks.working_planes import unused_planes
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.event_words import event_word
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
+from trunnion.verification.kinematics.working_planes import unused_planes
 from trunnion.verification.results import Check, Coverage, Place
 from trunnion.verification.row_ranges import chunk_bounds
 from trunnion.verification.spindle_words import TURNING, both_senses, started_behind_cuts
