@@ -1,4 +1,4 @@
-"""The golden programs for Fanuc, Haas, LinuxCNC and an iTNC 530, and what they are posted from."""
+"""The golden programs for Fanuc, Haas, LinuxCNC, an iTNC 530 and a TNC 640, and what they are posted from."""
 
 from dataclasses import dataclass
 
@@ -19,10 +19,12 @@ class Case:
 _BLADE = "yl569/3_blade_finish.cls"
 _CAP = "mikron_600u/cap.cls"
 _PLACE = ("zero=0,0,100", "tool_length=100")
+_NO_TOLERANCE = " has no INTOL and OUTTOL"
 CASES = {
     "fanuc/flange.expected.nc": Case(
         "fanuc/flange.cls", "matsuura_mx330", ("program=7118", "title=Flange 7-1182 Rev B", "work_offset=G54.1 P3")
     ),
+    "fanuc/flange_by_increments.expected.nc": Case("fanuc/flange.cls", "matsuura_mx330", ("distances=incremental",)),
     "fanuc/blade.expected.nc": Case(_BLADE, "matsuura_mx330", ("contour=G05",)),
     "fanuc/blade_by_vectors.expected.nc": Case(_BLADE, "matsuura_mx330", ("orientation=vector",)),
     "fanuc/blade_without_options.expected.nc": Case(
@@ -45,4 +47,13 @@ CASES = {
     "mikron_600u/cap_without_tcp.expected.h": Case(
         _CAP, "mikron_600u", ("tcp=off", *_PLACE), warned="so short that F would be above"
     ),
+    "mikron_600u/flange_by_increments.expected.h": Case(
+        "fanuc/flange.cls", "mikron_600u", ("distances=incremental", "blank=extents"), warned=_NO_TOLERANCE
+    ),
+    **{
+        f"dmu65/bevel_{form}.expected.h": Case(
+            "dmu65/bevel.cls", "dmu65", (f"plane={form}", "blank=extents"), warned=_NO_TOLERANCE
+        )
+        for form in ("spatial", "vector", "euler", "points", "relativ", "axial")
+    },
 }

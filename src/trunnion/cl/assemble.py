@@ -185,7 +185,10 @@ def _event_in_mm(event: Event, unit: float, tool: Tool, diagnostics: Diagnostics
         if diameter <= 0:
             diagnostics.error(event.line, Wording("CL730", "spindle_speed_surface"))
             return event
-        return SpindleOn(event.row, event.line, event.speed / (math.pi * diameter), event.sense)
+        rpm, surface = event.speed / (math.pi * diameter), (event.speed / 1000.0, diameter)
+        said = Wording("CL735", "surface_speed_converted", speed=surface[0], diameter=diameter, rpm=rpm)
+        diagnostics.remark(event.line, said)
+        return SpindleOn(event.row, event.line, rpm, event.sense, surface=surface)
     return event
 
 

@@ -41,6 +41,9 @@ _SAME_FEED: Final = 1e-6
 #: Numbers of events, which some dialects write with fewer decimals.
 _SAME_NUMBER: Final = 1e-5
 
+#: Fields of events that no CL file has words for, or that say where a statement stands.
+_NOT_WRITTEN: Final = ("row", "line", "stated", "surface")
+
 
 def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Problem]:
     """Return what reads back otherwise.
@@ -193,7 +196,7 @@ def _content(event: Event) -> tuple[object, ...]:
         return ("UnknownStatement", "".join(event.text.replace("$", "").split()))
     if isinstance(event, From | GoHome):
         return (type(event).__name__, *_vectors(event))
-    values = (getattr(event, field.name) for field in fields(event) if field.name not in ("row", "line", "stated"))
+    values = (getattr(event, field.name) for field in fields(event) if field.name not in _NOT_WRITTEN)
     return (type(event).__name__, *values)
 
 

@@ -13,6 +13,7 @@ from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureErro
 from trunnion.controls.setting_rules import SettingKind, SettingRule, tool_number
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
+    DISTANCES_SETTING,
     FIVE_AXIS,
     HOLES_IN_PLANES,
     HOLES_SETTING,
@@ -272,6 +273,8 @@ class Control:
         """Whether a setting changes programs: a template prints it, or the writer or the planner reads it."""
         printed = {name for template in self.templates.values() for name, _ in template.fields()}
         if setting in TCP_SETTINGS and not self.template_suffix(MachiningMode.TCP, {}):
+            return False
+        if setting == DISTANCES_SETTING and self.family.INCREMENTS is None:
             return False
         fields = self.family.SETTING_FIELDS.get(setting, ())
         if fields or setting in PRINTED_SETTINGS:

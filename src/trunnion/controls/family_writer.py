@@ -12,7 +12,7 @@ from typing import Final, Protocol
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.template import Value
-from trunnion.controls.words import NumberFormat
+from trunnion.controls.words import IncrementWords, NumberFormat
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.splines import Spline
@@ -76,6 +76,7 @@ class FamilyWriter(Protocol):
     BLOCK_NUMBER_LETTERS  what may stand before a block number; empty among them: numbers without a letter, or none
     HIGHEST_BLOCK_NUMBER  the highest that the control takes
     NEVER_NUMBERED    signs with which lines begin that can have no block number
+    INCREMENTS        how X, Y and Z are said as increments; None: they cannot be
     """
 
     WORDS: tuple[str, ...]
@@ -93,6 +94,7 @@ class FamilyWriter(Protocol):
     BLOCK_NUMBER_LETTERS: tuple[str, ...]
     HIGHEST_BLOCK_NUMBER: int
     NEVER_NUMBERED: str
+    INCREMENTS: IncrementWords | None
 
     def comment(self, text: str) -> list[str]:
         """Return a text as comment lines, whatever characters are in it."""

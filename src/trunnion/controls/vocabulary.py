@@ -44,6 +44,10 @@ LENGTH_UNITS: Final = ("mm", "mm/min")
 #: The setting for what the registers of the radius hold.
 RADIUS_REGISTER_SETTING: Final = "radius_register"
 
+#: The setting for what X, Y and Z of motions count from, and the value with which they are increments.
+DISTANCES_SETTING: Final = "distances"
+INCREMENTAL: Final = "incremental"
+
 #: Settings of a program that every control has: what it says about times and tools, which tools it calls, and the unit
 #: of its lengths. The default is the first value.
 PROGRAM_CHOICES: Final = {
@@ -63,6 +67,7 @@ PROGRAM_CHOICES: Final = {
     "same_tool": ("home", "retract", "clearance"),
     "keep_rotary": ("off", "same_tool", "on"),
     "first_approach": ("as_control", "in_turn"),
+    DISTANCES_SETTING: ("absolute", INCREMENTAL),
 }
 
 #: What each of them changes.
@@ -95,6 +100,9 @@ PROGRAM_MEANINGS: Final = {
     "first_approach": "With in_turn, axes move one group after the other at the start of an operation, and behind "
     "turns to another plane or hole within one: the rotary axes, those across the tool, the one along it; as_control "
     "does so where the control's definition says it.",
+    DISTANCES_SETTING: "What X, Y and Z of motions count from: the zero, or with incremental the position printed "
+    "before (G91; I words in Klartext), in three-axis operations and tilted planes. Approaches, holes of cycles, "
+    "splines, blocks that may be skipped, and motion with TCP or turning axes stay absolute.",
 }
 
 #: Settings of a run besides these: a definition cannot set them.

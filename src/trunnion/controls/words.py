@@ -109,6 +109,21 @@ class Word:
         return self.letter if self.bare else self.letter + self.format.text(value) + self.closing
 
 
+@dataclass(frozen=True, slots=True)
+class IncrementWords:
+    """How a family says that X, Y and Z count from the position before them.
+
+    on, off  the blocks that begin and end it; empty where each word says it
+    prefix   what stands before the letter of each word; empty where blocks say it
+    circles  circles can be said so too
+    """
+
+    on: str = ""
+    off: str = ""
+    prefix: str = ""
+    circles: bool = True
+
+
 class WordRangeError(InputError):
     """A number beyond the limits of its format; ``row`` of a table that has it."""
 

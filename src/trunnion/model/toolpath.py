@@ -1,7 +1,6 @@
 """A toolpath: what the cutter does, in workpiece coordinates.
 
-Dense motion is in columns, one row for each CL point. Sparse events are small frozen records, each with the row before
-which it happens and its line in the CL file.
+Motion is columns, a row for each CL point. Events are frozen records with the row before which they happen, and a line.
 
 Units: mm, degrees, unit vectors for directions, mm/min or mm/rev for feeds.
 Frame: the operation's own coordinate system (``Operation.frame``, MSYS in a CLSF).
@@ -139,11 +138,12 @@ class SelectTool(Event):
 
 @dataclass(frozen=True, slots=True)
 class SpindleOn(Event):
-    """Turn the spindle on, rev/min; surface speeds are converted. ``stated``: by a setting, not by the CL file."""
+    """Turn the spindle on, rev/min; ``stated``: by a setting; ``surface``: of m/min at a diameter in mm."""
 
     rpm: float
     sense: Sense = Sense.CLW
     stated: bool = False
+    surface: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeAlias
 
 from trunnion.controls.definition import Control
-from trunnion.controls.words import Word
+from trunnion.controls.vocabulary import DISTANCES_SETTING, INCREMENTAL
+from trunnion.controls.words import IncrementWords, Word
 from trunnion.encoding import TextForm
 from trunnion.machines import Machine
 from trunnion.model.machining_method import machining_method
@@ -81,6 +82,11 @@ class Program:
     def effective_setting(self, name: str, operation: Operation | None = None) -> str:
         """Return a setting of the run, for an operation if one is given, or else of the definition; empty for none."""
         return self.effective_settings(operation).get(name, "")
+
+    @property
+    def increments(self) -> IncrementWords | None:
+        """How X, Y and Z are said as increments; None where they stay absolute."""
+        return self.control.family.INCREMENTS if self.effective_setting(DISTANCES_SETTING) == INCREMENTAL else None
 
     @property
     def planes_are_of_pose(self) -> bool:

@@ -27,6 +27,8 @@ from trunnion.wording import format_duration
 
 #: The value of the setting ``blank`` for a block form around all cuts.
 EXTENTS: Final = "extents"
+STOCK: Final = "stock"
+NO_BLANK: Final = "off"
 
 #: Letters that begin the text that stands for a machining time while it is not known, and digits behind them: the
 #: number of the operation, from 1, or 0 for the whole program. The times are those of the proof; none is longer.
@@ -116,6 +118,8 @@ class TemplateValues:
         values: dict[str, Value] = {**control.settings, **self._program.settings_of(operation)}
         if values.get("blank") == EXTENTS:
             values["blank"] = self._extents()
+        elif values.get("blank") in (STOCK, NO_BLANK):  # stock that is known has come as its corners
+            values["blank"] = ""
         plane = None if motion.plane is None else motion.plane.matrix()
         values |= self._used
         values |= self._family.template_values(self._in_program_unit(values), plane)

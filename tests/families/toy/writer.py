@@ -8,7 +8,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
-from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.controls.words import ABSENT, IncrementWords, round_to_counts
 from trunnion.messages import Wording, foreign
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Kind, Message, Operation, Sense, SpindleOn, Stop
@@ -29,6 +29,7 @@ COMMENTS: re.Pattern[str] = re.compile(r"(;.*)")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
+INCREMENTS: IncrementWords | None = None
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 

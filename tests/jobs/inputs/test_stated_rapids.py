@@ -93,3 +93,15 @@ def test_holes_at_that_feed_stay_holes(part: Path) -> None:
 def test_without_the_settings_it_is_as_before(part: Path) -> None:
     with pytest.raises((trunnion.InputError, trunnion.RefusedError), match="CTL510"):
         trunnion.post(part, machine="yl569")
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_a_surface_speed_is_told_with_the_speed_that_it_becomes(machine: str, part: Path, tmp_path: Path) -> None:
+    text = part.read_text(encoding="utf-8").replace("FEDRAT/MMPM,5000", "SPINDL/SMM,20,CLW\nFEDRAT/MMPM,5000")
+    part.write_text(text, encoding="utf-8")
+    done = trunnion.post(part, machine=machine, output=tmp_path / "a.nc")
+    assert done.passed
+    said = [str(problem) for problem in done.problems if problem.code == "CL735"]
+    assert len(said) == 1
+    assert "the surface speed 20 m/min becomes 637 rev/min, by the diameter 10 mm" in said[0]
+    assert "SPINDLE OF A CONVERTED, 637 REV/MIN OF 20 M/MIN AT 10 MM" in (tmp_path / "a.nc").read_text().upper()

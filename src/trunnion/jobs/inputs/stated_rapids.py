@@ -38,13 +38,19 @@ def with_stated_rapids(toolpaths: Iterable[Toolpath], settings: Mapping[str, str
 
 
 def stated_notices(toolpaths: Iterable[Toolpath], settings: Mapping[str, str]) -> tuple[str, ...]:
-    """Return comments for the head of a program on speeds and rapids that settings state and its CL files do not."""
+    """Return comments for the head of a program on speeds and rapids that settings state and its CL files do not, and
+    on speeds that were computed from surface speeds.
+    """
     notices = dict[str, None]()
     for operation in (each for path in toolpaths for each in path.operations):
         for event in operation.events:
             if isinstance(event, SpindleOn) and event.stated:
                 sense = "COUNTER-CLOCKWISE" if event.sense is Sense.CCLW else "CLOCKWISE"
                 notices[f"SPINDLE OF {operation.name} BY SETTING, {event.rpm:g} REV/MIN {sense}"] = None
+            elif isinstance(event, SpindleOn) and event.surface is not None:
+                speed, diameter = event.surface
+                found = f"{event.rpm:.0f} REV/MIN OF {speed:g} M/MIN AT {diameter:g} MM"
+                notices[f"SPINDLE OF {operation.name} CONVERTED, {found}"] = None
     for name, feed in stated_by_operation(_KEY, settings, _feed).items():
         notices[f"LINES{f' OF {name}' if name else ''} FROM {feed:g} MM/MIN ON ARE RAPIDS, BY SETTING"] = None
     return tuple(notices)

@@ -100,7 +100,7 @@ def _replacing(operation: Operation, low: Sequence[SpindleOn], speed: float) -> 
         said = Wording("ARG230", "states_other_sense", operation=operation.name, sense=str(low[0].sense))
         raise InputError(setting_problem(_KEY, said))
     events = [
-        replace(each, rpm=stated.rpm, stated=True) if isinstance(each, SpindleOn) and each in low else each
+        replace(stated, row=each.row, line=each.line) if isinstance(each, SpindleOn) and each in low else each
         for each in operation.events
     ]
     return replace(operation, events=tuple(events))

@@ -40,6 +40,7 @@ from trunnion.readers import check_reading
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.inputs.bodies import KnownTools
     from trunnion.jobs.inputs.simulation_input import SimulationInput
+    from trunnion.simulation.meshes import TriangleMesh
 
 #: Values of the setting ``mode``.
 _MODES: Final = {
@@ -74,6 +75,8 @@ class PostJob:
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
     can_force     whether ``force`` can be asked for, which refusals then say
+    stock         of the part as it is drawn, where a simulation or a project states it
+    blank         corners of its box as the part is clamped, for the setting ``blank``; empty: not known
     setups        the machine with the tool and the work offset of single operations
     strict        a basis of the proof that is missing is an error
     """
@@ -96,12 +99,15 @@ class PostJob:
     decisions: tuple[Decision, ...] = ()
     can_force: bool = True
     strict: bool = False
+    stock: "str | Path | TriangleMesh | None" = None
+    blank: str = ""
     setups: Mapping[OperationKey, Machine] = field(default_factory=dict)
 
     @property
     def printed(self) -> dict[str, str]:
         """The settings that templates print."""
-        return {key: value for key, value in self.settings.items() if key not in RUN_SETTINGS or key in PROGRAM_CHOICES}
+        found = {key: text for key, text in self.settings.items() if key not in RUN_SETTINGS or key in PROGRAM_CHOICES}
+        return {**found, "blank": self.blank} if self.blank else found
 
     @property
     def encoding(self) -> str:

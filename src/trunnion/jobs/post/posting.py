@@ -8,7 +8,7 @@ Out:    the program: planned, written, read back, run and compared with its tool
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Final, Unpack
+from typing import TYPE_CHECKING, Final, Unpack
 
 from trunnion.controls.vocabulary import RADIUS_REGISTER_SETTING
 from trunnion.files import OutputGroup, file_on_disk
@@ -39,6 +39,11 @@ from trunnion.messages import phrase
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 
+if TYPE_CHECKING:  # imported where stock is known
+    from pathlib import Path
+
+    from trunnion.simulation.meshes import TriangleMesh
+
 #: What ``sheet_tools`` may have.
 _SHEET_TOOLS: Final = ("tools", "tool_libraries", "unit")
 
@@ -52,6 +57,7 @@ class Work:
     is_placed  the head of the program says how the part is clamped, even if that is as it is drawn
     can_force  whether refusals speak of ``force``
     later      takes the papers, and who gives it writes them; None: they are written
+    stock      of the part as it is drawn, where nothing has cut it; None: it is not known
     """
 
     others: Sequence[FilePath] = ()
@@ -59,6 +65,7 @@ class Work:
     is_placed: bool = False
     can_force: bool = True
     later: list[PostPapers] | None = None
+    stock: "str | Path | TriangleMesh | None" = None
 
 
 #: A post that is part of nothing.
@@ -182,14 +189,14 @@ def post_beside(
         columns=found["columns"],
     )  # fmt: skip
     existing, hook_files = (check_paths(name, found.get(name)) for name in ("subprograms", "hooks"))
-    job = replace(job, beside=tuple(existing), can_force=work.can_force, strict=found["strict"])
+    job = replace(job, beside=tuple(existing), can_force=work.can_force, strict=found["strict"], stock=work.stock)
     inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *work.others]
     if (simulation := found["simulation"]) is not None:
         from trunnion.jobs.simulate.posted import simulation_files, simulation_input
 
         read = tuple(simulation_files(simulation))
         simulated = simulation_input(simulation, job.machine, job.settings.get(RADIUS_REGISTER_SETTING))
-        job = replace(job, simulation=simulated, simulation_files=read)
+        job = replace(job, simulation=simulated, simulation_files=read, stock=simulated.stock)
         inputs += read
     if (tools := found["sheet_tools"]) is not None:
         from trunnion.jobs.inputs.bodies import known_tools

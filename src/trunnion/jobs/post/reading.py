@@ -15,6 +15,7 @@ from trunnion.jobs.post.post_job import PostJob
 from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.model.clamping_notices import clamped_notices
 from trunnion.model.toolpath import Message, Toolpath
+from trunnion.output.template_values import STOCK
 
 if TYPE_CHECKING:
     from trunnion.hooks.calling import Hooks
@@ -31,6 +32,10 @@ def as_clamped(
     clamping = clamped_after(stated, angles, toolpaths[0].file)
     toolpaths, carried = _without_notices(toolpaths, job)
     toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
+    if job.stock is not None and {**job.control.settings, **job.settings}.get("blank") == STOCK:
+        from trunnion.jobs.post.block_forms import corners_of_stock  # few programs have a block form
+
+        job = replace(job, blank=corners_of_stock(job.stock, clamping))
     job = with_operation_setups(toolpaths, job)
     notices: tuple[str, ...] = ()
     if is_placed or stated is not None or not clamping.is_as_drawn:

@@ -7,7 +7,7 @@ Out:    the programs of each set-up, each of them proven.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup
@@ -27,6 +27,9 @@ from trunnion.jobs.project.settings import told_in_project
 from trunnion.jobs.result_output import NO_PAPERS, PaperFiles
 from trunnion.machines import Machine
 from trunnion.model.motion import Motion
+
+if TYPE_CHECKING:
+    from trunnion.simulation.meshes import TriangleMesh
 
 #: A set-up, and its programs in their order.
 PostedPrograms: TypeAlias = tuple[PostedSetup, tuple[PostResult, ...]]
@@ -136,6 +139,14 @@ def _sheet_tools(posting: ProjectPosting, setup: PostedSetup) -> Mapping[str, An
     return {name: getattr(simulated, name) for name in ("tools", "tool_libraries", "unit")}
 
 
+def _stock_of(project: Project, setup: PostedSetup) -> "str | Path | TriangleMesh | None":
+    """Return the stock of the first set-up, which nothing has cut; None where it is not drawn as it stands."""
+    first = project.simulation.setups[0]
+    if setup is not project.posted[0] or first.pose is not None:
+        return None
+    return project.simulation.stock or None
+
+
 def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program: _Program) -> PostResult:
     project = posting.project
     given: Any = {
@@ -143,7 +154,8 @@ def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program
         "strict": posting.is_strict, "explain": posting.options.explain, "hooks": project.hooks,
         "columns": project.checks.longest_s is not None, "sheet_tools": _sheet_tools(posting, setup),
     }  # fmt: skip
-    work = Work(posting.inputs, posting.group, can_force=False, later=posting.later)
+    stock = _stock_of(project, setup)
+    work = Work(posting.inputs, posting.group, can_force=False, later=posting.later, stock=stock)
     return post_beside(program.cl, machine, given, work, posting.observer)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.controls.vocabulary import VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT
 
 
@@ -16,12 +17,14 @@ class BlockTable:
     columns  word -> (n,) int64 counts, ``ABSENT`` where the block lacks the word
     forced   word -> (n,) int64, 1 where the word is written even if it is modal and unchanged
     lines    row -> a line of its own before the block
+    absolute  rows in which X, Y and Z must not be increments
     """
 
     rows: int
     columns: dict[str, Ints] = field(default_factory=dict)
     forced: dict[str, Ints] = field(default_factory=dict)
     lines: dict[int, str] = field(default_factory=dict)
+    absolute: set[int] = field(default_factory=set)
 
     def column(self, word: str) -> Ints:
         """Return the column of a word; a new one is empty."""
@@ -40,6 +43,23 @@ class BlockTable:
         """Put words, as counts, into a row."""
         for word, count in words.items():
             self.column(word)[row] = count
+
+    def set_missing(self, row: int, words: Mapping[str, int]) -> None:
+        """Put words, as counts, into a row where it has none of them."""
+        present = self.words_of_row(row)
+        self.set_words(row, {w: c for w, c in words.items() if present.get(w, ABSENT) == ABSENT})
+
+    def relative_rows(self, first: int) -> Flags:
+        """Return the rows whose X, Y and Z may be increments, (n,) bool.
+
+        The first row of a motion, where ``first`` is 0, is none: whatever brought the tool there, it begins anew. Nor
+        are rows with a surface normal or a tool axis as a vector.
+        """
+        may = np.ones(self.rows, np.bool_)
+        may[[row for row in self.absolute if row < self.rows]] = False
+        may[: first == 0] = False
+        vectors = self.columns.get(VECTOR_LINE_WORD)
+        return may if vectors is None else np.asarray(may & (vectors == ABSENT))
 
     def words_of_row(self, row: int) -> dict[str, int]:
         """Return the words of a row, as counts."""

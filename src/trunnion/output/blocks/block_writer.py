@@ -6,11 +6,12 @@ from typing import BinaryIO, Final, NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Bytes, Ints
-from trunnion.controls.words import ABSENT, BlockNumbers, Word, WordRangeError
+from trunnion.arrays import Bytes, Flags, Ints
+from trunnion.controls.words import ABSENT, BlockNumbers, IncrementWords, Word, WordRangeError
 from trunnion.encoding import TextForm
 from trunnion.messages import Wording
 from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, NUMBER, WAIT, write_blocks
+from trunnion.output.blocks.increments import AXES, PositionTable, with_increments, words_with_increments
 from trunnion.output.blocks.line_heads import GivenNumbers, LineHeads
 
 #: Rows of a table at most: one chunk stays in the processor's cache.
@@ -53,9 +54,16 @@ class BlockWriter:
     """
 
     def __init__(
-        self, sink: BinaryIO, words: Sequence[Word], numbers: BlockNumbers, form: TextForm = _PLAIN_FORM
+        self,
+        sink: BinaryIO,
+        words: Sequence[Word],
+        numbers: BlockNumbers,
+        form: TextForm = _PLAIN_FORM,
+        increment_words: IncrementWords | None = None,
     ) -> None:
+        """Write to ``sink``; with ``increment_words``, X, Y and Z are increments where ``write_table`` is told so."""
         self._numbers, self._form = numbers, form
+        self._increments, self._counts_on = increment_words, False  # whether the control counts from the last position
         self._line_end = np.frombuffer(form.line_end, np.uint8)
         self._next_numbers: dict[BinaryIO, Ints] = {}
         self._given_numbers: dict[BinaryIO, GivenNumbers] = {}
@@ -80,6 +88,7 @@ class BlockWriter:
         """
         numbers = self._numbers
         first = [numbers.start, numbers.step, numbers.start, numbers.highest, *_first_wait(numbers)]
+        self.end_increments()
         self._sink = sink
         self._number = self._next_numbers.setdefault(sink, np.array(first, np.int64))
         self._given = self._given_numbers.setdefault(sink, GivenNumbers(numbers))
@@ -96,14 +105,20 @@ class BlockWriter:
         return len(self._skip) > 0
 
     def begin_operation(self) -> None:
-        """Give the next block a number, where operations have the numbers."""
+        """Give the next block a number, where operations have the numbers.
+
+        Where blocks switch increments on, one switches them off: a run may be entered here that stopped within them.
+        """
+        self.end_increments()
         self.operation_starts.append((*self.place, -1))
         self._begins = True
         if self._numbers.numbered and self._numbers.at_operations:
             self._number[WAIT] = 0
+        self._counts_on = self._increments is not None and bool(self._increments.off)
 
     def set_block_skip(self, on: bool) -> None:
-        """Start the next blocks with the block-skip sign, or no longer."""
+        """Start the next blocks with the block-skip sign, or no longer; none of these has increments."""
+        self.end_increments()
         self._skip = np.frombuffer(b"/" if on else b"", np.uint8)
 
     @property
@@ -115,6 +130,8 @@ class BlockWriter:
 
     def use_words(self, words: Sequence[Word]) -> None:
         """Change the set of words. The state of words that print as before stays known."""
+        if self._increments is not None:
+            words = words_with_increments(words, self._increments)
         printed = dict(zip(self._keys, self._last, strict=True))
         kept = {word.key: printed[word.key] for word in words if self._words.get(word.key) == word}
         self._words = {word.key: word for word in words}
@@ -176,6 +193,16 @@ class BlockWriter:
         texts = list(lines)
         if not texts:
             return
+        self.end_increments()
+        self._write_texts(texts)
+
+    def end_increments(self) -> None:
+        """Let positions be absolute again, if they are not."""
+        if self._counts_on and self._increments is not None:
+            self._counts_on = False
+            self._write_texts([self._increments.off])
+
+    def _write_texts(self, texts: Sequence[str]) -> None:
         before = np.arange(len(texts) + 1)
         no_words = _WordColumns(self._rule[:0], self._spelling[:0], self._last[:0])
         empty, unforced = np.zeros((0, len(texts)), np.int64), np.zeros(len(texts), np.int64)
@@ -192,6 +219,7 @@ class BlockWriter:
         text_before: Ints | None = None,
         texts: Sequence[str] = (),
         lines: Mapping[int, str] | None = None,
+        relative: Flags | None = None,
     ) -> None:
         """Write one block a row. A row with nothing to print, or only bare words, makes no block.
 
@@ -199,12 +227,14 @@ class BlockWriter:
         forced       word key -> (n,) 0 or 1, or one flag for all rows: write the word even if it is modal and unchanged
         text_before  (n,) int64, optional: index into ``texts`` of a line before the row, -1 for none
         lines        row -> a line of its own right before it, after the one of ``text_before``
+        relative     (n,) bool: rows in which X, Y and Z may be increments; none without it
 
         Raises ``WordRangeError`` if a number is beyond the limits of its word's format.
 
         Raises ``InputError`` if a line brings a block number that automatic numbering gives to another block.
         """
         rows = len(next(iter(columns.values())))
+        (columns, forced, lines), ends = self._with_increments(PositionTable(columns, forced, lines), relative)
         present = [k for k, key in enumerate(self._keys) if key in columns]
         table = np.empty((len(present), rows), np.int64)
         flags = np.zeros(rows, np.int64)
@@ -217,6 +247,17 @@ class BlockWriter:
         words = _WordColumns(self._rule[present], self._spelling[present], self._last[present])
         self._write(table, flags, words, _lines_before(rows, text_before, texts, lines or {}))
         self._last[present] = words.last
+        for key, count in ends.items():
+            self.remember(key, count)
+
+    def _with_increments(self, table: PositionTable, relative: Flags | None) -> tuple[PositionTable, Mapping[str, int]]:
+        """Return a table with its increments, and the positions behind it."""
+        if self._increments is None or not any(key in table.columns for key in AXES):
+            return table, {}
+        last = {key: self.last_count(key) for key in AXES}
+        may = None if self.skips_blocks else relative
+        found, ends, self._counts_on = with_increments(table, last, may, self._increments, on=self._counts_on)
+        return found, ends
 
     def _write(self, table: Ints, forced: Ints, words: _WordColumns, lines: _Lines) -> None:
         """Run the kernel and write its bytes; ``words.last`` is updated."""

@@ -66,7 +66,8 @@ class MotionBlockWriter:
         self.family: FamilyWriter = program.control.family
         self.progress = progress
         self._words = program.block_words(program.motions[0])
-        self.writer = BlockWriter(sink, self._words, self.control.block_numbers, program.text_form)
+        numbers, increments = self.control.block_numbers, program.increments
+        self.writer = BlockWriter(sink, self._words, numbers, program.text_form, increments)
         self.passages: list[tuple[BinaryIO, int, tuple[str, ...], Template]] = []  # sink, line, texts, template
         self.feeds = FeedWords(program, self.writer)
         self._orientation = OrientationWords(program, self.writer, self._words)
@@ -160,6 +161,7 @@ class MotionBlockWriter:
 
         Raises ``InputError`` if another line is, or has a character that the program's encoding lacks.
         """
+        self.writer.end_increments()
         sign, blocks, continues = self.control.continued, list[str](), False
         own = source if source is not None and source.is_of_user else None
         file, at = own.place_of(0) if own is not None else (self._file, 0)
@@ -277,12 +279,15 @@ class MotionBlockWriter:
             table.set_words(0, first_words)
         for event in joining_events:
             table.set_words(event.row - start, self.event_words(event))
-        self._repeat_words(table)
+        table.set_missing(0, self._words_to_repeat)
+        self._words_to_repeat = {}
         ids, texts = self.phase_texts()
         phases = ids[moves.phase[rows]]
         changes = phases != np.concatenate(([phase], phases[:-1]))
+        relative = table.relative_rows(start) if motion.mode in _Z_ALONG_TOOL else None
+        comments = np.where(changes, phases, -1), texts
         try:
-            self.writer.write_table(table.columns, table.forced, np.where(changes, phases, -1), texts, table.lines)
+            self.writer.write_table(table.columns, table.forced, *comments, table.lines, relative)
         except WordRangeError as error:
             raise error.at(self._file, int(moves.line[start + error.row])) from None
         if other_end:
@@ -341,7 +346,10 @@ class MotionBlockWriter:
             every[at] = flags
             table.force(word, every)
         table.lines |= {row: line for row, line in zip(at.tolist(), words.lines or (), strict=False) if line}
+        if self.family.INCREMENTS is not None and not self.family.INCREMENTS.circles:
+            table.absolute |= set(at.tolist())
         other_end = table.columns["X"] == ABSENT
+        table.absolute |= set((np.flatnonzero(other_end) + 1).tolist())
         for word in "XYZ":  # the block after such an arc has its end in full
             table.force(word, np.concatenate(([False], other_end[:-1])))
         return bool(other_end[-1])
@@ -389,11 +397,3 @@ class MotionBlockWriter:
         self.writer.forget()
         self.feeds.forget_mode()
         self._orientation.begin_file()
-
-    def _repeat_words(self, table: BlockTable) -> None:
-        """Put the words to repeat into the first row, where it has none of its own."""
-        if self._words_to_repeat:
-            present = table.words_of_row(0)
-            missing = {w: c for w, c in self._words_to_repeat.items() if present.get(w, ABSENT) == ABSENT}
-            table.set_words(0, missing)
-            self._words_to_repeat = {}

@@ -27,9 +27,11 @@ _STILL = 1e-6
 
 
 def part_of(program: Program) -> SweptPart:
-    """Return the part around everything that a program cuts, and its zero."""
+    """Return the part around everything that a program cuts, its zero, and its block form."""
     points = [np.zeros(3)]
     points += cut_extents(program.motions) or ()
+    if len(corners := program.effective_setting("blank").split(",")) == 6:  # a block form that the program states
+        points += list(np.array(list(map(float, corners))).reshape(2, 3))
     for motion in program.motions:
         points += _feed_starts(motion.operation)
     return SweptPart.around(program.machine, np.array(points).reshape(-1, 3))

@@ -111,6 +111,12 @@ CURES: Final = (
     _within("CL715", "fedrat_0", "FEDRAT/MMPM,0", "FEDRAT/MMPM,100"),
     _said("CL716", "inch_in_metric_file", f"UNITS/MM\n{HEAD}FEDRAT/IPM,800\n{_THERE}", ("IPM", "MMPM")),
     _said("CL716", "metric_in_inch_file", f"UNITS/INCHES\n{HEAD}{_THERE}", ("MMPM", "IPM")),
+    _said(
+        "CL735",
+        "surface_speed_converted",
+        _CUT.replace("SPINDL/RPM,4000.0000,CLW", "SPINDL/SMM,100,CLW"),
+        ("SPINDL/SMM,100,CLW", "SPINDL/RPM,3183,CLW"),
+    ),
     _within("CL730", "spindl_speed_0", "SPINDL/RPM,0,CLW", "SPINDL/RPM,1000,CLW"),
     _within("CL730", "spindl_negative_speed", "SPINDL/RPM,-1000", "SPINDL/RPM,1000,CCLW"),
     _within("CL730", "spindl_without_speed", "SPINDL/", "SPINDL/RPM,1000,CLW"),

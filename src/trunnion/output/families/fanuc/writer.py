@@ -15,6 +15,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import LINES_FOR_SPLINES, SPLINES_SETTING
+from trunnion.controls.words import IncrementWords
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Operation, Stop
@@ -63,6 +64,7 @@ COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999
 NEVER_NUMBERED = "%O"
+INCREMENTS: IncrementWords | None = IncrementWords("G91", "G90")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}
 )

@@ -11,7 +11,13 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.controls.family_writer import FIRST_HOLE, ArcWords, Codes, Formats, UnsupportedFeatureError
+from trunnion.controls.family_writer import (
+    FIRST_HOLE,
+    ArcWords,
+    Codes,
+    Formats,
+    UnsupportedFeatureError,
+)
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import (
     ALL_LEFT_ON,
@@ -20,7 +26,7 @@ from trunnion.controls.vocabulary import (
     SAFE_START_SETTING,
     TCP_USED,
 )
-from trunnion.controls.words import ABSENT
+from trunnion.controls.words import ABSENT, IncrementWords
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
@@ -55,6 +61,7 @@ COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
+INCREMENTS: IncrementWords | None = IncrementWords("G91", "G90", circles=False)
 TEMPLATE_FIELDS: frozenset[str] = frozenset(_CANCELLING_FIELDS)
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

@@ -13,7 +13,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import PROJECTED_ANGLES, RADIUS_ARC_WORDS
-from trunnion.controls.words import ABSENT
+from trunnion.controls.words import ABSENT, IncrementWords
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
@@ -96,6 +96,7 @@ COMMENTS: re.Pattern[str] = re.compile(r'(;.*|^\* - .*)|"[^"]*"')
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("",)
 HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
+INCREMENTS: IncrementWords | None = IncrementWords(prefix="I")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
         "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "free_axis", "blank_low",
@@ -204,7 +205,7 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     distance = settings.get("retract_distance", "")
     if distance and not (re.fullmatch(r"[0-9]{1,5}(\.[0-9]{1,4})?", distance) and float(distance) > 0.0):
         wrong.append(("retract_distance", phrase("distance_of_retract")))
-    if blank not in ("", "extents") and _blank_corners(blank) is None:
+    if blank not in ("", "off", "extents", "stock") and _blank_corners(blank) is None:
         wrong.append(("blank", phrase("corners_of_blank")))
     return wrong
 

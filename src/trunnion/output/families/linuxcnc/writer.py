@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError
 from trunnion.controls.template import Value
-from trunnion.controls.words import ABSENT
+from trunnion.controls.words import ABSENT, IncrementWords
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, BlockSkip, CutterComp, Dwell, Message, Operation, Stop
@@ -42,6 +42,7 @@ COMMENTS: re.Pattern[str] = re.compile(r"(;.*|\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999
 NEVER_NUMBERED = ""
+INCREMENTS: IncrementWords | None = IncrementWords("G91", "G90")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: How a comment begins that LinuxCNC executes, after a semicolon as in brackets: it shows or logs texts, opens files,

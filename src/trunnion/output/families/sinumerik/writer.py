@@ -23,6 +23,7 @@ from trunnion.controls.vocabulary import (
     SPLINES_SETTING,
     TCP_USED,
 )
+from trunnion.controls.words import IncrementWords
 from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
@@ -85,6 +86,7 @@ COMMENTS: re.Pattern[str] = re.compile(r'(MSG\("[^"]*"\)|;.*)|"[^"]*"')
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 HIGHEST_BLOCK_NUMBER = 99999999
 NEVER_NUMBERED = ""
+INCREMENTS: IncrementWords | None = IncrementWords("G91", "G90")
 TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, OFFSET_BEFORE_TURN, "interpolation"})
 
 #: A block has 512 characters at most, with its number; the display shows 124 of a message.
