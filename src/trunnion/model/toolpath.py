@@ -338,8 +338,7 @@ class Frame:
 
     def matrix(self) -> Floats:
         """(3, 3) float64: columns are X, Y, Z of this frame in the absolute system."""
-        x, y = np.array(self.x), np.array(self.y)
-        return np.column_stack((x, y, np.cross(x, y)))
+        return np.column_stack((self.x, self.y, self.z))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
