@@ -88,6 +88,7 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
             xyz_is_tip=same(0, np.bool_),
             plane=same(-1, np.int32),
             length_axis=same(2, np.int8),
+            working_plane=same(2, np.uint8),
             feed_path=same(0, np.uint8),
         ),
         start=np.zeros(5),

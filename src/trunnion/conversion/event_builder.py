@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import groupby
+from typing import Final
 
 import numpy as np
 
@@ -28,7 +29,9 @@ from trunnion.model.toolpath import (
 )
 
 _SENSE_OF_SIGN = {1: Sense.CLW, -1: Sense.CCLW, 0: None}
-_COOLANT_CODE = {"mist": 7, "flood": 8, "off": 9}
+
+#: CL words of coolants, the preferred first.
+_COOLANT_WORDS: Final = {"mist": ("MIST",), "flood": ("ON", "FLOOD"), "off": ("OFF",)}
 
 
 class EventBuilder:
@@ -176,7 +179,8 @@ class EventBuilder:
         """Return the CL word of coolant that the reader knows."""
         if value == "through":
             return "THRU"
-        return self._coolants.get(_COOLANT_CODE[value], value.upper())
+        known = self._coolants.values()
+        return next((word for word in _COOLANT_WORDS[value] if word in known), value.upper())
 
     def _lose(self, kind: str, event: ProgramEvent) -> None:
         """Say of an event that no operation holds what the table of states has."""

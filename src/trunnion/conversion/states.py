@@ -85,7 +85,7 @@ STATES: Final = (
     ),
     State(
         "tilted plane", "CYCLE800, PLANE, G68.2, G254", _PATH, kinds=("tilt", "plane", "cycle800", "level"),
-        columns=("plane", "xyz_is_tip", "length_axis"),
+        columns=("plane", "xyz_is_tip", "length_axis", "working_plane"),
     ),
     State("frame and shift", "TRANS, ROT, SCALE, G52, cycle 7", _PATH, kinds=("frame",)),
     State("TCP", "TRAORI, M128, G43.4, G96 (Fidia)", _PATH, columns=("tcp",)),
@@ -145,7 +145,7 @@ STATES: Final = (
         "position of the machine", "SUPA, G53, M91, M140", _REPORTED, kinds=("retract", "leave"),
         columns=("machine_frame", "machine_steps"),
     ),
-    State("drilling cycle", "CYCLE81, G83, cycle 200", _REPORTED, kinds=("hole",)),
+    State("drilling cycle", "CYCLE81, G83, cycle 200", _REPORTED, kinds=("hole", "cycle_value")),
     State("variable", "R1, #1, Q1", _PATH),
     State("end", "M30, M2", _PATH, kinds=("end",)),
     State("begin anew", "M99 of a main program", _REPORTED),

@@ -204,7 +204,8 @@ class FunctionTemplate(Template):
             number = isinstance(value, int | float) and not isinstance(value, bool)
             if value is not None and not (number and math.isfinite(value) and abs(value) <= _GREATEST):
                 raise self._refused("word_value", word=key, value=repr(value)[:40])
-            if value != given.get(key):
+            # Where a word that there is not would be left out, its name is misspelt.
+            if key not in given or value != given[key]:
                 found[key] = None if value is None else float(value)
         return found
 

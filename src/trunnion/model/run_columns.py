@@ -50,6 +50,7 @@ class ModalState:
     feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
     length_axis  along which of X, Y and Z the tool length counts where positions are those of the linear axes: 0, 1, 2;
                 -1: none; ``BY_PARAMETER`` more: along that one or along Z, as a parameter of the control says
+    working_plane  the axis across the working plane that the program has chosen: 0, 1, 2; 2 while it has chosen none
     """
 
     file: StepColumn
@@ -75,6 +76,7 @@ class ModalState:
     plane: StepColumn
     feed_path: StepColumn
     length_axis: StepColumn
+    working_plane: StepColumn
 
     def follows(self, first: int, end: int) -> Flags:
         """Whether linear axes follow the rotary ones to the tip, with TCP or at the ends of blocks, in consecutive

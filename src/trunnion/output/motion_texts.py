@@ -147,6 +147,11 @@ def cycle_rows(motion: Motion) -> Flags:
 
 # Cycles and coolants
 
+#: Words with numbers of CYCLE: a function may leave out one that the statement does not have.
+_CYCLE_WORDS: Final = frozenset(
+    {"RAPTO", "CLEAR", "FEDTO", "RTRCTO", "STEP", "DWELL", "MMPM", "MMPR", "CSKDIA", "TLANGL", "NODRAG"}
+)
+
 
 def cycle_words(event: CycleOn) -> dict[str, float]:
     """Return the numbers of a cycle by the words before them: the first of each."""
@@ -162,7 +167,8 @@ def changed_cycle(event: CycleOn, answer: Answer) -> CycleOn:
     if not answer.words or source is None:
         return event
     known = cycle_words(event)
-    if unknown := next((word for word in answer.words if word not in known), ""):
+    left_out = {word for word, value in answer.words.items() if value is None} & _CYCLE_WORDS
+    if unknown := next((word for word in answer.words if word not in known.keys() | left_out), ""):
         raise _refused(source, "unknown_word", word=unknown, known=tuple(known))
     values = []
     for word, numbers in event.values:

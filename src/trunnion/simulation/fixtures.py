@@ -127,7 +127,26 @@ def _read(kind: str, text: str) -> dict[str, tuple[float, ...]]:
         found.get("jaws", (3.0,))[0].is_integer() and _FEWEST_JAWS <= found.get("jaws", (3.0,))[0] <= _MOST_JAWS
     ):
         raise _SizeError("no_jaws", fewest=_FEWEST_JAWS, most=_MOST_JAWS)
-    return {name: size.default for name, size in known.items()} | found
+    sizes = {name: size.default for name, size in known.items()} | found
+    (_check_chuck if kind == "chuck" else _check_vice)(sizes)
+    return sizes
+
+
+def _check_chuck(sizes: Mapping[str, tuple[float, ...]]) -> None:
+    """Refuse jaws that stand beside the chuck, or in each other."""
+    (diameter,), (grip,), width, jaws = sizes["diameter"], sizes["grip"], sizes["jaw"][1], sizes["jaws"][0]
+    if grip >= diameter:
+        raise _SizeError("grip_beyond", grip=grip, diameter=diameter)
+    widest = grip * math.tan(math.pi / jaws) if jaws > _FEWEST_JAWS else math.inf
+    if width > widest:
+        raise _SizeError("jaws_overlap", width=width, jaws=int(jaws), grip=grip, widest=math.floor(10 * widest) / 10)
+
+
+def _check_vice(sizes: Mapping[str, tuple[float, ...]]) -> None:
+    """Refuse jaws that stand beside the base."""
+    length, needed = sizes["base"][0], sizes["opening"][0] + 2 * sizes["jaw"][0]
+    if needed > length:
+        raise _SizeError("jaws_beyond_base", length=length, needed=needed)
 
 
 def _numbers(name: str, size: _Size, text: str) -> tuple[float, ...]:

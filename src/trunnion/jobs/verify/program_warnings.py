@@ -3,7 +3,8 @@
 In:     a program that was run, and the words that the definition of its control states as its own; its proof.
 Out:    a warning for each word of the machine's builder that the definition does not declare, where it stands first,
         for each block at which the program waits or stops, or passes the end of a turn by a way that no source
-        confirms, and for each mode and each work offset that it leaves to the next program; and one for the axis
+        confirms, for each word that is known and not simulated (M118, M143), and for each mode and each work offset
+        that it leaves to the next program; and one for the axis
         whose rapid speed is far too low for its feeds.
 """
 
@@ -30,6 +31,9 @@ _MOST_TOLD: Final = 20
 #: Where an axis needs more of its rapid speed than this, the tool goes at less than two thirds of its feed.
 _SLOWS: Final = 1.5
 
+#: Words that are known and not simulated; radius compensation, which the checks judge, has the same code.
+_NOT_SIMULATED: Final = ("NC221", "not_simulated")
+
 _KINDS: Final = (_OF_BUILDER, _WAITS, _END_OF_TURN, _LEFT_ON)
 
 
@@ -44,7 +48,8 @@ def program_warnings(run: Run, stated: frozenset[str] = frozenset()) -> list[Pro
     for code in _KINDS:
         told += _of_kind(run, code, [each for each in run.diagnostics if _is_told(each, code, stated)])
     told += [_told(each, each.wording) for code in _FEW for each in run.diagnostics if _is_told(each, code, stated)]
-    return told
+    noted = (each for each in run.diagnostics if (each.code, each.wording.variant) == _NOT_SIMULATED)
+    return told + [_told(each, each.wording) for each in noted]
 
 
 def speed_warnings(found: Verification) -> list[Problem]:

@@ -40,7 +40,6 @@ class CoordinateControl(RowRecorder):
     """Knows the coordinate systems in force, and keeps the maps of the rows up to date.
 
     absolute     G90; else incremental
-    plane_axis   index of the axis normal to the working plane: 2 for G17
     length_unit  millimetres of a programmed length
     feed_unit    millimetres of the length in a programmed feed
     tcp          tool centre point control is on
@@ -64,7 +63,7 @@ class CoordinateControl(RowRecorder):
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(machine, note)
         self._zero_slides, self._zero_tip = self._zero_positions()
-        self.absolute, self.plane_axis = True, 2
+        self.absolute = True
         self.usual_modes = dict(USUAL_MODES)
         self.length_unit = self.feed_unit = 1.0
         self.tcp = self.at_ends = self.tilted = False

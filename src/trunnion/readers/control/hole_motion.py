@@ -11,6 +11,9 @@ from trunnion.readers.control.worded_error import WordedError
 #: Faster feeds, mm/min, are mistakes of the program.
 MAX_FEED: Final = 1e9
 
+#: Gaps in a hole are the same within this, mm: programs in inches print no finer.
+SAME_GAP: Final = 0.003
+
 #: More pecks than this at one hole are a mistake of the program.
 MAX_PECKS: Final = 1000
 

@@ -37,6 +37,7 @@ class ModalBuilder:
         self.plane = StepColumnBuilder(-1)
         self.feed_path = StepColumnBuilder(int(FeedPath.SLIDES))
         self.length_axis = StepColumnBuilder(-1)
+        self.working_plane = StepColumnBuilder(2)
 
     def state(self, n: int) -> ModalState:
         """Return the columns with n rows; nothing may be added afterwards."""
@@ -64,4 +65,5 @@ class ModalBuilder:
             plane=self.plane.steps(n, np.int32),
             feed_path=self.feed_path.steps(n, np.uint8),
             length_axis=self.length_axis.steps(n, np.int8),
+            working_plane=self.working_plane.steps(n, np.uint8),
         )

@@ -92,6 +92,7 @@ class RowRecorder(EventRecorder):
 
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(note)
+        self._plane_axis = 2
         self.machine = machine
         self.block_number = -1
         self.units_from: int | None = 0 if self.knows_units else None
@@ -119,6 +120,16 @@ class RowRecorder(EventRecorder):
         self.tip_programmed = False
         self.words = BlockWords.empty()
         self._records = ScanRecords.empty()
+
+    @property
+    def plane_axis(self) -> int:
+        """Index of the axis across the working plane: 2 for G17."""
+        return self._plane_axis
+
+    @plane_axis.setter
+    def plane_axis(self, axis: int) -> None:
+        self._plane_axis = axis
+        self.modal.working_plane.set(self.row, axis)
 
     @property
     def programmed_position(self) -> Floats:

@@ -88,7 +88,7 @@ class VirtualControl(ContourControl, ABC):
         self.absolute = bool(modes.get("distances", self.absolute))
         plane = modes.get("plane", self.plane_axis)
         assert isinstance(plane, int)
-        self.plane_axis = plane
+        self._plane_axis = plane  # the program has not chosen it
 
     # Scans
 

@@ -1,6 +1,7 @@
 """``[control.coolant]`` against what readers take its M codes for: the control itself, and ``[control.known]``."""
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import Final
 
 from trunnion.errors import InputError
@@ -22,6 +23,25 @@ _HARMLESS: Final = frozenset({"no effect", "waits"})
 _NAMED: Final = frozenset({0, 1, 2, 3, 4, 5, 6, 30})
 
 
+def coolant_meanings(machine: Machine, coolants: Mapping[int, str]) -> dict[int, str]:
+    """Return the control's own coolants as the definition of a machine has them: M7 may be flood, and M8 mist.
+
+    coolants     M codes of the control's own coolants -> ``OFF``, ``FLOOD`` or ``MIST``
+    """
+    stated = control_of(machine).table("coolant").to_dict()
+    own = {stated[kind]: kind for kind in ("FLOOD", "MIST") if stated.get(kind) in coolants}
+    return {code: own.get(code, kind) if kind != "OFF" else kind for code, kind in coolants.items()}
+
+
+@lru_cache(maxsize=32)
+def coolant_of(machine: Machine, code: int, usual: str | None) -> str | None:
+    """Return what one of the control's own words for coolant switches on a machine; ``usual``: on most."""
+    if usual == "off":
+        return usual
+    stated = control_of(machine).table("coolant").to_dict()
+    return next((kind.lower() for kind in ("FLOOD", "MIST") if stated.get(kind) == code), usual)
+
+
 def check_coolant_words(machine: Machine, is_own_word: Callable[[str], bool], coolants: Mapping[int, str]) -> None:
     """Check that no coolant of a definition has an M code that readers take for something else.
 
@@ -31,6 +51,7 @@ def check_coolant_words(machine: Machine, is_own_word: Callable[[str], bool], co
     Raises ``InputError`` with each such coolant.
     """
     table = control_of(machine).table("coolant")
+    coolants = coolant_meanings(machine, coolants)
     declared = {word.code: word for word in known_words(machine) if word.code is not None}
     for kind, code in table.to_dict().items():
         if not isinstance(code, int):
@@ -40,13 +61,23 @@ def check_coolant_words(machine: Machine, is_own_word: Callable[[str], bool], co
             continue
         if code in coolants and is_own_word(f"M{code}"):
             if coolants[code] != read_as:
-                table.add_problem(kind, Wording("DEF330", "coolant_is_other_word", code=code, other=coolants[code]))
+                table.add_problem(kind, _other_coolant(kind, code, coolants))
         elif is_own_word(f"M{code}"):
             table.add_problem(kind, Wording("DEF330", "coolant_is_own_word", code=code))
         elif word is not None and not _may_switch(_EFFECTS.get(read_as, ""), word.effects):
             table.add_problem(kind, Wording("DEF330", "coolant_is_declared", code=code, says=word.says))
     if table.problems:
         raise InputError(table.problems)
+
+
+def _other_coolant(kind: str, code: int, coolants: Mapping[int, str]) -> Wording:
+    """Return what is wrong with a name of a coolant whose M code is that of another one."""
+    read_as = _READ_AS.get(kind, "")
+    right = next((each for each, meaning in coolants.items() if meaning == read_as), None)
+    said = {"code": code, "other": coolants[code]}
+    if right is None:
+        return Wording("DEF330", "coolant_is_other_word", **said)
+    return Wording("DEF330", "coolant_is_other_coolant", **said, kind=kind, right=right, read_as=read_as)
 
 
 def _may_switch(effect: str, effects: Sequence[str]) -> bool:

@@ -21,6 +21,7 @@ from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.start_modes import CENTRES, MOTION
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.program import interpreter
+from trunnion.readers.program.coolant_words import coolant_of
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
@@ -229,7 +230,8 @@ class Rs274Interpreter(Interpreter[A]):
         """Execute an M code that all these languages share; False if it is another one."""
         control = self.control
         if code in iso_m_codes.EVENTS:
-            control.add_event(*iso_m_codes.EVENTS[code])
+            kind, value = iso_m_codes.EVENTS[code]
+            control.add_event(kind, coolant_of(control.machine, code, value) if kind == "coolant" else value)
         elif code == iso_m_codes.TOOL_CHANGE:
             control.change_tool()
         elif code in iso_m_codes.PROGRAM_ENDS and len(self._stack) > 1 and self._form.is_so(*_RETURNS):

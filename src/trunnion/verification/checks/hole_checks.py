@@ -6,10 +6,11 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.verification.checks.drill_motions import HoleFault
-from trunnion.verification.checks.hole_faults import hole_faults
+from trunnion.verification.checks.hole_faults import drill_motions, hole_faults
+from trunnion.verification.checks.peck_faults import odd_lifts
 from trunnion.verification.checks.tool_checks import length_fault, tool_fault
 from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.expected.holes import Hole
@@ -63,7 +64,28 @@ def check_holes(context: ComparedContext) -> Check:
     good = Wording("holes", "good", count=len(matches)) if matches else Wording("holes", "none_asked")
     if by_motion := sum(match.by_motion for match in matches):
         good = Wording("holes", "some_by_motion", count=len(matches), by_motion=by_motion)
-    return found.check("holes", good)
+    check = found.check("holes", good)
+    values = tuple(_unasked_values(context, by_index))
+    return replace(check, missing=(phrase("unasked_values", values=values),)) if values else check
+
+
+def _unasked_values(context: ComparedContext, matches: Mapping[int, MatchedHole]) -> Iterator[Wording]:
+    """Yield what no CL file says of pecks and ``post`` writes otherwise: how far the tool lifts, where it feeds on."""
+    run = context.run
+    rows = dict[str, int]()
+    for event in run.events:
+        if event.kind == "cycle_value":
+            rows.setdefault(str(event.value), min(event.before_row, len(run) - 1))
+    for value, row in rows.items():
+        yield phrase("unasked_value", value=value, block=context.block_name(row))
+    lifts = dict[float, int]()
+    for index, hole in enumerate(context.expected.holes):
+        if (match := matches.get(index)) is None or not match.by_motion:
+            continue
+        for row, lift in odd_lifts(hole, drill_motions(run, hole, match)):
+            lifts.setdefault(round(lift, 3), row)
+    for lift, row in lifts.items():
+        yield phrase("unasked_lift", lift=lift, block=context.block_name(row))
 
 
 def _floating_threads(context: ComparedContext, matches: Mapping[int, MatchedHole]) -> Iterator[Place]:

@@ -46,6 +46,15 @@ _SENSES: Final = {1: "clockwise", -1: "counter_clockwise", 0: "standing"}
 _FEED_OUT: Final = ("TAP", "REAM")
 
 
+def drill_motions(run: Run, hole: Hole, match: MatchedHole) -> DrillMotions:
+    """Return the motions that drill a hole; one that a CL point asks for counts as a rapid."""
+    rows = np.arange(match.first, match.end)
+    kind = run.kind[rows].copy()
+    if match.shares_first_row:
+        kind[0] = Kind.RAPID
+    return DrillMotions(rows, kind, hole.heights_and_offsets(run.positions(rows).tip)[0], match.by_motion)
+
+
 def hole_faults(
     run: Run,
     hole: Hole,

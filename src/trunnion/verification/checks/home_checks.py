@@ -24,6 +24,9 @@ _PLACES: Final = {
     "end": ("no_axis_at_end", "axes_at_end"),
 }
 
+#: A rotary axis is at home within this, degrees: programs print no less.
+_ROTARY_HOME: Final = 5e-4
+
 _SLIDE_WORDS: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
 
 
@@ -74,9 +77,29 @@ def check_home(context: Context) -> Check:
     A program that never goes to the home of the machine's definition has positions of its own, which are not checked.
     Between two operations of the CL files every program that retracts at all does so.
     """
-    check = _check_motions(context)
+    check = _with_rotary_end(context, _check_motions(context))
     unretracted = list(without_retract(context))
     return check_from_places("home", [*check.places, *unretracted], None) if unretracted else check
+
+
+def _with_rotary_end(context: Context, check: Check) -> Check:
+    """Return the check with where rotary axes stand at the end of the program, if that is not at home: nothing says
+    where they should.
+    """
+    run, machine = context.run, context.run.machine
+    if check.places or check.answer is None or not len(run):
+        return check
+    rows = np.array([len(run) - 1])
+    joints, allowed = run.positions(rows).joints[0], home_tolerance(run, rows)[0]
+    left = list[str]()
+    for k in machine.rotary:
+        axis, off = machine.axes[k], float(joints[k] - machine.home[k])
+        off -= 360.0 * round(off / 360.0) if axis.endless else 0.0
+        if abs(off) > max(float(allowed[k]), _ROTARY_HOME):
+            left.append(f"{axis.name}{joints[k]:g}")
+    if not left:
+        return check
+    return replace(check, answer=Wording("home", "rotary_end", home=check.answer, axes=tuple(left)))
 
 
 def _check_motions(context: Context) -> Check:

@@ -20,6 +20,7 @@ from trunnion.verification.checks.smoothing_faults import wide_tolerances
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.event_words import event_word
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
+from trunnion.verification.kinematics.working_planes import unused_planes
 from trunnion.verification.results import Check, Coverage, Place
 from trunnion.verification.row_ranges import chunk_bounds
 from trunnion.verification.spindle_words import TURNING, both_senses, started_behind_cuts
@@ -49,6 +50,10 @@ def check_modal_state(context: Context) -> Check:
     places += lengths_lost_at_part(context)
     places += compensated_askew(context)
     places += compensated_blind(context)
+    planes = list(unused_planes(run))
+    if isinstance(context, ComparedContext):
+        places += [context.place(row, 0.0, Wording("modal", "unused_plane", word=word)) for row, word in planes]
+        planes = []
     if not any(event.kind == "end" for event in run.events):
         last = max(context.last_line, run.lines[-1] if len(run) else 1)
         places.append(Place(last, -1, 0.0, Wording("modal", "no_end")))
@@ -58,12 +63,14 @@ def check_modal_state(context: Context) -> Check:
     # With a CL file, the check "spindle" has the spindle.
     good = "good_feed" if isinstance(context, ComparedContext) else "good_feed_and_spindle"
     check = check_from_places("modal", places, Wording("modal", good))
+    unasked = tuple(phrase("unasked_plane", word=word, block=context.block_name(row)) for row, word in planes)
+    check = replace(check, missing=unasked)
     if not len(rows := rapids_at_unknown_heights(context)):
         return check
     why = phrase("left_height_unknown")
     left_out = tuple(context.place(row, 0.0, why) for row in rows[:MAX_PLACES].tolist())
     coverage = Coverage(len(run) - len(rows), len(run), left_out)
-    return replace(check, missing=missing_of((ZERO, TOOL_LENGTH), run), coverage=coverage)
+    return replace(check, missing=(*unasked, *missing_of((ZERO, TOOL_LENGTH), run)), coverage=coverage)
 
 
 def _cuts_from_unknown_places(context: Context) -> Iterator[Place]:

@@ -16,6 +16,9 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.drill_motions import DrillMotions, HoleFault
 from trunnion.verification.expected.holes import Hole
 
+#: How far ``post`` lifts a tool to break chips by motions, mm, and no farther than half of what is drilled.
+REENTRY_CLEARANCE: Final = 0.5
+
 #: No hole has more pecks.
 _MAX_PECKS: Final = 100_000
 
@@ -95,9 +98,41 @@ def _cycle_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterat
     if abs(pecks[0] - first) > hole.tolerance or (np.diff(pecks) > hole.tolerance).any():
         said = Wording("holes", "other_pecks", pecks=tuple(f"{peck:.4f}" for peck in pecks[:4]), first=first)
         yield motions.fault(_FIRST_PECK, float(pecks[0]), said)
-    equal = len(hole.cycle.pecks) < 2 or not hole.cycle.pecks[1]
-    if equal and len(pecks) > 2 and abs(pecks[:-1] - first).max() > hole.tolerance:
+    less = (*hole.cycle.pecks, 0.0)[1]
+    if not less and len(pecks) > 2 and abs(pecks[:-1] - first).max() > hole.tolerance:
         yield motions.fault(_FIRST_PECK, float(pecks.min()), Wording("holes", "unequal_pecks", first=first))
+    if less:
+        yield from _shorter_pecks(hole, motions, pecks)
+
+
+def _shorter_pecks(hole: Hole, motions: DrillMotions, pecks: Floats) -> Iterator[HoleFault]:
+    """Pecks that STEP makes shorter one by one: the last two may share what is left, as controls divide it."""
+    less, shortest = (*hole.cycle.pecks, 0.0, 0.0)[1:3]
+    wanted = np.maximum(pecks[0] - less * np.arange(len(pecks)), min(shortest or less, pecks[0]))
+    alone = max(len(pecks) - 2, 0)
+    apart = np.abs(pecks - wanted)
+    apart[alone:] = np.maximum(pecks[alone:] - wanted[alone:], 0.0)
+    if apart.max() <= hole.tolerance:
+        return
+    k = int(np.argmax(apart > hole.tolerance))
+    said = Wording("holes", "other_decrement", count=k + 1, peck=pecks[k], wanted=wanted[k])
+    yield motions.fault(_FIRST_PECK, float(pecks[k]), said)
+
+
+def odd_lifts(hole: Hole, motions: DrillMotions) -> Iterator[tuple[int, float]]:
+    """Yield rows of motions of the program that lift the tool to break chips, and how far, mm.
+
+    Only where that is not what ``post`` does: no CL file says how far.
+    """
+    if not (motions.by_motion and "BRKCHP" in hole.cycle.mode):
+        return
+    height = motions.height
+    for k in range(1, len(height)):
+        lift, drilled = float(height[k] - height[k - 1]), -float(height[k - 1])
+        inside = height[k] < hole.cycle.clearance - hole.tolerance
+        usual = min(REENTRY_CLEARANCE, 0.5 * drilled)
+        if motions.kind[k] == Kind.RAPID and inside and lift > hole.tolerance and abs(lift - usual) > hole.tolerance:
+            yield int(motions.row[k]), lift
 
 
 def _programmed_pecks(hole: Hole, motions: DrillMotions, ends: list[float]) -> Iterator[HoleFault]:

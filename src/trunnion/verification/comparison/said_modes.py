@@ -29,6 +29,7 @@ def said_modes(one: Run, two: Run) -> Iterator[ComparedState]:
     """Yield the modes that two runs say otherwise, or elsewhere."""
     if one.language != two.language or one.machine.key != two.machine.key:
         return
+    yield _working_planes(one, two)
     said = [_by_mode(run) for run in (one, two)]
     for mode in sorted(said[0].keys() | said[1].keys()):
         found = [each.get(mode, []) for each in said]
@@ -36,6 +37,21 @@ def said_modes(one: Run, two: Run) -> Iterator[ComparedState]:
             continue
         if not (_from_the_start(one, found[0]) and _from_the_start(two, found[1]) and found[0][0][1] == found[1][0][1]):
             yield _state(mode, (one, two), (found[0], found[1]))
+
+
+def _working_planes(one: Run, two: Run) -> ComparedState:
+    """Return the plane in which arcs, cycles and compensation work: that of lines matters to what follows."""
+    planes = [run.state.working_plane for run in (one, two)]
+
+    def name(plane: int) -> str:
+        return f"G{19 - plane}"
+
+    return ComparedState(
+        lambda a, b: np.asarray((one.kind[a] != Kind.RAPID) & (two.kind[b] != Kind.RAPID)),
+        lambda a, b: np.asarray(planes[0].at(a) == planes[1].at(b)),
+        lambda a, b: (planes[0].at(a), planes[1].at(b)),
+        lambda a, b: Wording("comparison", "modes", mode="plane", one=name(planes[0][a]), two=name(planes[1][b])),
+    )
 
 
 def _by_mode(run: Run) -> dict[str, list[tuple[int, str]]]:

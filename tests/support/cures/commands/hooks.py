@@ -72,6 +72,8 @@ CURES: Final = (
     _at("HOK170 word_name", "linear", "{1: place.words['feed']}", "{1:", "{'feed':"),
     _at("HOK170 word_value", "linear", "{'feed': 'A'}", "'A'", "place.words['feed']"),
     _at("HOK170 unknown_word", "linear", "{'Q': place.words['feed']}", "'Q'", "'feed'"),
+    _at("HOK170 unknown_word", "linear", "{'Q': None}", "'Q'", "'turns'"),
+    _at("HOK170 unknown_word", "linear", "{'feeed': None}", "'feeed'", "'turns'"),
     _at("HOK170 word_beyond", "linear", "{'feed': 999999999}", "999999999", "place.words['feed']"),
     script("HOK170 letter_lacking",
            _KNIFE, "刀", "A"),

@@ -30,6 +30,7 @@ from trunnion.readers.families.heidenhain.patterns import WITH_PATTERNS, Pattern
 from trunnion.readers.families.heidenhain.plane_blocks import store_rotary_angles
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
+from trunnion.readers.families.heidenhain.unusual_pecks import unusual_values
 from trunnion.readers.families.heidenhain.words import (
     ACT_WHEN_DEFINED,
     AXIS_SCALING,
@@ -366,6 +367,8 @@ class Definitions:
             motions = legacy_cycle_motions(cycle.number, cycle.values, rpm, here)
         else:
             motions = cycle_motions(cycle.number, cycle.q_values, rpm)
+            for value in unusual_values(cycle.number, cycle.q_values, control.length_unit):
+                control.add_event("cycle_value", value)
         if control.feed_unit == 1.0:
             return motions
         return [

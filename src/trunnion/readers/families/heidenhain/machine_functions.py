@@ -18,6 +18,7 @@ from trunnion.readers.families.heidenhain.words import (
     M_AT_ENDS_OFF,
     M_CALL,
     M_CALL_MODAL,
+    M_COOLANTS,
     M_EVENTS,
     M_FEED_AT_TIP,
     M_FEED_IN_DEGREES,
@@ -42,6 +43,7 @@ from trunnion.readers.families.heidenhain.words import (
     M_WITHOUT_PATH_EFFECT,
     M_WORDS_NOT_SIMULATED,
 )
+from trunnion.readers.program.coolant_words import coolant_of
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.word_values import fault_of_value
 
@@ -98,7 +100,7 @@ class MFunctions:
         elif code in M_UNSEEN_ONCE:
             control.say_once(said)
         for kind, value in M_EVENTS.get(code, ()):
-            control.add_event(kind, value)
+            control.add_event(kind, coolant_of(control.machine, code, value) if code in M_COOLANTS else value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):
             control.set_shortest_path(code == M_SHORTEST)
         elif code in (M_TCP, M_TCP_OFF):

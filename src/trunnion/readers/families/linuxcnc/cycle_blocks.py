@@ -101,6 +101,8 @@ class CycleInterpreter(OffsetInterpreter):
         if work is not None and work.hand and self.control.modal.spindle.current == -work.hand:
             self._note(Wording("NC370", "thread_of_other_hand", word=g_code_text(code)), Severity.ERROR)
         own = {} if clearance is None else {"D": clearance}
+        if own:
+            self.control.add_event("cycle_value", f"D {clearance:g}")
         hole, height = self._hole(dict(self._modal_words) | own)
         self._drill(axes, hole, height, holes)
 

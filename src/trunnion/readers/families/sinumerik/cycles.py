@@ -5,7 +5,7 @@ ones; ``cycle_modes`` makes them of those of newer controls.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -14,6 +14,7 @@ from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import (
     MAX_FEED,
     MAX_PECKS,
+    SAME_GAP,
     CycleExecutionError,
     HoleMotion,
     chip_break,
@@ -99,6 +100,20 @@ def in_millimetres(name: str, arguments: Arguments, length_unit: float, feed_uni
         if value is not None:
             found[place - 1] = value * feed_unit
     return found
+
+
+def unusual_values(name: str, arguments: Arguments) -> Iterator[str]:
+    """Yield values of pecks that no CL file states and that are not those of the control itself: ``VRT 2``.
+
+    How far the tool lifts to break chips, and how far above the drilled depth it feeds on (DIS1).
+    """
+    variant = _or(arguments, {"CYCLE83": 12, "CYCLE84": 16}.get(name, 99))
+    lift = _or(arguments, {"CYCLE83": 15, "CYCLE84": 18}.get(name, 99))
+    breaks = variant == 0.0 if name == "CYCLE83" else variant == 1.0
+    if breaks and lift and abs(lift - CHIP_BREAK) > SAME_GAP:
+        yield f"VRT {lift:g}"
+    if name == "CYCLE83" and variant == 1.0 and (gap := _or(arguments, 17)):
+        yield f"DIS1 {gap:g}"
 
 
 def spindle_work(name: str, arguments: Arguments) -> SpindleWork | None:

@@ -350,6 +350,8 @@ class SinumerikInterpreter(WordInterpreter):
             self._note(error.wording.within("call_not_executed", name=call.name), Severity.ERROR)
             return
         self._counter.count_motions(len(motions))
+        for value in cycles.unusual_values(call.name, numbers):
+            control.add_event("cycle_value", value)
         control.drill([motion.with_lengths_in(control.length_unit) for motion in motions], work)
         if work is not None and work.after is not None:
             control.leave_spindle(work.after)

@@ -41,6 +41,7 @@ from trunnion.readers.families.sinumerik.words import (
     WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT,
 )
+from trunnion.readers.program.coolant_words import coolant_of
 from trunnion.readers.program.interpreter import ProgramEnd
 
 #: G words of threads, which are taken as lines, and of the dwell.
@@ -148,7 +149,8 @@ class WordInterpreter(CallInterpreter):
     def _m_code(self, code: int) -> None:
         control = self.control
         if code in EVENTS:
-            control.add_event(*EVENTS[code])
+            kind, value = EVENTS[code]
+            control.add_event(kind, coolant_of(control.machine, code, value) if kind == "coolant" else value)
         elif code == M_AXIS_MODE:
             control.add_event("spindle", "axis")
         elif code == TOOL_CHANGE:
