@@ -10,7 +10,7 @@ from shutil import which
 
 import pytest
 
-from tests.jit.conftest import INNER, RUN, WHAT_IS_IMPORTED, Compiled, machine_code, run
+from tests.support.kept_kernels import INNER, RUN, WHAT_IS_IMPORTED, Compiled, machine_code, run
 from tests.support.locations import ROOT
 from trunnion.jit import store
 

@@ -7,7 +7,7 @@ from textwrap import indent
 
 import pytest
 
-from tests.jit.conftest import RUN, Compiled, run
+from tests.support.kept_kernels import RUN, Compiled, run
 
 #: Where programs are: with the linker of the system, if there is one, and without.
 PATHS = (os.environ["PATH"], "")
