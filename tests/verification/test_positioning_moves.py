@@ -17,12 +17,17 @@ from trunnion.readers.control.row_buffer import StepColumnBuilder
 from trunnion.verification.kinematics import positioning_moves
 from trunnion.verification.kinematics.positioning_moves import approach_rows, first_workpiece_position
 
-X, Z, FIRST, FEED = (
-    int(word) for word in (ProgrammedWord.X, ProgrammedWord.Z, ProgrammedWord.FIRST, ProgrammedWord.FEED)
+X, Y, Z, FIRST, FEED = (
+    int(word)
+    for word in (ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z, ProgrammedWord.FIRST, ProgrammedWord.FEED)
 )
 
 #: Rows by the words of their block, whether they are rapids, in the machine frame, and right after a retract.
-ROWS = st.lists(st.tuples(st.sampled_from((0, X, Z, X | Z, FIRST, FEED)), st.booleans(), st.booleans(), st.booleans()))
+ROWS = st.lists(
+    st.tuples(
+        st.sampled_from((0, X, Y, Z, X | Y, X | Z, Y | FIRST, FIRST, FEED)), st.booleans(), st.booleans(), st.booleans()
+    )
+)
 
 
 def run_of(rows: list[tuple[int, bool, bool, bool]]) -> Any:
@@ -69,7 +74,7 @@ def test_the_first_position_in_workpiece_coordinates(
     rows: list[tuple[int, bool, bool, bool]], first: int, count: int
 ) -> None:
     end = min(first + count, len(rows))
-    goes = [row for row in range(first, end) if rows[row][0] & (X | Z) and not rows[row][2]]
+    goes = [row for row in range(first, end) if rows[row][0] & (X | Y | Z) and not rows[row][2]]
     assert first_workpiece_position(run_of(rows), first, end) == (goes[0] if goes else None)
 
 
@@ -81,12 +86,18 @@ def test_an_approach_goes_across_at_rapid_and_down_next(rows: list[tuple[int, bo
     wanted, retracted = [], True
     for row, (words, rapid, in_frame, retract) in enumerate(rows):
         retracted = retracted or retract or row in after_frame
-        if not words & (X | Z) or in_frame:
+        if not words & (X | Y | Z) or in_frame:
             continue
-        after, at_rapid, after_in_frame, _ = rows[row + 1] if row + 1 < len(rows) else (X, False, False, False)
-        down = (after & (X | Z) == Z or after & (X | Z | FIRST) == 0) and at_rapid and not after_in_frame
-        if retracted and rapid and words & (X | Z) == X and down:
-            wanted.append(row)
+        legs = [row]
+        others = {X: Y, Y: X}
+        half, half_at_rapid, half_in_frame, _ = rows[row + 1] if row + 1 < len(rows) else (X, False, False, False)
+        if half == others.get(words & (X | Y | Z)) and half_at_rapid and not half_in_frame:
+            legs.append(row + 1)
+        end = legs[-1] + 1
+        after, at_rapid, after_in_frame, _ = rows[end] if end < len(rows) else (X, False, False, False)
+        down = not after & (X | Y) and (after & Z or not after & FIRST) and at_rapid and not after_in_frame
+        if retracted and rapid and not words & Z and down:
+            wanted += legs
         retracted = False
     assert approach_rows(run_of(rows)).tolist() == wanted
 

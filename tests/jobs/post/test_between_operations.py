@@ -183,6 +183,49 @@ def test_the_first_approach_in_turn_is_proven(base: str, path: str, programs: _P
 
 
 @pytest.mark.third
+@pytest.mark.parametrize(
+    ("base", "path"), [*((base, "three") for base in MACHINES), *((base, "tilted") for base in MACHINES[:-2])]
+)
+def test_a_first_leg_may_go_in_x_and_y_one_after_the_other(base: str, path: str, programs: _Programs) -> None:
+    """As templates of a shop may have it: at home height the tool passes places that are no CL points."""
+    lines = programs.post(base, path, _IN_TURN)
+    across = re.compile(r"(?P<words>(?:G0?[01] .*?|L )?)(?P<x>X\S+) (?P<y>Y\S+)(?P<rest>(?: [^Z].*)?)$")
+    home = next(k for k, line in enumerate(lines) if _HOME.search(_plain(line)))
+    cut = next(k for k, line in enumerate(lines) if re.search(r"F500\.?$", line))
+    leg, found = next(
+        (k, match)
+        for k in range(home, cut)
+        if (match := across.match(_plain(lines[k]))) and not re.search("SUPA|G53|M91", lines[k])
+    )
+    one, other = (f"{found['words']}{found[axis]}{found['rest']}" for axis in "xy")
+    for first, second in ((one, other), (other, one)):
+        split = [*lines[:leg], first, second, *lines[leg + 1 :]]
+        assert programs.failing(split, base, path, _IN_TURN) == set()
+        assert programs.failing([*lines[:leg], first, *lines[leg + 1 :]], base, path, _IN_TURN)
+        off = second.replace(found["x"], "X3.").replace(found["y"], "Y3.")
+        assert programs.failing([*lines[:leg], first, off, *lines[leg + 1 :]], base, path, _IN_TURN)
+
+
+@pytest.mark.third
+@pytest.mark.parametrize("base", MACHINES)
+def test_a_first_leg_under_tcp_may_go_across_and_then_along_z(base: str, programs: _Programs) -> None:
+    lines = programs.post(base, "tcp", _IN_TURN)
+    whole = re.compile(r"(?P<words>(?:G0?[01] .*?|L )?)(?P<across>X\S+ Y\S+) (?P<z>Z\S+)(?P<rest>.*)$")
+    home = next(k for k, line in enumerate(lines) if _HOME.search(_plain(line)))
+    leg, found = next(
+        (k, match)
+        for k in range(home, len(lines))
+        if (match := whole.match(_plain(lines[k]))) and not re.search("SUPA|G53|M91", lines[k])
+    )
+    first = f"{found['words']}{found['across']}{found['rest']}"
+    second = f"{re.sub('G43.4 H1 ', '', found['words'])}{found['z']}{found['rest']}"
+    split = [*lines[:leg], first, second, *lines[leg + 1 :]]
+    assert programs.failing(split, base, "tcp", _IN_TURN) == set()
+    low = [*lines[:leg], first, second.replace(found["z"], "Z-3."), *lines[leg + 1 :]]
+    assert programs.failing(low, base, "tcp", _IN_TURN)
+
+
+@pytest.mark.third
 @pytest.mark.parametrize("base", MACHINES)
 def test_a_first_leg_before_several_holes_is_proven(base: str, programs: _Programs) -> None:
     lines = programs.post(base, "two_holes", _IN_TURN, ("mode", "tcp"))

@@ -6,7 +6,7 @@ These motions have no CL point; they are recognized by what they do. Any other m
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 import numpy as np
 
@@ -17,7 +17,11 @@ from trunnion.model.run import RowPositions, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.rotary_moves_at_part import rows_away
 from trunnion.verification.context import ComparedContext, Context
-from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes, repeats_position
+from trunnion.verification.kinematics.positioning_moves import (
+    approach_rows,
+    only_positions_rotary_axes,
+    repeats_position,
+)
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.results import Place
@@ -67,6 +71,7 @@ def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]
     """
     run, extra = context.run, context.matching.extra
     rows: Ints = np.array(extra, np.int64)
+    across = set(approach_rows(run).tolist()) if len(rows) else set()
     for unbroken in np.split(rows, np.flatnonzero(np.diff(rows) != 1) + 1):
         if not len(unbroken) or unbroken[0] == 0 or unbroken[-1] + 1 >= len(run):
             continue
@@ -77,7 +82,7 @@ def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]
         if not 0 < len(legs) <= _MOST_ROWS:
             continue
         way = _Way(context, legs[0], down)
-        if len(legs) == 1 and _comes_from_home(run, legs[0]):
+        if len(legs) == 1 and _comes_from_home(run, legs[0], across):
             # Whatever the settings: above all points the leg is harmless. A plane has first legs of its own.
             if run.state.follows_at(np.array(legs))[0] and way.comes_down_from(context.highest_point(way.axis)):
                 yield unbroken.tolist(), math.inf
@@ -85,10 +90,12 @@ def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]
             yield unbroken.tolist(), height - context.highest_point(way.axis)
 
 
-def _comes_from_home(run: Run, row: int) -> bool:
-    """Whether the tool was at home, or retracted by a word, before a row; rotary axes may turn in between."""
+def _comes_from_home(run: Run, row: int, across: Container[int]) -> bool:
+    """Whether the tool was at home, or retracted by a word, before a row; in between rotary axes may turn, and it may
+    go ``across`` as high as home.
+    """
     before = row - 1
-    while before >= 0 and only_positions_rotary_axes(run, np.array([before]))[0]:
+    while before >= 0 and (before in across or only_positions_rotary_axes(run, np.array([before]))[0]):
         before -= 1
     by_word = any(event.kind == "retract" and before < event.before_row <= row for event in run.events)
     return before < 0 or by_word or bool(run.state.machine_frame[before])

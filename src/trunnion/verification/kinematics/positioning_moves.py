@@ -130,27 +130,45 @@ def approach_rows(run: Run) -> Ints:
     Where a head tilts the tool in a plane, it is a leg of linear axes (``is_leg_of_axes``).
 
     The tool was retracted before, comes from a machine position, or is where the operator has left it: a program may
-    begin so. How high it is then is not known where the machine's travel is not known. A leg may be repeated.
+    begin so. How high it is then is not known where the machine's travel is not known. A leg may be repeated, and X
+    and Y may go one after the other.
     """
     starts = {0, *(event.before_row for event in run.events if event.kind == "retract")}
     starts.update(row for row in run.state.machine_frame.rows_changing_to(False) if row > 0)
     found: list[int] = []
     for row in _rows_that_follow(run, starts):
-        after = row + 1
-        while after < len(run) and repeats_position(run, np.array([after]))[0]:
-            after += 1
+        after = _behind_repeats(run, row + 1)
+        across = int(run.programmed[row]) & int(POSITION_WORDS)
+        if after < len(run) and _is_other_half(run, after, across):
+            across |= int(run.programmed[after]) & int(POSITION_WORDS)
+            after = _behind_repeats(run, after + 1)
         legs = np.array([row, after])
         if after >= len(run) or (run.kind[legs] != Kind.RAPID).any() or run.state.machine_frame[after]:
             continue
         if run.state.follows_at(np.array([row]))[0] and int(run.programmed[row]) & int(ROTARY_WORDS):
             continue
-        across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[legs])
+        along = int(run.programmed[after]) & int(POSITION_WORDS)
         by_cycle = bool(names_no_axis(run.programmed[after : after + 1])[0])
         comes_down = along == int(ProgrammedWord.Z) or by_cycle
         x_and_y = not across & ~int(ProgrammedWord.X | ProgrammedWord.Y)
         if (x_and_y and comes_down) or is_leg_of_axes(run, row):
             found += range(row, after)
     return np.array(found, np.int64)
+
+
+def _behind_repeats(run: Run, row: int) -> int:
+    while row < len(run) and repeats_position(run, np.array([row]))[0]:
+        row += 1
+    return row
+
+
+def _is_other_half(run: Run, row: int, stated: int) -> bool:
+    """Whether a row states the one of X and Y, at rapid, where the row before states the other alone."""
+    halves = {int(ProgrammedWord.X), int(ProgrammedWord.Y)}
+    words = int(run.programmed[row])
+    other = {words & int(POSITION_WORDS), stated} == halves
+    turns = bool(words & int(ROTARY_WORDS))
+    return other and not turns and run.kind[row] == Kind.RAPID and not run.state.machine_frame[row]
 
 
 def is_leg_of_axes(run: Run, row: int) -> bool:

@@ -303,6 +303,28 @@ def test_a_plane_that_is_not_understood_is_named_and_the_old_one_stays(text: str
     close(found.tip[-1], [1, 2, 3])
 
 
+@pytest.mark.parametrize(
+    "plane",
+    [
+        "SPATIAL SPA+0 SPB+0 SPC+0", "SPATIAL SPA-30 SPB+0 SPC+0 SEQ-", "SPATIAL SPA+0 SPB+0 SPC+0 FMAX",
+        "SPATIAL SPA+0 SPB+0 SPC+0 TABLE ROT", "PROJECTED PROPR+0 PROMIN+0 ROT+0", "EULER EULPR+0 EULNU+0 EULROT+0",
+        "VECTOR BX1 BY0 BZ0 NX0 NY0 NZ1", "POINTS P1X0 P1Y0 P1Z0 P2X1 P2Y0 P2Z0 P3X0 P3Y1 P3Z0", "RELATIV SPA+0",
+        "AXIAL A+0 C+0", "RESET FMAX",
+    ],
+)  # fmt: skip
+def test_a_plane_says_whether_the_rotary_axes_turn(plane: str, run: Runner) -> None:
+    (error,) = run(f"PLANE {plane}\nL X+1 Y+2 Z+3").errors
+    assert error.line == 1
+    assert f"PLANE {plane.split()[0]} needs one of TURN, MOVE and STAY" in error.text
+    assert not run(f"PLANE {plane} MOVE\nL X+1 Y+2 Z+3").errors or plane.startswith("PROJECTED")
+
+
+def test_a_bare_reset_of_the_plane_turns_nothing(run: Runner) -> None:
+    found = run("L A-30 C+20 FMAX\nPLANE RESET\nL X+1 Y+2 Z+3")
+    assert found.diagnostics == ()
+    assert axes(found, -1) == (-30.0, 20.0)
+
+
 # TCP
 
 

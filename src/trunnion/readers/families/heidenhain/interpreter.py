@@ -309,7 +309,7 @@ class HeidenhainInterpreter(PathInterpreter):
     def _plane(self, active: ActiveProgram, rest: str) -> None:
         self.control.add_event("plane", rest.strip())
         self.control.judge_within_compensation(" ".join(("PLANE", *rest.split()[:1])))
-        plane_block(self.control, words(rest), active.parameters, self._note)
+        plane_block(self.control, words(rest), active.parameters)
 
     def _function(self, active: ActiveProgram, rest: str) -> None:
         match rest.split():

@@ -37,7 +37,7 @@ _OF_RESET: Final = frozenset({"TURN", "MOVE", "STAY", "F", "FMAX", "MB", "MAX", 
 _SEQUENCES: Final = {"SEQ+": 1, "SEQ-": -1, "SYM+": 1, "SYM-": -1}
 
 
-def plane_block(control: HeidenhainControl, block_words: Sequence[Word], parameters: Parameters, note: Note) -> None:
+def plane_block(control: HeidenhainControl, block_words: Sequence[Word], parameters: Parameters) -> None:
     """Execute a PLANE block; ``block_words`` without PLANE."""
     if not block_words or block_words[0].operand is not None:
         raise KlartextError(Wording("NC210", "plane_needs_kind"))
@@ -45,9 +45,14 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
     kind = block_words[0].name
     # ROT with a value is an angle of PROJECTED, without one the word behind COORD and TABLE.
     written = [word.name for word in block_words[1:] if word.name != "ROT" or word.operand is None]
-    positioning, values = _positioning(control, block_words[1:], parameters, note)
+    positioning, values = _positioning(control, block_words[1:], parameters)
     if kind == "RESET":
         only(written, _OF_RESET | values.keys(), "PLANE RESET")
+    if not positioning.mode:
+        # The manuals call the entry mandatory; only a bare PLANE RESET has nothing to position.
+        if written or kind != "RESET":
+            raise KlartextError(Wording("NC210", "plane_needs_positioning", kind=kind))
+        positioning = replace(positioning, mode="STAY")
     _check_positioning(written, positioning)
     if kind in PLANE_WORDS:
         only(values, PLANE_WORDS[kind], f"PLANE {kind}")
@@ -98,9 +103,9 @@ def _axial(
 
 
 def _positioning(
-    control: HeidenhainControl, block_words: Sequence[Word], parameters: Parameters, note: Note
+    control: HeidenhainControl, block_words: Sequence[Word], parameters: Parameters
 ) -> tuple[Positioning, dict[str, float]]:
-    """Return how the block positions the rotary axes, and the values that define the plane."""
+    """Return how the block positions the rotary axes (mode empty: not said), and the values that define the plane."""
     positioning = Positioning(mode="")
     values: dict[str, float] = {}
     names = [word.name for word in block_words]
@@ -134,10 +139,6 @@ def _positioning(
                 values[word.name] = value
             case _:
                 raise KlartextError(Wording("NC211", "unknown_word", word=word.name or word.text))
-    if not positioning.mode:
-        if block_words:
-            note(Wording("NC351", "plane_without_turn_move_stay"), Severity.WARNING)
-        positioning = replace(positioning, mode="STAY")
     return positioning, values
 
 
