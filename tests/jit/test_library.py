@@ -3,6 +3,8 @@
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,6 +13,7 @@ import pytest
 
 from trunnion.arrays import Codes, Flags, Floats, Floats2, Ints
 from trunnion.jit import inner, kernel
+from trunnion.jit.judge import Judge
 from trunnion.jit.kernels import Kernel
 from trunnion.jit.library import Entry
 
@@ -48,6 +51,13 @@ def everything(
 
 
 @kernel()
+def pair_sum(parts: tuple[Floats, Floats]) -> float:
+    """Sum two arrays."""
+    found: float = _total(parts[0]) + _total(parts[1])
+    return found
+
+
+@kernel()
 def yes(value: float) -> bool:
     """Give a truth."""
     return value > 0.0
@@ -74,6 +84,28 @@ def entry() -> Kernel:
     found: Any = everything
     assert isinstance(found, Kernel)
     return found
+
+
+def through_its_library(arguments: Sequence[Any]) -> Any:
+    """Call ``everything``."""
+    return entry()(*arguments)
+
+
+@cache
+def _judge() -> Judge:
+    return entry().judge()
+
+
+def through_numba(arguments: Sequence[Any]) -> Any:
+    """Call ``everything`` as where no library is made."""
+    return _judge()(arguments)
+
+
+def read_only(size: int) -> Any:
+    """Return ones that cannot be written to."""
+    made = np.ones(size)
+    made.flags.writeable = False
+    return made
 
 
 def test_a_kernel_takes_and_gives_what_its_signature_says() -> None:
@@ -123,16 +155,66 @@ def test_what_is_read_may_have_any_layout_and_be_of_any_class() -> None:
         {"out": np.broadcast_to(np.zeros(1), 3)},
         {"counts": (np.zeros(1, np.int64),)},
         {"part": (np.zeros(1), (1, 2.0), np.zeros(2, np.int64), True)},
+        {"part": None},
+        {"out": np.zeros(3)[::-1]},
+        {"out": read_only(3)},
+        {"out": read_only(0)},
+        {"out": np.zeros((3, 1))},
+        {"out": np.frombuffer(bytearray(25), np.uint8)[1:].view(np.float64)},
+        {"table": np.float64(1.0)},
+        {"table": np.zeros((3, 2), np.complex128)},
+        {"table": np.zeros((3, 2), object)},
+        {"table": np.zeros((3, 2), ">f8")},
+        {"table": np.zeros((3, 2), [("x", np.float64)])},
+        {"table": [[0, 1]] * 3},
     ],
 )
-def test_nothing_else_is_taken(changed: dict[str, Any]) -> None:
+@pytest.mark.parametrize("way", [through_its_library, through_numba])
+def test_nothing_else_is_taken(changed: dict[str, Any], way: Callable[[Sequence[Any]], Any]) -> None:
     with pytest.raises(TypeError):
-        entry()(*given(**changed))
+        way(given(**changed))
 
 
-def test_another_number_of_arguments_is_not_taken() -> None:
-    with pytest.raises(TypeError):
-        entry()(*given()[:-1])
+@pytest.mark.parametrize("way", [through_its_library, through_numba])
+def test_another_number_of_arguments_is_not_taken(way: Callable[[Sequence[Any]], Any]) -> None:
+    for arguments in (given()[:-1], given(table=[[0.0, 1.0]] * 3)[:-1], given(counts=[np.zeros(1, np.int64)])):
+        with pytest.raises(TypeError):
+            way(arguments)
+
+
+@pytest.mark.parametrize("way", [through_its_library, through_numba])
+def test_parts_that_nothing_else_keeps_live_until_the_kernel_has_read_them(
+    way: Callable[[Sequence[Any]], Any],
+) -> None:
+    made = (part for part in (np.full(20_000, 1.5), (3, 0.5), np.array([False, True]), True))
+    assert way(given(part=made)) == (20_004, 30_000.0, True)
+
+    rows: Any = pair_sum
+    for run in (rows, lambda parts: rows.judge()((parts,))):
+        assert run(np.full((2, 500), 1.5)) == 1500.0
+        assert run(np.full(500, value) for value in (1.0, 2.0)) == 1500.0
+        assert run([np.full(500, 1.0), np.full(1000, 2.0)[::-2]]) == 1500.0
+
+
+@pytest.mark.parametrize("way", [through_its_library, through_numba])
+def test_empty_arrays_and_turned_ones_are_read_to_their_ends_and_no_further(
+    way: Callable[[Sequence[Any]], Any],
+) -> None:
+    usual = given()[0]
+    for values, total in (
+        (np.empty(0), 0.0),
+        (np.ones(9)[9:0:-2][:0], 0.0),
+        (np.arange(4.0)[::-1], 6.0),
+        (np.arange(9.0)[5:4:-3], 5.0),
+        (np.broadcast_to(2.0, 3), 6.0),
+        (read_only(4), 4.0),
+    ):
+        part = usual._replace(values=values)
+        assert way(given(part=part, out=np.empty(0), table=np.empty((0, 2)))) == (len(values) + 4, total, True)
+    turned = np.arange(6.0).reshape(3, 2)[::-1, ::-1]
+    out = np.full(6, 9.0)
+    way(given(table=turned, out=out[1:4]))
+    assert out.tolist() == [9.0, 2.5, 1.5, 0.5, 9.0, 9.0]
 
 
 def test_what_a_kernel_raises_is_raised() -> None:

@@ -1,7 +1,8 @@
 """What a kernel takes and gives, by its annotations: numbers and arrays, alone or in tuples."""
 
 import inspect
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from operator import index
 from typing import Annotated, Any, NamedTuple, TypeAlias, get_args, get_origin
 
 import numpy as np
@@ -29,7 +30,7 @@ Kind: TypeAlias = type | Array | Parts
 
 
 class UnfitError(Exception):
-    """An argument is not an array as a kernel reads it, and may become one."""
+    """An argument is not an array or a tuple as a kernel reads it, and may become one."""
 
 
 def argument_kinds(function: Callable[..., Any], writes: frozenset[str]) -> tuple[Kind, ...]:
@@ -95,8 +96,11 @@ def leaves(kinds: Sequence[Kind]) -> Iterator[type | Array]:
 def flatten(kinds: Sequence[Kind], values: Sequence[Any], into: list[Any]) -> None:
     """Append numbers and the addresses of array objects in the order of ``leaves``.
 
-    Raises ``UnfitError`` where an array is needed and something else is there, ``ValueError`` for another number of
-    values.
+    Only a tuple's parts are taken as they are: it keeps them alive for as long as it is there itself. What a generator
+    gives, or an array as its rows, would be gone before the kernel reads it.
+
+    Raises ``UnfitError`` where an array or a tuple is needed and something else is there, ``ValueError`` for another
+    number of values.
     """
     for kind, value in zip(kinds, values, strict=True):
         if type(kind) is Array:
@@ -104,20 +108,31 @@ def flatten(kinds: Sequence[Kind], values: Sequence[Any], into: list[Any]) -> No
                 raise UnfitError
             into.append(id(value))
         elif type(kind) is Parts:
+            if not isinstance(value, tuple):
+                raise UnfitError
             flatten(kind.kinds, value, into)
         else:
             into.append(bool(value) if kind is bool else value)
 
 
-def fitted(kind: Kind, value: Any) -> Any:
-    """Return an argument as a kernel takes it: an array that it reads is copied if it is not C-contiguous.
+def fitted(kinds: Sequence[Kind], values: Iterable[Any]) -> tuple[Any, ...]:
+    """Return arguments as a kernel takes them: an array that it reads is copied if it is not C-contiguous.
 
-    Raises ``TypeError`` for an array of another type or number of dimensions, and for one that cannot be written to.
+    Raises ``TypeError`` for another number of values, an array of another type or number of dimensions, and one that
+    cannot be written to.
     """
+    values = tuple(values)
+    if len(values) != len(kinds):
+        raise TypeError(f"{len(values)} values for {len(kinds)}")
+    return tuple(_fitted(kind, value) for kind, value in zip(kinds, values, strict=True))
+
+
+def _fitted(kind: Kind, value: Any) -> Any:
     if isinstance(kind, Parts):
-        return tuple(fitted(one, part) for one, part in zip(kind.kinds, value, strict=True))
+        parts = fitted(kind.kinds, value)
+        return parts if kind.made is tuple else kind.made(*parts)
     if not isinstance(kind, Array):
-        return value
+        return index(value) if kind is int else value
     array = value if kind.is_written else np.require(value, requirements=("C", "A"))
     if not isinstance(array, np.ndarray) or array.dtype != kind.dtype or array.ndim != kind.dimensions:
         raise TypeError(f"{type(value).__name__} for {kind.dtype} in {kind.dimensions} dimensions")

@@ -355,14 +355,14 @@ def shared_library(code: bytes) -> bytes | None:
     linker = which("cc") or which("clang") or which("gcc")
     if linker is None or platform == "win32":
         return None
-    with tempfile.TemporaryDirectory() as folder:
-        made, source = Path(folder, "kernel.so"), Path(folder, "kernel.o")
-        source.write_bytes(code)
-        try:
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            made, source = Path(folder, "kernel.so"), Path(folder, "kernel.o")
+            source.write_bytes(code)
             done = subprocess.run(
                 [linker, "-shared", "-o", str(made), str(source), "-lm"],
                 stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=60,
             )  # fmt: skip
-        except (OSError, subprocess.TimeoutExpired):
-            return None
-        return made.read_bytes() if done.returncode == 0 and made.exists() else None
+            return made.read_bytes() if done.returncode == 0 else None
+    except (OSError, subprocess.TimeoutExpired):
+        return None

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numba
-import numpy as np
 from numba.extending import overload, register_jitable
 
-from trunnion.jit.arguments import Array, Kind, Parts
+from trunnion.jit.arguments import Array, Kind, Parts, fitted
 from trunnion.jit.inner_functions import INNER
 
 _NUMBERS = {int: numba.int64, float: numba.float64, bool: numba.boolean}
@@ -89,16 +88,14 @@ class Judge:
 
     def __call__(self, arguments: Sequence[Any]) -> Any:
         """Run it."""
-        return self._dispatcher(*(_given(kind, value) for kind, value in zip(self._kinds, arguments, strict=True)))
+        return self._dispatcher(*map(_given, self._kinds, fitted(self._kinds, arguments)))
 
 
 def _given(kind: Kind, value: Any) -> Any:
-    """Return an argument as Numba takes it: arrays in tuples must be read-only where the kernel's type says so."""
+    """Return a fitted argument as Numba takes it: read-only arrays must be so where the kernel's type says it."""
     if isinstance(kind, Parts):
-        parts = [_given(one, part) for one, part in zip(kind.kinds, value, strict=True)]
-        return tuple(parts) if kind.made is tuple else kind.made(*parts)
-    if not isinstance(kind, Array) or kind.is_written:
-        return value
-    view = np.ascontiguousarray(value).view()
-    view.flags.writeable = False
-    return view
+        parts = tuple(map(_given, kind.kinds, value))
+        return parts if kind.made is tuple else kind.made(*parts)
+    if isinstance(kind, Array) and not kind.is_written:
+        value.flags.writeable = False  # it is a view
+    return bool(value) if kind is bool else value

@@ -164,10 +164,15 @@ class Kernel:
             return Judge(self.py_func, self.kinds, self._options, None if store is None else store.folder)
         if store is None:
             return from_object(code, self.kinds, self._results)
-        linked = build.shared_library(code)
-        try:
-            file = store.keep(code if linked is None else linked, is_linked=linked is not None)
-        except OSError as error:
-            _log.warning("the machine code of %s cannot be kept: %s", self.name, error)
-            return from_object(code, self.kinds, self._results)
-        return loaded(file, self.kinds, self._results)
+        for content in filter(None, (build.shared_library(code), code)):
+            try:
+                file = store.keep(content, is_linked=content is not code)
+            except OSError as error:
+                _log.warning("the machine code of %s cannot be kept: %s", self.name, error)
+                store.remove()
+                break
+            try:
+                return loaded(file, self.kinds, self._results)
+            except (OSError, AttributeError) as error:  # as from a file system that nothing may be run from
+                _log.debug("no linked library of %s: %s", self.name, error)
+        return from_object(code, self.kinds, self._results)

@@ -12,6 +12,7 @@ part of its public interface. It looks before it runs: type, dimensions, contigu
 
 import ctypes
 import struct
+import sys
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -80,7 +81,7 @@ class Entry:
         except UnfitError:
             status = UNFIT
         if status >= UNFIT:
-            arguments = [fitted(kind, value) for kind, value in zip(self._kinds, arguments, strict=True)]
+            arguments = fitted(self._kinds, arguments)
             self._fill(block, arguments)
             status = self._run(block)
         if status:
@@ -174,12 +175,13 @@ def is_as_expected() -> bool:
     array: Callable[[int], Any] = ctypes.c_int64.from_address
     probe = np.zeros((2, 3))
     at = id(probe)
-    shape = array(at + SHAPE).value
     return (
-        struct.calcsize("P") == 8
+        sys.implementation.name == "cpython"  # elsewhere an object's ``id`` is no address
+        and sys.byteorder == "little"
+        and struct.calcsize("P") == 8
         and array(at + DATA).value == probe.ctypes.data
         and ctypes.c_int32.from_address(at + DIMENSIONS).value == 2
-        and (array(shape).value, array(shape + 8).value) == probe.shape
+        and (array(array(at + SHAPE).value).value, array(array(at + SHAPE).value + 8).value) == probe.shape
         and array(at + TYPE).value == id(probe.dtype)
         and ctypes.c_int32.from_address(at + FLAGS).value & 0xFFFF == probe.flags.num
     )

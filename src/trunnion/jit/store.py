@@ -19,6 +19,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import IO, Final
 
+from trunnion.jit.library import is_as_expected
 from trunnion.user_cache import user_cache
 
 if sys.platform == "win32":
@@ -87,7 +88,8 @@ def _made_for() -> str:
         versions = " ".join(sorted(each.name for one in ("numba", "llvmlite") for each in packages.glob(f"{one}-*")))
     makers = [Path(__file__).with_name(f"{name}.py") for name in ("build", "library", "arguments")]
     made_by = [hashlib.sha256(file.read_bytes()).hexdigest() for file in makers if file.exists()]
-    whole = (versions, made_by, sys.platform, platform.machine(), _processor(), object.__basicsize__)
+    arrays = (is_as_expected(), object.__basicsize__)
+    whole = (versions, made_by, sys.platform, platform.machine(), _processor(), arrays)
     return hashlib.sha256(repr(whole).encode()).hexdigest()[:10]
 
 
@@ -187,8 +189,12 @@ class Store:
 def _write(file: Path, content: bytes) -> None:
     """Write a file that another process sees whole or not at all."""
     part = file.with_name(f"{file.name}.{os.getpid()}")
-    part.write_bytes(content)
-    part.replace(file)
+    try:
+        part.write_bytes(content)
+        part.replace(file)
+    except OSError:  # on a full disk, half a file would only fill it more
+        _remove(part)
+        raise
 
 
 def _remove(path: Path) -> None:
