@@ -157,3 +157,14 @@ def test_known_poses_are_of_a_tool_and_of_slides_that_are_not_at_zero() -> None:
     assert LENGTH
     assert len(set(SLIDES.values())) == 3
     assert 0.0 not in SLIDES.values()
+
+
+@pytest.mark.parametrize("name", shipped_machines())
+def test_a_zero_of_whole_numbers_is_one_of_millimetres(name: str) -> None:
+    machine = load_machine(name)
+    joints = np.full((2, 5), 20.0)
+    whole, broken = (
+        forward(replace(machine, workpiece_zero=zero), joints, 100) for zero in ((0, 0, -160), (0.0, 0.0, -160.0))
+    )
+    for one, other in zip(whole, broken, strict=True):
+        np.testing.assert_array_equal(one, other)

@@ -105,7 +105,7 @@ def kinematic_chain(machine: Machine, tool_length: float | None = None) -> Kinem
         point=np.array([axis.point for axis in machine.axes]),
         tip_at_zero=np.array(machine.spindle_point) - length * spindle,
         spindle=spindle,
-        zero=np.array(machine.workpiece_zero or (0.0, 0.0, 0.0)),
+        zero=np.array(machine.workpiece_zero or (0.0, 0.0, 0.0), np.float64),
     )
     make_read_only(*chain)
     return chain

@@ -58,7 +58,7 @@ class SweptPart:
         direction = np.array(table.direction)
         if table.mount is not Mount.PART:
             return SweptPart(low, high, None, direction, 0.0, (0.0, 0.0))
-        zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
+        zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0), np.float64)
         centre = np.array(table.point) - zero
         down = [np.array(axis.point) - zero for axis in machine.axes if axis.is_rotary and axis.mount is Mount.PART]
         corners = np.array(list(product(*zip(low, high, strict=True))))

@@ -131,7 +131,7 @@ class PlaceSearch:
 def _first_guess(machine: Machine) -> Floats:
     """Return a place near which the search begins: the present one, or where the part sits on the first rotary axis."""
     if machine.workpiece_zero is not None:
-        return np.array(machine.workpiece_zero)
+        return np.array(machine.workpiece_zero, np.float64)
     return np.array(machine.axes[machine.rotary[0]].point)
 
 
@@ -167,7 +167,7 @@ def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal
     """
     if machine.workpiece_zero is None:
         return None
-    zero = np.array(machine.workpiece_zero)
+    zero = np.array(machine.workpiece_zero, np.float64)
     places = [
         _with_value(place_at(machine, rows, cuts, zero, 0.0), path, goal)
         for path, cuts in ((path, path.at(0.0)) for path in paths)

@@ -47,7 +47,7 @@ def run_of_drawn_part(run: Run, turn: Floats) -> Run:
 
 def _about_the_part(machine: Machine, turn: Floats) -> Machine:
     """Return the machine turned about its workpiece zero as the part is turned back; its bodies stay away."""
-    zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
+    zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0), np.float64)
 
     def direction(vector: Vector) -> Vector:
         x, y, z = (np.array(vector) @ turn).tolist()

@@ -75,7 +75,7 @@ def kinematic_parameters(machine: Machine, tool_length: float | None = None) -> 
     basis_2 = _basis(w2, w1)
     spindle = basis_2 @ s
     tip = np.array(machine.spindle_point) - length * s
-    zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
+    zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0), np.float64)
     slides = machine.linear
     return KinematicParameters(
         columns=(first, second, *slides),

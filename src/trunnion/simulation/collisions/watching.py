@@ -318,5 +318,5 @@ def _in_workpiece(machine: Machine, link: str, joints: Floats, point: Floats) ->
     """Return a point in the frame of a link, in workpiece coordinates."""
     links = link_transforms(machine, joints[None])
     seen = np.linalg.inv(links[WORKPIECE][0]) @ links[link][0] @ np.append(point, 1.0)
-    x, y, z = (seen[:3] - np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))).tolist()
+    x, y, z = (seen[:3] - np.array(machine.workpiece_zero or (0.0, 0.0, 0.0), np.float64)).tolist()
     return x, y, z
