@@ -45,7 +45,7 @@ def test_a_chuck_is_a_cylinder_with_jaws_around_what_it_grips() -> None:
 
 @pytest.mark.parametrize("count", [2, 4, 6, 8])
 def test_a_chuck_has_as_many_jaws_as_are_stated(count: int) -> None:
-    assert len(stated_fixture(f"{CHUCK},jaws={count}")) == count + 1
+    assert len(stated_fixture(f"chuck:160,height=70,grip=60,jaw=45x20x40,jaws={count}")) == count + 1
 
 
 def test_every_piece_is_closed_and_seen_from_outside() -> None:

@@ -87,14 +87,14 @@ def test_g154_takes_the_plane_of_the_present_rotary_position(
     turn = table(a, c)
     close(got.tip[1], turn @ np.array([x, y, z]), atol=1e-9)
     close(got.axis[1], turn[:, 2], atol=1e-9)
-    # The slides stand still while the axes turn, and then their own positions count.
+    # The slides stand still while the axes turn, and then the spindle nose goes to their own positions.
     slides = [MACHINE.column(name) for name in "XYZ"]
     close(got.joints[2, slides], got.joints[1, slides], atol=1e-9)
-    close(got.joints[3, slides], [1.0, 2.0, 3.0], atol=1e-9)
+    close(got.joints[3, slides] + MACHINE.spindle_point, [1.0, 2.0, 3.0], atol=1e-9)
 
 
 def test_centres_are_absolute(run: Runner) -> None:
-    got = fidia(run, "G0 X10. Y5.\nG2 X20. Y-5. I10. J-5. F500\nG3 X10. Y5. I20. J5.\nG18 G2 X10. Z0 I15. K0\n")
+    got = fidia(run, "G0 X10. Y5. Z0.\nG2 X20. Y-5. I10. J-5. F500\nG3 X10. Y5. I20. J5.\nG18 G2 X10. Z0 I15. K0\n")
     assert [Kind(kind) for kind in got.kind] == [Kind.RAPID, Kind.ARC, Kind.ARC, Kind.ARC]
     close(got.arcs.centre, [[10, -5, 0], [20, 5, 0], [15, 5, 0]], atol=1e-12)
     assert got.diagnostics == ()
