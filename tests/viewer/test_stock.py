@@ -148,7 +148,7 @@ def test_deviations_have_their_colours_and_a_scale(view: Page) -> None:
     np.testing.assert_allclose(missing, (217, 13, 26), atol=6)
     np.testing.assert_allclose(left, (20, 77, 204), atol=6)
     np.testing.assert_allclose(sound, (196, 196, 196), atol=1)
-    assert re.fullmatch(r"missing (0\.99\d|1\.00\d) mm \| ± 0\.100 \| left (0\.99\d|1\.00\d) mm", legend(view))
+    assert re.fullmatch(r"missing (0\.99\d|1\.00\d) mm \| ± 0\.100 mm \| left (0\.99\d|1\.00\d) mm", legend(view))
     view.locator("#space").focus()
     view.keyboard.press("s")
     assert view.locator("#stock").input_value() == "off"
