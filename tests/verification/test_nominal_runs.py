@@ -63,6 +63,9 @@ def test_a_frame_in_another_plane_of_the_length_is_another_program(tmp_path: Pat
     other.write_text(text.format("G18\n"), encoding="utf-8")
     found = trunnion.diff(program, other, machine="yl569")
     assert found.first is not None
+    assert "plane G17 against G18" in found.first.text
+    found = trunnion.diff(program, other, machine="yl569", path=True)
+    assert found.first is not None
     assert "tool length 100" in found.first.text
 
 

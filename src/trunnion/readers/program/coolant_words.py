@@ -29,6 +29,8 @@ def coolant_meanings(machine: Machine, coolants: Mapping[int, str]) -> dict[int,
     coolants     M codes of the control's own coolants -> ``OFF``, ``FLOOD`` or ``MIST``
     """
     stated = control_of(machine).table("coolant").to_dict()
+    if stated.get("FLOOD") == stated.get("MIST"):
+        return dict(coolants)  # a fault that the control's loader names
     own = {stated[kind]: kind for kind in ("FLOOD", "MIST") if stated.get(kind) in coolants}
     return {code: own.get(code, kind) if kind != "OFF" else kind for code, kind in coolants.items()}
 
@@ -61,7 +63,8 @@ def check_coolant_words(machine: Machine, is_own_word: Callable[[str], bool], co
             continue
         if code in coolants and is_own_word(f"M{code}"):
             if coolants[code] != read_as:
-                table.add_problem(kind, _other_coolant(kind, code, coolants))
+                both = table.to_dict().get("FLOOD") == table.to_dict().get("MIST")
+                table.add_problem(kind, _other_coolant(kind, code, coolants, both=both))
         elif is_own_word(f"M{code}"):
             table.add_problem(kind, Wording("DEF330", "coolant_is_own_word", code=code))
         elif word is not None and not _may_switch(_EFFECTS.get(read_as, ""), word.effects):
@@ -70,12 +73,14 @@ def check_coolant_words(machine: Machine, is_own_word: Callable[[str], bool], co
         raise InputError(table.problems)
 
 
-def _other_coolant(kind: str, code: int, coolants: Mapping[int, str]) -> Wording:
-    """Return what is wrong with a name of a coolant whose M code is that of another one."""
+def _other_coolant(kind: str, code: int, coolants: Mapping[int, str], *, both: bool) -> Wording:
+    """Return what is wrong with a name of a coolant whose M code is that of another one; ``both``: FLOOD and MIST have
+    one M code, which the control's loader names in the same words, as it does that of OFF.
+    """
     read_as = _READ_AS.get(kind, "")
     right = next((each for each, meaning in coolants.items() if meaning == read_as), None)
     said = {"code": code, "other": coolants[code]}
-    if right is None:
+    if right is None or both or "OFF" in (kind, coolants[code]):
         return Wording("DEF330", "coolant_is_other_word", **said)
     return Wording("DEF330", "coolant_is_other_coolant", **said, kind=kind, right=right, read_as=read_as)
 
