@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 import trunnion
 from tests.support.examples import examples
 from tests.support.posting import FOOT, HEAD
-from tests.support.toolpath_strategies import SAYABLE, sensible, toolpaths
+from tests.support.toolpath_strategies import SAYABLE, sensible, skips_are_unsafe, toolpaths
 from trunnion.cl import read_cl
 from trunnion.cl.write import write_cl
 from trunnion.controls import load_control
 from trunnion.conversion import Conversion, convert
-from trunnion.errors import Severity
+from trunnion.errors import RefusedError, Severity
 from trunnion.machines import load_machine
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import Toolpath
@@ -41,7 +41,12 @@ AXES = st.one_of(
 
 def posted(toolpath: Toolpath, given: dict[str, str], planes: bool = True) -> bytes | None:
     """The program; None if it is refused. Without ``planes``, one with tilted planes is posted with TCP instead."""
-    planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance)
+    try:
+        planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance)
+    except RefusedError as refused:
+        if not skips_are_unsafe(refused):
+            raise
+        return None
     if not planes and any(motion.plane is not None for motion in planned.motions):
         planned = plan([toolpath], MACHINE, CONTROL.arcs.chord_tolerance, PlanOptions(mode=MachiningMode.TCP))
     given = {"standing_spindle": "allowed", **given}

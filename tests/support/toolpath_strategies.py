@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from trunnion.arrays import Codes, Floats
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
+from trunnion.errors import RefusedError
 from trunnion.model.toolpath import (
     Arcs,
     BlockSkip,
@@ -212,3 +213,8 @@ def toolpaths(
     return st.lists(operations(kinds, axes), min_size=1, max_size=2).map(
         lambda found: Toolpath("made.cls", tuple(found), "part.prt")
     )
+
+
+def skips_are_unsafe(refused: RefusedError) -> bool:
+    """Whether the toolpath is refused only because no safe way leads past blocks that may be skipped."""
+    return {problem.code for problem in refused.problems} == {"CTL460"}
