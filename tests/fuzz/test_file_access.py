@@ -20,9 +20,9 @@ from tests.support.locations import ROOT
 SHIPPED = ROOT / "src" / "trunnion"
 
 #: Runs the programs of a folder and prints what was opened, listed or started meanwhile. The first run is not watched:
-#: it loads what is needed once.
+#: it loads what is needed once; the texts of messages are read with pkgutil.
 WATCHER = """
-import json, sys
+import json, pkgutil, sys
 from pathlib import Path
 from trunnion.errors import InputError
 from trunnion.machines import load_machine

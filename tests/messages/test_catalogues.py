@@ -31,6 +31,9 @@ SAYERS = {
     "Wording": None,
     "phrase": "",
     "said": "terminal",
+    "line": "results",
+    "part": "results",
+    "label": "report",
     "Fault": "DEF580",
     "_TextError": "SIM153",
     "_SizeError": "SIM123",
@@ -59,6 +62,9 @@ NO_SENTENCES = {
 
 #: In modules that say nothing themselves: values of data, and what stands for the name of a file.
 WORDS_OF_DATA = {"not checked", "from home", "CL file", "swivel data"}
+
+#: What is no sentence in any language: nothing, a value that a definition states, and a word of CL files.
+NO_WORDS = {"''", "stated", "f'CYCLE/{method}'"}
 
 #: Words of a sentence.
 MOST_WORDS = 35
@@ -100,7 +106,9 @@ def calls() -> Iterator[tuple[str, ast.Call, ast.Module]]:
     """Every wording and phrase that is made, and where."""
     for path, tree in trees().items():
         for node in ast.walk(tree):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in SAYERS:
+            if not isinstance(node, ast.Call) or any(keyword.arg == "declared" for keyword in node.keywords):
+                continue
+            if isinstance(node.func, ast.Name) and node.func.id in SAYERS:
                 yield f"{path.relative_to(SOURCE)}:{node.lineno}", node, tree
 
 
@@ -143,7 +151,7 @@ def called(node: ast.Call) -> str:
 def has_text(node: ast.Call) -> bool:
     """Whether a message is made of a text."""
     if called(node) == "foreign":
-        return True
+        return ast.unparse(node.args[0]) not in NO_WORDS
     place = MAKERS.get(called(node))
     if place is None:
         return False

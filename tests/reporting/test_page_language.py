@@ -8,6 +8,8 @@ import pytest
 
 from tests.support.reports import blade
 from trunnion.messages import LIBRARY, Words, catalogue
+from trunnion.reporting.content import collect_content
+from trunnion.reporting.plot_series import collect_series
 from trunnion.reporting.write import render_report
 
 
@@ -17,7 +19,8 @@ class Spoken(Words):
 
 
 def page(words: Words, name: str = "x.html") -> str:
-    return b"".join(render_report(blade(), Path(name), words=words)).decode()
+    content, series = collect_content(blade()), collect_series(blade())
+    return b"".join(render_report(Path(name), content, series, words)).decode()
 
 
 def shown(text: str) -> str:

@@ -22,6 +22,7 @@ from trunnion import write_view
 from trunnion.builder.fields import PAGES
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
+from trunnion.jobs.observer import Observer
 from trunnion.messages import LANGUAGES, catalogue, library_words
 from trunnion.viewer.language import Speech, page_texts
 from trunnion.viewer.serving import Access, listen
@@ -40,6 +41,13 @@ NO_WORDS = {
 
 #: Elements that a selector names.
 TAGS = {"button", "input", "select", "summary", "textarea"}
+
+
+def speaking(language: str) -> Observer:
+    """Who asks for pages in a language."""
+    asking = Observer()
+    asking.words = library_words(language)
+    return asking
 
 
 def asked(header: str = "", lang: str = "") -> Any:
@@ -81,7 +89,7 @@ def scene_of(page: str) -> tuple[str, dict[str, str], dict[str, Any]]:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_file_is_in_the_language_of_who_writes_it(language: str, tmp_path: Path) -> None:
-    said = write_view(PROGRAM, machine="yl569", output=tmp_path / "view.html", words=library_words(language))
+    said = write_view(PROGRAM, machine="yl569", output=tmp_path / "view.html", observer=speaking(language))
     tag, texts, scene = scene_of((tmp_path / "view.html").read_text(encoding="utf-8"))
     assert tag == {"zh": "zh-Hans"}.get(language, language)
     assert texts == page_texts("viewer", language)
@@ -222,7 +230,7 @@ def cut_texts(page: Page) -> list[str]:
 def test_nothing_that_is_read_is_left_in_english_or_cut_off(
     language: str, builder: str, browser: Browser, tmp_path: Path
 ) -> None:
-    write_view(PROGRAM, machine="yl569", output=tmp_path / "view.html", words=library_words(language))
+    write_view(PROGRAM, machine="yl569", output=tmp_path / "view.html", observer=speaking(language))
     page = browser.new_page(locale={"zh": "zh-CN"}.get(language, language))
     page.set_default_timeout(PATIENCE)
     page.goto((tmp_path / "view.html").as_uri())

@@ -34,7 +34,7 @@ def run(given: Given) -> int:
         raise InputError(argument_problem("live", Wording("ARG130", "live_is_served")))
     shown = given.arguments("output", *_LIVE)
     if given.output is not None:
-        standing = write_view(**shown, output=given.output, observer=Terminal(), words=spoken())
+        standing = write_view(**shown, output=given.output, observer=Terminal())
         print_result(f"{given.output}: written", standing)
         return 0
 

@@ -16,7 +16,6 @@ from trunnion.reporting.content import ReportContent, collect_content, refused_c
 from trunnion.reporting.html_page import render_page
 from trunnion.reporting.json_report import render_json
 from trunnion.reporting.plot_series import PlotSeries, collect_series, no_series
-from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.verification.results import Verification
 
 
@@ -33,30 +32,17 @@ def write_report(
 
     Raises ``InputError`` for any other suffix, and for a file that cannot be written.
     """
-    pieces = render_report(verification, path, control=control, made=made, decisions=decisions)
+    pieces = render_report(path, collect_content(verification, control, made, decisions), collect_series(verification))
     with atomic_file(path) as sink:
         sink.writelines(pieces)
 
 
-def render_report(
-    verification: Verification,
-    path: Path,
-    *,
-    control: str = "",
-    made: str = "",
-    decisions: Sequence[Decision] = (),
-    simulation: SimulationContent | None = None,
-    words: Words = LIBRARY,
-) -> Iterator[bytes]:
-    """Return the bytes of a report, piece by piece; the arguments are those of ``write_report``, and what a simulation
-    found and the
-    words of who asks.
+def render_report(path: Path, content: ReportContent, series: PlotSeries, words: Words = LIBRARY) -> Iterator[bytes]:
+    """Return the bytes of a report of what was collected, piece by piece, in the words of who asks.
 
     Raises as ``write_report`` does, but writes nothing.
     """
-    return _renderer(path)(
-        collect_content(verification, control, made, decisions, simulation), collect_series(verification), words
-    )
+    return _renderer(path)(content, series, words)
 
 
 def write_refusal(
@@ -70,7 +56,7 @@ def write_refusal(
 
     Raises ``InputError`` for any other suffix, and for a file that cannot be written.
     """
-    pieces = _renderer(path)(refused_content(machine, program, problems), no_series(), words)
+    pieces = render_report(path, refused_content(machine, program, problems), no_series(), words)
     with atomic_file(path) as sink:
         sink.writelines(pieces)
 

@@ -144,7 +144,10 @@ _COMPLETION: Final = job(
 _PREPARE: Final = job(
     "prepare", "compile everything for this computer now, so that no later command has to",
     run="prepare:run",
-    examples=[("trunnion prepare", "once, after the installation or an update")],
+    examples=[
+        ("trunnion prepare", "once, after the installation or an update"),
+        ("trunnion prepare --language de", "in German"),
+    ],
 )  # fmt: skip
 
 JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION, _PREPARE)

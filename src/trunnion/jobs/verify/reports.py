@@ -84,7 +84,9 @@ def add_report(
     """
     if len(verification.seconds) != len(verification.run):
         raise InputError(Problem(name, 0, Wording("ARG130", "verified_without_columns")))
-    from trunnion.reporting.write import render_report  # most runs write no report
+    from trunnion.reporting.content import collect_content  # most runs write no report
+    from trunnion.reporting.plot_series import collect_series
+    from trunnion.reporting.write import render_report
 
     content = None
     if simulation is not None:
@@ -93,7 +95,8 @@ def add_report(
         content = simulation_content(simulation)
         # How long it was computed differs each time, and the same post gives the same bytes.
         content = replace(content, data={key: value for key, value in content.data.items() if key != "seconds"})
-    sink.writelines(render_report(verification, Path(name), decisions=decisions, simulation=content, words=words))
+    collected = collect_content(verification, decisions=decisions, simulation=content)
+    sink.writelines(render_report(Path(name), collected, collect_series(verification), words))
 
 
 def write_refusal(

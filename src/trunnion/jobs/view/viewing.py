@@ -25,7 +25,7 @@ from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import view_simulation, with_stock
 from trunnion.machines import Machine
-from trunnion.messages import LIBRARY, Wording, Words
+from trunnion.messages import Wording
 from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import fixture_body, part_body
@@ -119,7 +119,6 @@ def write_view(
     *,
     output: FilePath,
     observer: Observer = SILENT,
-    words: Words = LIBRARY,
     **given: Unpack[ViewArguments],
 ) -> str:
     """Show an NC program on its machine, block by block, on a page that works offline.
@@ -162,8 +161,6 @@ def write_view(
         As for ``verify``. Without a zero, the part is drawn at the machine's zero.
     observer
         Receives progress and warnings.
-    words
-        Of who looks at the page: ``trunnion.messages.library_words("zh")`` for a page in Chinese. By default English.
 
     Returns
     -------
@@ -186,8 +183,8 @@ def write_view(
         with observer.progress("states of the stock", len(content.stock.page_states), "states") as tell:
             content.stock.packed(tell)
     with atomic_file(place, inputs=_shown_files(content)) as sink:
-        sink.writelines(render_view(content, words, embedded=True))
-    return str(content.said(words)["standing"])
+        sink.writelines(render_view(content, observer.words, embedded=True))
+    return str(content.said(observer.words)["standing"])
 
 
 def _shown_files(content: ViewContent) -> list[Path]:
