@@ -39,6 +39,9 @@ SAYERS = {
     "_SizeError": "SIM123",
 }
 
+#: Catalogues of the lines of results and reports.
+OF_RESULTS = {"results", "report"}
+
 #: Names of fields that are no parameters but what a user may set.
 SETTABLE = {"setting", "argument", "switch"}
 
@@ -112,6 +115,23 @@ def calls() -> Iterator[tuple[str, ast.Call, ast.Module]]:
                 yield f"{path.relative_to(SOURCE)}:{node.lineno}", node, tree
 
 
+def literals(tree: ast.Module) -> Iterator[object]:
+    """Every literal of a module."""
+    return (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
+
+
+@cache
+def names_of_lines() -> set[str]:
+    """Every literal of the modules that print results: rows name their lines, and others print them."""
+    folders = ("cli", "reporting", "jobs")
+    return {
+        str(value).removeprefix("#")  # of columns of numbers
+        for path, tree in trees().items()
+        if path.relative_to(SOURCE).parts[0] in folders
+        for value in literals(tree)
+    }
+
+
 def said() -> Iterator[tuple[str, str, str, set[str] | None]]:
     """Where a text is said, its code and variant, and its parameters if the call names them all."""
     known = {(code, variant) for code, variant, _ in texts()}
@@ -122,8 +142,11 @@ def said() -> Iterator[tuple[str, str, str, set[str] | None]]:
         behind = call.args[1 if of_sayer is None else 0 :]
         variants = constants(behind[0]) if behind else []
         if not variants:  # chosen before: by a text of the module
-            in_module = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+            in_module = names_of_lines() if of_sayer in OF_RESULTS else set(map(str, literals(tree)))
             variants = [variant for code, variant in known if code in codes and variant in in_module]
+            if behind and isinstance(behind[0], ast.JoinedStr):  # one of those that begin like this
+                start = str(getattr(behind[0].values[0], "value", ""))
+                variants += [variant for code, variant in known if code in codes and variant.startswith(start)]
             named: set[str | None] = {None}
         else:
             named = {keyword.arg for keyword in call.keywords}

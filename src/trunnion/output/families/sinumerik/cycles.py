@@ -3,6 +3,7 @@
 Facts: SINUMERIK cycles manual; docs/controls/sinumerik.md lists the parameters.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -127,8 +128,11 @@ def _peck(of: _Input) -> CycleArguments:
     """FDPR, DAM, no dwell at the top, feed factor 1, VARI, tool axis, least peck, chip break, dwell, DIS1 0."""
     peck, decrement, least = of.cycle.pecks
     full = of.cycle.method is HoleMethod.DEEP_DRILLING
+    degression = of.number(decrement)
+    if decrement > least >= peck - decrement:  # no peck falls below an amount; a factor goes to the least at once
+        degression = of.number(-math.floor(1000.0 * least / peck) / 1000.0)
     return "CYCLE83", [
-        "", "", of.number(min(peck, of.cycle.depth)), of.number(decrement), "0", "0", "1", "1" if full else "0",
+        "", "", of.number(min(peck, of.cycle.depth)), degression, "0", "0", "1", "1" if full else "0",
         _THIRD_AXIS, of.number(least), "0" if full else of.number(_CHIP_BREAK), of.dwell or "0", "0",
     ]  # fmt: skip
 
