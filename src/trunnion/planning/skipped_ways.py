@@ -90,7 +90,9 @@ def with_safe_ways(file: str, operation: Operation, rows: SkipRows) -> tuple[Ope
 def _begun_behind(operation: Operation, stretch: Stretch) -> Operation:
     """Return the operation with an OPSKIP/ON one row later."""
     moved = [
-        replace(event, row=event.row + 1) if isinstance(event, BlockSkip) and event.line == stretch.on else event
+        replace(event, row=event.row + 1)
+        if isinstance(event, BlockSkip) and event.on and event.row == stretch.first
+        else event
         for event in operation.events
     ]
     return replace(operation, events=tuple(sorted(moved, key=lambda event: event.row)))
