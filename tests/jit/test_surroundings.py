@@ -84,9 +84,12 @@ for _ in range(2):
 @pytest.mark.nightly
 def test_threads_may_compile_and_run_kernels_at_once(compiled: Compiled, folder: Path) -> None:
     script = f"""
+import sys
 from threading import Thread
 def work():
 {indent(RUN, "    ")}
+# A line is one write, so that lines of two threads do not mix.
+def print(*values): sys.stdout.write(" ".join(map(str, values)) + "\\n")
 threads = [Thread(target=work) for _ in range(4)]
 for each in threads: each.start()
 for each in threads: each.join()
