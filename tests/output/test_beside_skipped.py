@@ -5,8 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.output.test_block_skip import HEAD, MACHINES
 from trunnion.cli import main
+
+MACHINES = ["yl569", "dmu65", "hs664rt", "matsuura_mx330", "xyzac_trt", "generic_head_head_ca", "ucp800", "haas_umc750"]
+
+HEAD = (
+    "TOOL PATH/{name},TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,{tool}\n"
+    "SPINDL/RPM,1000,CLW\n"
+)
 
 _ABOVE = "RAPID\nGOTO/0,0,60,0,0,1\n"
 _HOLES = "CYCLE/DRILL,RAPTO,3,FEDTO,-10,RTRCTO,40,MMPM,100\n"
@@ -49,15 +55,14 @@ _BESIDE = {
 
 @pytest.mark.third
 @pytest.mark.parametrize("what", _BESIDE)
-@pytest.mark.parametrize("machine", [*MACHINES, "ucp800", "haas_umc750"])
+@pytest.mark.parametrize("machine", MACHINES)
 def test_what_stands_beside_skipped_blocks_is_proven_or_refused(
     machine: str, what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text, is_refused = _BESIDE[what]
-    head = HEAD.partition("RAPID\n")[0]
     cl, program = tmp_path / "skip.cls", tmp_path / "skip.nc"
-    whole = head.format(name="ONE", tool=1) + text + "END-OF-PATH\n"
-    other = head.format(name="TWO", tool=2) + f"{_ABOVE}FEDRAT/MMPM,200\nGOTO/9,9,5\nRAPID\nGOTO/9,9,60\nEND-OF-PATH\n"
+    whole = HEAD.format(name="ONE", tool=1) + text + "END-OF-PATH\n"
+    other = HEAD.format(name="TWO", tool=2) + f"{_ABOVE}FEDRAT/MMPM,200\nGOTO/9,9,5\nRAPID\nGOTO/9,9,60\nEND-OF-PATH\n"
     cl.write_text(whole + other, encoding="utf-8")
     code = main(["post", str(cl), "--machine", machine, "--output", str(program)])
     said = capsys.readouterr()
@@ -68,7 +73,7 @@ def test_what_stands_beside_skipped_blocks_is_proven_or_refused(
 def test_verify_wants_the_tool_straight_down_into_cuts_behind_skipped_ones(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    head = HEAD.partition("RAPID\n")[0].format(name="ONE", tool=1)
+    head = HEAD.format(name="ONE", tool=1)
     cl, program = tmp_path / "skip.cls", tmp_path / "skip.nc"
     cl.write_text(head + _BESIDE["a plunge behind skipped cuts"][0] + "END-OF-PATH\n", encoding="utf-8")
     straight = cl.read_text(encoding="utf-8").replace("OPSKIP/ON\n", "").replace("OPSKIP/OFF\n", "")

@@ -49,8 +49,7 @@ class MotionBlockWriter:
 
     writer          the block writer
     spindle         the last spindle start, also after the spindle has stopped; None before the first
-    coolant         the kind of the last coolant command
-    coolant_may_run  the command that switches it off may be skipped
+    coolant         the kind of the last coolant command; ``coolant_may_run``: OFF, by a command that may be skipped
     feeds           F and the active feed mode
     tool_height     Z of the tool after the last row, mm
     height_bound    after blocks that may be skipped: the tool may be lower than ``tool_height``, but not higher than
@@ -74,8 +73,7 @@ class MotionBlockWriter:
         self._orientation = OrientationWords(program, self.writer, self._words)
         self._axis_coordinates: AxisCoordinates | None = None
         self.spindle: SpindleOn | None = None
-        self.coolant = "OFF"
-        self.coolant_may_run = False
+        self.coolant, self.coolant_may_run = "OFF", False
         self.tool_height = 0.0
         self.height_bound: float | None = None
         self.xy_before_z = False
