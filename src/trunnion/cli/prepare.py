@@ -11,7 +11,7 @@ from trunnion.messages import phrase
 
 
 def run(given: Given) -> int:
-    """Compile what is not compiled yet, of everything or of what one command needs; remove what former versions left."""
+    """Compile what is missing of everything, or of what a command needs; remove what former versions left."""
     kernels = needed(given.work) if given.work else all_kernels()
     missing = sum(not each.is_kept for each in kernels)
     with progress("prepare", missing, " kernels", delay=0) as advance:
