@@ -47,11 +47,11 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
         _start(folder, [one.name for one in reversed(missing)])
 
 
-def all_kernels() -> list[Kernel]:
-    """Return the kernels of all rooms, but for those of rooms whose extras are not installed."""
+def all_kernels(room: str = "") -> list[Kernel]:
+    """Return the kernels of all rooms, or of one; but for those of rooms whose extras are not installed."""
     package = Path(__file__).parents[1]
     found = []
-    for file in sorted(package.rglob("*.py")):
+    for file in sorted((package / room).rglob("*.py")):
         if "\n@kernel(" not in file.read_text(encoding="utf-8"):
             continue
         name = ".".join((package.name, *file.relative_to(package).with_suffix("").parts))

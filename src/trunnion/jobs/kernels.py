@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from trunnion import cl, output, planning, readers, verification
+from trunnion.jit.ahead import all_kernels
 
 VERIFYING: Final[tuple[Any, ...]] = (*readers.KERNELS, *verification.KERNELS)
 CONVERTING: Final[tuple[Any, ...]] = (*readers.KERNELS, *planning.KERNELS, *output.KERNELS, *verification.KERNELS)
@@ -18,10 +19,8 @@ def needed(work: str) -> Sequence[Any]:
     from trunnion.machines.inverse.solutions import slide_rows, solve_rows
     from trunnion.planning.poses.optimizer import find_cheapest, trace_back
     from trunnion.planning.poses.placement import place_rows
-    from trunnion.readers.families.heidenhain.scan_kernel import read_blocks
-    from trunnion.readers.scan.circles import find_circles
 
-    reading = (*VERIFYING, find_circles, slide_rows, read_blocks)
+    reading = (*VERIFYING, *all_kernels("readers"), slide_rows)
     if work == "simulate":
         from trunnion.simulation import DESIGN_KERNELS, KERNELS, SURFACE_KERNELS
 
