@@ -87,7 +87,8 @@ def _fill(
         if no_axis is NoAxis.NEVER:
             diagnostics.error(int(columns.line[row]), Wording("CL530", "point_without_tool"))
         elif not _is_upright(axis[row]):
-            diagnostics.error(int(columns.line[row]), Wording("CL530", "point_without_tool_axis"))
+            variant = "line_behind_tilted" if no_axis is NoAxis.UPRIGHT else "point_without_tool_axis"
+            diagnostics.error(int(columns.line[row]), Wording("CL530", variant))
             return
 
 
