@@ -9,9 +9,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.cl.test_equivalence import changes, content, paths
 from tests.support import nci
 from tests.support.cl_dialects import Step, Z, write_in
+from tests.support.cl_paths import changes, content, paths
 from tests.support.examples import examples
 from trunnion.cl import ClReading, can_be_unknown, read_cl, unknown_statements
 from trunnion.cl.dialects import recognize_dialect

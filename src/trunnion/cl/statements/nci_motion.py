@@ -39,9 +39,10 @@ def line(state: ReaderState, statement: Statement) -> None:
     """Move along a line, the tool upright: record 1 with a feed, record 0 at rapid."""
     contour = begin_motion(state)
     side, x, y, z, feed, flag = values_of(state, statement, LINE_VALUES)
-    if (feed == _RAPID) is not (statement.major == "0"):
-        variant = "rapid_with_feed" if statement.major == "0" else "line_at_rapid"
-        raise StatementError(Wording("CL710", variant, record=record(state, statement), feed=feed))
+    if statement.major == "0" and feed != _RAPID:
+        raise StatementError(Wording("CL710", "rapid_with_feed", record=record(state, statement), feed=feed))
+    if statement.major == "1" and feed == _RAPID:
+        raise StatementError(Wording("CL710", "line_at_rapid", record=record(state, statement), feed=feed))
     _check_flag(state, statement, flag)
     _compensate(state, statement, side)
     _take_feed(state, statement, contour, feed)

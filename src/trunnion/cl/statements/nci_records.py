@@ -3,7 +3,7 @@
 Records about an operation stand before the tool change (1000 to 1002) that begins it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import PureWindowsPath
 from typing import Final
@@ -218,13 +218,19 @@ def canned_text(state: ReaderState, statement: Statement) -> None:
         state.note_unknown(statement, f"{statement.major} calls a text of Mastercam's post")
 
 
-def refused(code: str, variant: str) -> Callable[[ReaderState, Statement], None]:
-    """Return what refuses a record by the name of its kind, a message."""
+def cycle(state: ReaderState, statement: Statement) -> None:
+    """Refuse a drilling cycle: the order of its values is not settled."""
+    raise StatementError(Wording("CL250", "cycle_record", record=record(state, statement)))
 
-    def refuse(state: ReaderState, statement: Statement) -> None:
-        raise StatementError(Wording(code, variant, record=record(state, statement)))
 
-    return refuse
+def lathe(state: ReaderState, statement: Statement) -> None:
+    """Refuse turning."""
+    raise StatementError(Wording("CL260", "lathe_record", record=record(state, statement)))
+
+
+def subprogram(state: ReaderState, statement: Statement) -> None:
+    """Refuse the beginning and the end of a subprogram."""
+    raise StatementError(Wording("CL260", "subprogram_record", record=record(state, statement)))
 
 
 def tool_change(state: ReaderState, statement: Statement) -> None:
