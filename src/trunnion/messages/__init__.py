@@ -45,8 +45,11 @@ CATALOGUES: Final = {
     "SIM": "simulation",
     "TWN": "twin",
     "comparison": "comparison",
+    "kinematics": "kinematics",
     "report": "report",
     "results": "results",
+    "sheet": "sheet",
+    "survey": "survey",
     "terminal": "terminal",
 }
 
