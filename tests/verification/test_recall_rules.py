@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pytest
 
 from tests.support.recall_proof.edits import harmful
+from tests.support.recall_proof.sound_edits import sound
 
 HOME = ["N1 G90 G94 G21", "N2 G53 G0 Z0.", "N3 S500 M3", "N4 G0 X5. Y6.", "N5 G43 H1 Z40."]
 HOLE = "N7 G98 G81 X5. Y6. Z-3. R2. F100."
@@ -59,3 +60,13 @@ def test_a_speed_before_a_block_with_its_own_is_not_put_in() -> None:
     lines = [*HOME, "N6 G1 Z-1. S900 F90.", "N7 X9."]
     assert "another speed in the cut" not in kinds(lines, "N6 G1 Z-1. S900 F90.", "LinuxCNC")
     assert "another speed in the cut" in kinds(lines, "N7 X9.", "LinuxCNC")
+
+
+def test_a_coordinate_that_counts_from_here_says_no_place() -> None:
+    by_increments = [*HOME, "N6 G91 G1 Z-41. F90.", "N7 X4.", "N8 Y6."]
+    assert "incremental from here" not in kinds(by_increments, "N7 X4.")
+    assert {"a cut left out", "X: a sign", "X: a tenth more"} <= kinds(by_increments, "N7 X4.")
+    assert not {edit.kind for edit in sound("\n".join(by_increments), "Fanuc")} & {"coordinates again", "a line in two"}
+    absolute = [*HOME, "N6 G1 Z-1. F90.", "N7 X9.", "N8 Y12."]
+    assert "incremental from here" in kinds(absolute, "N7 X9.")
+    assert {"coordinates again", "a line in two"} <= {edit.kind for edit in sound("\n".join(absolute), "Fanuc")}

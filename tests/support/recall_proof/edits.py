@@ -74,10 +74,13 @@ class Block:
 def blocks_of(text: str, language: Language) -> list[Block]:
     """The lines of a program with what is in force before each of them."""
     found, at, moving, feed, spindle, coolant = list[Block](), dict[str, float](), "", "", False, False
-    tcp = plane = cycle = compensated = False
+    tcp = plane = cycle = compensated = incremental = False
     verb = ""
     for line in text.splitlines():
         code = re.sub(language.comment, lambda match: " " * len(match[0]), line)
+        incremental = (re.findall(r"\bG9([01])(?![\d.])", code) or ["1" if incremental else "0"])[-1] == "1"
+        if incremental:
+            at.clear()  # a coordinate is no place then
         block = Block(line, code, dict(at), spindle=spindle, coolant=coolant, feed=feed, tcp=tcp, plane=plane)
         block.line_in_force, block.arc_in_force, block.compensated = verb == "1", verb in ("2", "3"), compensated
         verb = (re.findall(r"\bG0?([0123])(?![\d.])", code) or [verb])[-1]
@@ -104,8 +107,10 @@ def blocks_of(text: str, language: Language) -> list[Block]:
                 at.pop(word[1], None)
             else:
                 at[word[1]] = float(word[2])
-        if re.search(r"\bCP\b", code):
+        if incremental or re.search(r"\bCP\b", code):
             at.clear()  # polar positions go elsewhere
+        for letter in re.findall(r"\bI([XYZABC])[-+]?\d", code):
+            at.pop(letter, None)
         if (feeds := re.findall(r"\bF(\d+\.?\d*)", code)) and not re.search(r"\bG0?4\b", code):
             feed = feeds[-1]
         for word in re.findall(r"\bM0?([345789])(?!\d)", code):
