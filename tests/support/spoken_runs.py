@@ -16,6 +16,9 @@ RUNS: dict[str, tuple[str, ...]] = {
     "kinematics": ("kinematics", "generic_nutated_b45_c"),
     "kinematics_markdown": ("kinematics", "yl569", "--format", "markdown"),
     "kinematics_latex": ("kinematics", "dmu65", "--format", "latex"),
+    "reach.svg": ("reach", HUB, "--machine", "yl569", *ZERO, "--step", "60", "--plot", "{}"),
+    "curve.svg": ("curve", "examples/impeller/blade_points.csv", "--tolerance", "0.01", "--picture", "{}"),
+    "unknown": ("info", "unknown.cls"),
     "info.html": ("info", HUB, BLADE, "--plot", "{}"),
     "survey.html": ("survey", "pile", "--machine", "yl569", "--workers", "1", "--report", "{}"),
 }  # fmt: skip

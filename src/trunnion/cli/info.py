@@ -66,7 +66,7 @@ def info_lines(found: ClDescription) -> Iterator[str]:
                 line=each.line,
                 statement=each.statement,
                 count=each.count,
-                what=each.what,
+                what=each.said,
             )
 
 

@@ -45,6 +45,7 @@ CATALOGUES: Final = {
     "SIM": "simulation",
     "TWN": "twin",
     "comparison": "comparison",
+    "decision": "decisions",
     "kinematics": "kinematics",
     "report": "report",
     "results": "results",
