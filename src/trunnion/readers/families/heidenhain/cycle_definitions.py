@@ -23,6 +23,7 @@ from trunnion.readers.families.heidenhain.cycles import (
     legacy_spindle_work,
     spindle_work,
 )
+from trunnion.readers.families.heidenhain.cylinder_contours import labels_of
 from trunnion.readers.families.heidenhain.lexer import Word, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.path_blocks import value_of
@@ -35,6 +36,7 @@ from trunnion.readers.families.heidenhain.words import (
     ACT_WHEN_DEFINED,
     AXIS_SCALING,
     BORE_MILLING,
+    CONTOUR,
     CYCLE_LINES,
     CYCLE_OPTIONS,
     CYCLE_PARAMETERS,
@@ -42,6 +44,7 @@ from trunnion.readers.families.heidenhain.words import (
     DATUM,
     DWELL,
     MIRROR,
+    ON_CYLINDER,
     ORIENTATION,
     PATTERNS,
     PRESET,
@@ -74,6 +77,7 @@ class Definitions:
 
     defined_cycle   the cycle that CYCL CALL executes
     pattern         what the last block has defined to be executed at once
+    contour_labels  the labels of the last contour (cycle 14)
     """
 
     def __init__(self, control: HeidenhainControl, note: Note) -> None:
@@ -81,6 +85,7 @@ class Definitions:
         self._note = note
         self.defined_cycle: Cycle | None = None
         self.pattern: Pattern | None = None
+        self.contour_labels: tuple[str, ...] = ()
         # Number of the older cycle whose lines are being read, and the last of them.
         self._open: tuple[int, int] | None = None
 
@@ -147,6 +152,8 @@ class Definitions:
                 self._rotate(words(rest), parameters)
             case 11 | 26:
                 self._scale(words(rest), parameters)
+            case 14:
+                self.contour_labels = labels_of(rest)
             case 13:
                 last_value(rest, parameters)
                 control.add_event("spindle", "oriented")
@@ -264,7 +271,7 @@ class Definitions:
         own = (*CYCLE_PARAMETERS.get(number, q_values), *CYCLE_OPTIONS.get(number, ()))
         if foreign := tuple(f"Q{each}" for each in q_values if each not in own):
             self._note(Wording("NC221", "foreign_parameters", names=foreign, number=number), Severity.WARNING)
-        if number in CYCLES or number in CYCLES_NOT_SIMULATED:
+        if number in CYCLES or number in ON_CYLINDER or number in CYCLES_NOT_SIMULATED:
             if number in ACT_WHEN_DEFINED:
                 self._note(
                     Wording("NC220", "cycle_not_simulated", number=number, cycle=CYCLES_NOT_SIMULATED[number]),
@@ -379,7 +386,7 @@ class Definitions:
 
 #: Older cycles that act as soon as they are defined.
 _IMMEDIATE: Final = frozenset({
-    DATUM, MIRROR, DWELL, ROTATION, SCALING, AXIS_SCALING, ORIENTATION, TILT, TOLERANCE
+    DATUM, MIRROR, DWELL, ROTATION, SCALING, CONTOUR, AXIS_SCALING, ORIENTATION, TILT, TOLERANCE
 })  # fmt: skip
 
 

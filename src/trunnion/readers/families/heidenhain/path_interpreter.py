@@ -13,6 +13,9 @@ from trunnion.readers.control.contour_control import CornerWord
 from trunnion.readers.control.hole_motion import CycleExecutionError
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
+from trunnion.readers.families.heidenhain.cycle_values import Cycle
+from trunnion.readers.families.heidenhain.cylinder_contours import ContourBlockError
+from trunnion.readers.families.heidenhain.cylinder_cycles import mill_cylinder
 from trunnion.readers.families.heidenhain.flow import ActiveProgram, FlowInterpreter
 from trunnion.readers.families.heidenhain.leads import LeadWords
 from trunnion.readers.families.heidenhain.lexer import words
@@ -27,7 +30,7 @@ from trunnion.readers.families.heidenhain.path_blocks import (
     read_block,
 )
 from trunnion.readers.families.heidenhain.patterns import Pattern
-from trunnion.readers.families.heidenhain.words import M_CALL, M_MACHINE, M_SECOND_MACHINE
+from trunnion.readers.families.heidenhain.words import M_CALL, M_MACHINE, M_SECOND_MACHINE, ON_CYLINDER
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 
 #: Cutter radius compensation: left of the path, right of it, off.
@@ -238,8 +241,31 @@ class PathInterpreter(FlowInterpreter):
         length, radius = sizes.get("LEN", 0.0) * unit, sizes.get("R", 0.0) * unit
         return axes, block, LeadWords(word, kind, length, radius, sizes.get("CCA", 0.0), block.rapid)
 
+    def _mill_cylinder(self, active: ActiveProgram, cycle: Cycle) -> bool:
+        """Execute cycle 27 or 28 with the contour of cycle 14."""
+        control, here = self.control, self.control.line
+        labels = self._definitions.contour_labels
+        try:
+            if len(labels) != 1:
+                raise CycleExecutionError(Wording("NC380", "no_contour" if not labels else "several_contours"))
+            cycle.take_values(active.parameters)
+            contour = active.source, labels[0], active.parameters
+            self._counter.count_motions(mill_cylinder(control, cycle.number, cycle.q_values, contour))
+        except ContourBlockError as error:
+            control.line = error.line
+            self._note(error.wording, Severity.ERROR)
+            control.line = here
+            return False
+        except CycleExecutionError as error:
+            self._note(error.wording.within("cycle_not_executed"), Severity.ERROR)
+            return False
+        return True
+
     def _drill(self, active: ActiveProgram, stay: float | None = None) -> bool:
         """Execute the defined cycle at the present position; without its last motion if that leaves a height."""
+        cycle = self._definitions.defined_cycle
+        if cycle is not None and cycle.number in ON_CYLINDER:
+            return self._mill_cylinder(active, cycle)
         try:
             motions = self._definitions.call(active.parameters)
         except CycleExecutionError as error:

@@ -48,6 +48,21 @@ class KlartextText(SourceText):
                 self._set(labels, self._name_of(match), self.line_of(match.start(1 if match[1] is not None else 2)))
         return labels.get(name)
 
+    def subprogram(self, name: str) -> list[tuple[int, str]] | None:
+        """Return the lines of a label, each with its number, up to label 0 or the end; None: it is not set."""
+        first = self.label(name)
+        if first is None:
+            return None
+        here, found = self.line, []
+        self.jump(first + 1)
+        while self.fill():
+            number, raw = self.line, self.next_line()
+            if (match := _LABEL.match(raw.encode("latin-1", "replace"))) and self._name_of(match) == "0":
+                break
+            found.append((number, raw))
+        self.jump(here)
+        return found
+
     def pass_label(self, raw: str, line: int) -> None:
         """Remember the label that a line sets, if it sets one and no jump has found them all."""
         if self._jump_targets.labels is None and (match := _LABEL.match(raw.encode("latin-1", "replace"))):

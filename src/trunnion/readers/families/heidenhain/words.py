@@ -160,6 +160,7 @@ DATUM: Final = 7
 MIRROR: Final = 8
 DWELL: Final = 9
 ROTATION: Final = 10
+CONTOUR: Final = 14
 SCALING: Final = 11
 ORIENTATION: Final = 13
 TILT: Final = 19
@@ -175,6 +176,11 @@ M_VALUES: Final = {(120, "LA"): whole(0, 99)}
 
 #: Its path is simulated without the tool radius.
 BORE_MILLING: Final = 208
+
+#: A contour, and a slot, on a cylinder.
+CYLINDER: Final = 27
+CYLINDER_SLOT: Final = 28
+ON_CYLINDER: Final = frozenset({CYLINDER, CYLINDER_SLOT})
 
 #: Q parameters without which the motions of a cycle are not known, by its number. A control asks for each of them, and
 #: a definition without one leaves an older value in force. Those that newer software has added are not among them.
@@ -194,6 +200,8 @@ CYCLE_PARAMETERS: Final = {
     220: (216, 217, 244, 245, 246, 247, 241, 200, 203, 204, 301),
     221: (225, 226, 237, 238, 242, 243, 224, 200, 203, 204, 301),
     PRESET: (339,),
+    CYLINDER: (1, 3, 6, 10, 11, 12, 16, 17),
+    CYLINDER_SLOT: (1, 3, 6, 10, 11, 12, 16, 17, 20),
 }
 
 #: Q parameters that newer software has added to cycles, or that some machines leave out. Any other belongs to none.
@@ -203,6 +211,7 @@ CYCLE_OPTIONS: Final = {
     203: (395,),
     204: (336,),
     205: (208, 253, 373, 379, 395),
+    CYLINDER_SLOT: (21,),
     208: (342, 351, 370),
     209: (336, 403),
     220: (365,),
@@ -219,10 +228,10 @@ CYCLE_LINES: Final = {
 
 #: Cycles that are not simulated: their names.
 CYCLES_NOT_SIMULATED: Final = {
-    3: "slot milling", 4: "pocket milling", 5: "circular pocket", 6: "rough-out", 12: "program call", 14: "contour",
+    3: "slot milling", 4: "pocket milling", 5: "circular pocket", 6: "rough-out", 12: "program call",
     15: "pilot drilling", 16: "contour milling", 18: "thread cutting", 20: "contour data", 21: "pilot drilling",
-    22: "rough-out", 23: "floor finishing", 24: "side finishing", 25: "contour train", 27: "cylinder surface",
-    28: "cylinder surface slot", 29: "cylinder surface ridge", 39: "cylinder surface contour",
+    22: "rough-out", 23: "floor finishing", 24: "side finishing", 25: "contour train",
+    29: "cylinder surface ridge", 39: "cylinder surface contour",
     225: "engraving", 230: "multipass milling", 231: "ruled surface",
     232: "face milling", 233: "face milling", 239: "load measuring", 251: "rectangular pocket",
     252: "circular pocket", 253: "slot milling", 254: "circular slot", 256: "rectangular stud", 257: "circular stud",
