@@ -94,6 +94,7 @@ def set_up(what: str) -> None:
 def sample() -> None:
     """Post the sample and show the head of the program."""
     set_up(".")
+    run("trunnion", "prepare", "post")
     run("trunnion", "post", SAMPLE, "--machine", "yl569", "--set", "title=BLADE FINISH", "--output", "blade.mpf")
     program = HERE / "blade.mpf"
     lines = program.read_text(encoding="utf-8").splitlines()
@@ -107,6 +108,7 @@ def simulate() -> None:
     programs = [SAMPLE.with_name(f"{name}.expected.mpf") for name in CUT]
     tools = ("--tool", "1=flat:16,length=75,flutes=40", "--tool", "2=ball:10,length=75,flutes=40")
     stock = ("--stock", "cylinder:108,30,-30", "--cell", "0.5", "--save-stock", "stock.png")
+    run("trunnion", "prepare", "simulate")
     print("One finding is to be expected: a rapid goes through this stock, which is a plain cylinder.", flush=True)
     run("trunnion", "simulate", *programs, "--machine", "yl569", *stock, *tools, good=(0, 1))
     print(f"the finished stock is drawn in {HERE / 'stock.png'}; --save-stock stock.stl saves it as a solid")
@@ -115,6 +117,7 @@ def simulate() -> None:
 def impeller() -> None:
     """Model the published impeller, make its programs, prove them, simulate the finished part, and draw it."""
     set_up(".[impeller,simulate]")
+    run("trunnion", "prepare")
     folder = HERE / "build" / "impeller"
     folder.mkdir(parents=True, exist_ok=True)
     run("trunnion", "impeller", "model", IMPELLER, "--output", folder / "model.stl")

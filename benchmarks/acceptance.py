@@ -10,6 +10,9 @@ proven and of programs that are read.
 import argparse
 from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
+
+from tests.support.program_origins import OF_CAM, origin_of
 
 from trunnion.cli import configure_process
 from trunnion.cli.many_files.counting_terminal import CountingTerminal
@@ -25,7 +28,7 @@ STEPS = {
     FileKind.CL: (Step.INFO, Step.POST, Step.SETTINGS, Step.VERIFY, Step.CONVERT),
     FileKind.PROGRAM: (Step.VERIFY, Step.KEYS, Step.CONVERT),
 }
-READ = (Became.READ, Became.READ_WARNED, Became.READ_KEYED, Became.BEYOND, Became.CHECK_FAILED)
+READ = (Became.READ, Became.READ_WARNED, Became.READ_KEYED, Became.CALLED, Became.BEYOND, Became.CHECK_FAILED)
 ONLY = {"cl": FileKind.CL, "nc": FileKind.PROGRAM}
 
 
@@ -47,15 +50,20 @@ def shares(found: Survey) -> str:
 def read_shares(programs: Sequence[SurveyedFile]) -> str:
     """Return the shares of programs that are read without an error as they are, and with one round of keys.
 
-    That a check fails is another matter: many programs do not say their unit, which only their control knows.
+    That a check fails is another matter: many programs do not say their unit, which only their control knows. So is
+    that a program that is read cannot be converted to CL.
     """
-    tried = [each for each in programs if each.tries]
-    read = [each for each in tried if each.became in READ]
-    plain, count = sum(not each.tries[0].keys for each in read), max(len(tried), 1)
+    read = [each for each in programs if each.became in READ or (each.tries and each.tries[0].step == Step.CONVERT)]
+    plain, count = sum(not (each.tries and each.tries[0].keys) for each in read), max(len(programs), 1)
     return (
-        f"{len(tried)} programs: {plain} read without an error as they are ({plain / count:.1%}), "
+        f"{len(programs)} programs: {plain} read without an error as they are ({plain / count:.1%}), "
         f"{len(read)} after one round of keys ({len(read) / count:.1%})"
     )
+
+
+def of_cam(found: Survey, programs: Sequence[SurveyedFile]) -> list[SurveyedFile]:
+    """Return the programs that come from CAM posts by their content."""
+    return [each for each in programs if origin_of(Path(found.folder, each.file)) in OF_CAM]
 
 
 def main() -> None:
@@ -74,11 +82,19 @@ def main() -> None:
         said.folder, machine=said.machine, timeout=said.timeout, workers=said.workers, steps=steps,
         observer=CountingTerminal(),
     )  # fmt: skip
-    programs = [file for file in found.files if file.kind is FileKind.PROGRAM]
+    # Also those of other controls, which the survey takes for none of ours: their refusal counts.
+    programs = [file for file in found.files if file.kind is not FileKind.CL]
     print(
         as_json(to_data(found))
         if said.json
-        else "\n".join((*survey_lines(found), shares(found), read_shares(programs)))
+        else "\n".join(
+            [
+                *survey_lines(found),
+                shares(found),
+                read_shares(programs),
+                f"of CAM posts: {read_shares(of_cam(found, programs))}",
+            ]
+        )
     )
 
 

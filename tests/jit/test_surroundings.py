@@ -39,9 +39,8 @@ def test_on_a_full_disk_kernels_run_and_leave_nothing_half_written(compiled: Com
 
     assert found[:2] == [compiled[1][0], "False False"]
     assert [line for line in found if "kept" in line] == [
-        f"the machine code of some_kernels.{name} cannot be kept: [Errno 28] No space left on device"
-        for name in ("double", "fold")
-    ]
+        "machine code cannot be kept: [Errno 28] No space left on device",
+    ] * 2
     assert {file.suffix for file in folder.glob("kept/*/*")} <= {".lock"}
 
 

@@ -47,6 +47,21 @@ def test_an_o_number_begins_the_next_program_also_behind_one_without_number(mach
     assert _codes(machine, f"{_HEADS[machine]}{_CUT}M98 P5\nM30\nO5\nX20.\nM99\n%\n", tmp_path) == []
 
 
+@pytest.mark.parametrize("machine", [*_HEADS, "xyzac_trt"])
+@pytest.mark.parametrize("end", ["M30\nM30\n", "M2\n\nN5 M02 (END)\n", "M30\nM30"])
+def test_a_second_end_alone_takes_nothing_away(machine: str, end: str, tmp_path: Path) -> None:
+    comment = "; END" if machine == "yl569" else "(END)"
+    program = tmp_path / "MAIN.MPF"
+    program.write_text(
+        f"{_HEADS.get(machine, 'G21 G90 G17 G94')}\n{_CUT}{end.replace('(END)', comment)}", encoding="utf-8"
+    )
+    run = trunnion.read_program(program, machine=machine)
+    assert [each.code for each in run.errors] == []
+    assert "NC161" in [each.code for each in run.diagnostics]
+    program.write_text(f"{_HEADS.get(machine, 'G21 G90 G17 G94')}\n{_CUT}M30\nX20.\nM30\n", encoding="utf-8")
+    assert "NC161" in [each.code for each in trunnion.read_program(program, machine=machine).errors]
+
+
 @pytest.mark.third
 @pytest.mark.parametrize("machine", ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "xyzac_trt", "hs664rt"])
 def test_a_text_of_many_lines_is_not_read_to_its_end(machine: str, tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
-"""Each call of a kernel is made twice, by its library and by Numba's own way, and must give the same bits.
+"""Kernels called twice, by their libraries and by Numba's own way, which must give and write the same bits.
 
-A plugin of pytest: ``python -m pytest -p tests.support.kernel_judge PATHS``. ``KERNELS_JUDGED`` names a file for the
-names of the kernels that were compared.
+As a plugin of pytest, each call of a kernel is judged: ``python -m pytest -p tests.support.kernel_judge PATHS``.
+``KERNELS_JUDGED`` names a file for the names of the kernels that were compared.
 """
 
 import copy
@@ -23,6 +23,28 @@ _judges: dict[str, Judge] = {}
 _calls: dict[str, int] = {}
 
 
+def compared(kernel: Kernel, arguments: Any) -> Any:
+    """Return what a kernel gives for arguments, which it may write to; fails if Numba gives or writes other bits."""
+    entry = library_of(kernel)
+    if kernel.name not in _judges:
+        _judges[kernel.name] = kernel.judge()
+    others = copy.deepcopy(arguments)
+    theirs = _outcome(_judges[kernel.name], others)
+    mine = copy.deepcopy(arguments)
+    ours = _outcome(entry, mine)
+    assert ours == theirs, f"{kernel.name} gives {ours}, Numba {theirs}"
+    assert _bits(mine) == _bits(others), f"{kernel.name} writes other bits than Numba"
+    return entry(arguments)
+
+
+def library_of(kernel: Kernel) -> Entry:
+    """Return the library of a kernel, made if need be."""
+    if kernel._entry is None:
+        kernel.prepare()
+    assert isinstance(kernel._entry, Entry), f"{kernel.name} has no library"
+    return kernel._entry
+
+
 def _bits(value: Any) -> Any:
     """Return a value so that equal ones have equal bits."""
     if isinstance(value, tuple):
@@ -40,21 +62,10 @@ def _outcome(run: Any, arguments: Any) -> Any:
 
 
 def _judged(self: Kernel, *arguments: Any) -> Any:
-    if self._entry is None:
-        self.prepare()
-    assert isinstance(self._entry, Entry), f"{self.name} has no library"
     _calls[self.name] = _calls.get(self.name, 0) + 1
     if _calls[self.name] > _MOST:
-        return self._entry(arguments)
-    if self.name not in _judges:
-        _judges[self.name] = self.judge()
-    others = copy.deepcopy(arguments)
-    theirs = _outcome(_judges[self.name], others)
-    mine = copy.deepcopy(arguments)
-    ours = _outcome(self._entry, mine)
-    assert ours == theirs, f"{self.name} gives {ours}, Numba {theirs}"
-    assert _bits(mine) == _bits(others), f"{self.name} writes other bits than Numba"
-    return self._entry(arguments)
+        return library_of(self)(arguments)
+    return compared(self, arguments)
 
 
 @pytest.hookimpl

@@ -215,7 +215,14 @@ def test_a_program_that_goes_through_is_tried_on_no_other_machine(
     monkeypatch.setattr(taking, "LocalWorkers", Listing)
     (tmp_path / "sound.h").write_bytes(KLARTEXT)
     (tmp_path / "turned.h").write_bytes(KLARTEXT.replace(b"Z+50", b"Z+50 UNHEARD"))
+    (tmp_path / "unheard.ngc").write_text(
+        "G21 G90\n#<feed> = 100\no1 if [#<feed> GT 1]\nG1 X5 F#<feed> UNHEARD\no1 endif\nM2\n"
+    )
     take_survey(tmp_path)
+    # What a control does not understand is not tried on the other machines of that control.
+    of_linuxcnc = [machine for machine, _ in tried if machine in ("xyzac_trt", "xyzbc_trt", "linuxcnc_5axis")]
+    assert set(of_linuxcnc) == {"xyzac_trt"}
+    tried = [each for each in tried if each[0] in ("dmu65", "mikron_600u", "ucp800")]
     plain = (Step.VERIFY,)
     others = [("mikron_600u", plain), ("ucp800", plain)]
     assert tried == [("dmu65", plain), ("dmu65", plain), *others, ("dmu65", (Step.VERIFY, Step.KEYS))]

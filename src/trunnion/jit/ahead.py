@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.jit.kernels import Kernel, say_once
-from trunnion.jit.store import cache_folder
+from trunnion.jit.store import cache_folder, holds_nothing
 
 _log = logging.getLogger("trunnion.jit")
 
@@ -25,7 +25,7 @@ _WORTH_A_PROCESS = 3
 def is_first_run() -> bool:
     """Whether no machine code is on disk."""
     folder = cache_folder()
-    return folder is None or not any(folder.iterdir())
+    return folder is None or holds_nothing(folder)
 
 
 def compile_ahead(kernels: Sequence[Any]) -> None:
@@ -47,11 +47,11 @@ def compile_ahead(kernels: Sequence[Any]) -> None:
         _start(folder, [one.name for one in reversed(missing)])
 
 
-def all_kernels() -> list[Kernel]:
-    """Return the kernels of all rooms, but for those of rooms whose extras are not installed."""
+def all_kernels(room: str = "") -> list[Kernel]:
+    """Return the kernels of all rooms, or of one; but for those of rooms whose extras are not installed."""
     package = Path(__file__).parents[1]
     found = []
-    for file in sorted(package.rglob("*.py")):
+    for file in sorted((package / room).rglob("*.py")):
         if "\n@kernel(" not in file.read_text(encoding="utf-8"):
             continue
         name = ".".join((package.name, *file.relative_to(package).with_suffix("").parts))
@@ -72,6 +72,9 @@ def compile_all(kernels: Sequence[Kernel], advance: Callable[[int], None]) -> in
     advance  is told how many more are on disk
     """
     missing = [each for each in kernels if not each.is_kept]
+    if not missing:
+        return 0
+    say_once(len(missing))
     folder, done = cache_folder(), 0
     for each in missing:
         each.announced = True

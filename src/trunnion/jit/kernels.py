@@ -143,7 +143,8 @@ class Kernel:
         try:
             entry = loaded(file, self.kinds, self._results)
         except Exception as error:  # whatever the loading of a foreign file raises
-            _log.warning("the machine code of %s cannot be loaded and is compiled anew: %r", self.name, error)
+            _log.warning("some machine code cannot be loaded and is compiled anew")
+            _log.debug("%s: %r", self.name, error)
             store.remove()
             return None
         self.was_loaded = True
@@ -152,7 +153,8 @@ class Kernel:
     def _made(self, store: Store | None) -> "Entry | Judge":
         """Compile it and, with a store, keep it."""
         if store is not None and store.is_sealed:
-            _log.warning("the machine code of %s was damaged on disk and is compiled anew", self.name)
+            _log.warning("some machine code was damaged on disk and is compiled anew")
+            _log.debug("damaged: %s", self.name)
         self._announce()
         from trunnion.jit import build
         from trunnion.jit.judge import Judge
@@ -168,7 +170,8 @@ class Kernel:
             try:
                 file = store.keep(content, is_linked=content is not code)
             except OSError as error:
-                _log.warning("the machine code of %s cannot be kept: %s", self.name, error)
+                _log.warning("machine code cannot be kept: %s", error)
+                _log.debug("not kept: %s", self.name)
                 store.remove()
                 break
             try:

@@ -8,6 +8,7 @@ import hashlib
 import logging
 import os
 import platform
+import re
 import stat
 import sys
 import tempfile
@@ -33,6 +34,16 @@ _log = logging.getLogger("trunnion.jit")
 #: The code of messages about folders for kernels.
 _CODE: Final = "FIL310"
 
+#: The folder of this installation alone.
+_OWN: Final = Path(__file__).parent / "__pycache__"
+
+#: The file in each folder that says for which processor its machine code is.
+_MARK: Final = "processor.txt"
+
+#: The names of folders of any version, and what is in them: machine code, its checksums and locks, what Numba keeps.
+_FOLDER: Final = re.compile(rf"trunnion-{re.escape(str(sys.implementation.cache_tag))}-(numba-[\d.]+|[\da-f]{{10}})")
+_OURS: Final = re.compile(r".*\.(so|o|sum|lock|nbi|nbc|txt)(\.\d+)?")
+
 
 @cache
 def cache_folder() -> Path | None:
@@ -48,6 +59,8 @@ def cache_folder() -> Path | None:
                 continue
             if _is_private(folder):
                 tempfile.TemporaryFile(dir=folder).close()
+                if not (folder / _MARK).exists():
+                    _begin(folder)
                 return folder
         except OSError:
             continue
@@ -60,12 +73,53 @@ def cache_folder() -> Path | None:
     return None
 
 
+def _begin(folder: Path) -> None:
+    """Mark a folder in which nothing is yet, and remove former ones where no other installation keeps any."""
+    with suppress(OSError):
+        _write(folder / _MARK, _processor_name().encode("ascii"))
+    if folder.parent == _OWN:
+        remove_former(folder)
+
+
+def remove_former(folder: Path) -> int:
+    """Remove the folders beside this one that former versions made for the same processor; return how many.
+
+    What is not named as one of ours, belongs to another user, or holds anything else than machine code, stays.
+    """
+    found = [
+        each
+        for each in sorted(folder.parent.glob("trunnion-*"))
+        if each != folder and _FOLDER.fullmatch(each.name) and _is_former(each)
+    ]
+    for each in found:
+        rmtree(each, ignore_errors=True)
+    return len(found)
+
+
+def _is_former(folder: Path) -> bool:
+    """Whether a folder is ours, and not made for another processor: an installation may be shared by computers."""
+    try:
+        if folder.is_symlink() or not folder.is_dir() or _is_anothers(folder):
+            return False
+        mark = folder / _MARK
+        if mark.exists() and mark.read_text(encoding="ascii") != _processor_name():
+            return False
+        return all(_OURS.fullmatch(each.name) for each in folder.rglob("*") if not each.is_dir())
+    except (OSError, ValueError):
+        return False
+
+
+def holds_nothing(folder: Path) -> bool:
+    """Whether no machine code is in a folder."""
+    return all(each.name == _MARK for each in folder.iterdir())
+
+
 def _candidates() -> Iterator[Path]:
     version = f"trunnion-{sys.implementation.cache_tag}-{_made_for()}"
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
         yield Path(chosen) / version
-    yield Path(__file__).parent / "__pycache__" / version
+    yield _OWN / version
     cache = user_cache()
     if cache is not None:
         yield cache / "trunnion" / version
@@ -91,6 +145,11 @@ def _made_for() -> str:
     arrays = (is_as_expected(), object.__basicsize__)
     whole = (versions, made_by, sys.platform, platform.machine(), _processor(), arrays)
     return hashlib.sha256(repr(whole).encode()).hexdigest()[:10]
+
+
+def _processor_name() -> str:
+    """Return a short name for what the processor can do."""
+    return hashlib.sha256(f"{platform.machine()} {_processor()}".encode()).hexdigest()[:16]
 
 
 def _processor() -> str:

@@ -68,7 +68,7 @@ def chord_excursion(turn: Floats, way: Floats, arm: Floats) -> Floats:
 
 
 @kernel(writes="beyond")
-def _write_beyond(
+def write_beyond(
     tip: Floats2,
     joints: Floats2,
     counts: Flags,
@@ -194,7 +194,7 @@ class LineSearch:
                               great circle
         """
         beyond = np.empty(len(counts))
-        _write_beyond(
+        write_beyond(
             tip, joints, counts, great_circle, self._kinematics, self._normals, self._columns,
             self._pole, self._extremes, beyond,
         )  # fmt: skip

@@ -33,6 +33,9 @@ SCHEMAS: Final = ("machine", "control", "project", "tools", "impeller", "nodes",
 #: Shells whose completion can be printed.
 SHELLS: Final = ("bash", "zsh", "fish", "powershell")
 
+#: Commands whose kernels can be compiled without those of the others.
+PREPARED: Final = ("post", "verify", "convert", "simulate")
+
 #: What a batch does with each file.
 ACTIONS: Final = ("post", "convert", "verify", "simulate")
 

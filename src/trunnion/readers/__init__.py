@@ -5,6 +5,7 @@ The readers are written from the manuals of the controls. They share nothing wit
 
 from trunnion.machines.forward import forward_rows
 from trunnion.model.axis_positions import resolve_turns, write_joints
+from trunnion.model.turning_lines import write_beyond
 from trunnion.readers.program.kinds import kind_problem, program_for_cl_file, with_kind
 from trunnion.readers.program.known_words import KnownWord, known_words
 from trunnion.readers.program.options import RunOptions
@@ -15,7 +16,7 @@ from trunnion.readers.scan.letter_blocks import read_blocks
 from trunnion.readers.scan.rows import execute_blocks
 
 #: Kernels that most programs need.
-KERNELS = (write_joints, forward_rows, read_blocks, execute_blocks, resolve_turns)
+KERNELS = (write_joints, forward_rows, read_blocks, execute_blocks, resolve_turns, write_beyond)
 
 __all__ = [
     "GIVEN", "KERNELS", "KnownWord", "RunOptions", "can_read", "check_reading", "kind_problem", "known_words",

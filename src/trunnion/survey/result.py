@@ -350,6 +350,6 @@ def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     )
 
 
-def worth(each: Trying) -> tuple[int, int]:
+def worth(each: Trying) -> tuple[int, bool, int]:
     """Return what became of a file on a machine as something that is the smaller the better."""
-    return _ORDER[each.became], each.count
+    return _ORDER[each.became], each.step != Step.CONVERT, each.count

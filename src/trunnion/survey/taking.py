@@ -28,6 +28,9 @@ from trunnion.survey.trying import Step, Trial, try_in_worker
 #: program for A and C says nothing on a machine with B.
 MACHINES: Final = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt")
 
+#: The code of an axis that a machine does not have.
+_NO_AXIS: Final = "NC230"
+
 #: Seconds that a file has on each machine.
 TIMEOUT: Final = 60.0
 
@@ -127,6 +130,7 @@ class _Team:
     ) -> None:
         self._names, self._steps = [name for name, _ in loaded], steps
         self._languages = [_language(machine) for _, machine in loaded]
+        self._definitions = [machine.control.text("extends", "") for _, machine in loaded]
         self._readers = {
             language: reader_of(machine)
             for language, (_, machine) in zip(self._languages, loaded, strict=True)
@@ -160,11 +164,15 @@ class _Team:
                 yield (number, on), self._trial(file, on)
 
     def other_machines(self) -> Iterator[tuple[tuple[int, int], Trial]]:
-        """Yield programs that did not go through, on the other machines."""
+        """Yield programs that did not go through, on the other machines.
+
+        What a control does not understand, it does not understand on another machine either.
+        """
         for number, file in enumerate(self.files):
             if file.kind is FileKind.PROGRAM and not self._went_through(number):
+                hopeless = {self._definitions[on] for on, found in self.tries[number].items() if _is_of_control(found)}
                 for on in self._machines_for(file):
-                    if not self.machines[on].posts:
+                    if not self.machines[on].posts and self._definitions[on] not in hopeless:
                         yield (number, on), self._trial(file, on)
 
     def keyed(self) -> Iterator[tuple[tuple[int, int], Trial]]:
@@ -172,7 +180,9 @@ class _Team:
         for number, file in enumerate(self.files):
             steps = self._steps[file.kind] if file.kind is FileKind.PROGRAM else ()
             tries = sorted(self.tries[number].items(), key=lambda each: worth(each[1]))
-            if Step.KEYS not in steps or not tries or tries[0][1].became is not Became.REFUSED:
+            if Step.KEYS not in steps or not tries or self._went_through(number):
+                continue
+            if tries[0][1].became is not Became.REFUSED:
                 continue
             best: dict[str, int] = {}
             for on, found in tries:
@@ -209,7 +219,8 @@ class _Team:
         return Trial(file.name, file.path, self._names[on], steps)
 
     def _went_through(self, number: int) -> bool:
-        return any(each.became.passed for each in self.tries[number].values())
+        # A program that is read and cannot be converted is read no better elsewhere.
+        return any(each.became.passed or each.step == Step.CONVERT for each in self.tries[number].values())
 
     def _machines_for(self, file: FoundFile) -> Iterator[int]:
         if file.kind is FileKind.OTHER or file.caller or not self._steps[file.kind]:
@@ -218,6 +229,11 @@ class _Team:
             is_cl, languages = file.kind is FileKind.CL, file.languages
             if self.machines[on].posts if is_cl else languages is None or language in languages:
                 yield on
+
+
+def _is_of_control(found: Trying) -> bool:
+    """Whether a program is refused, and not for an axis that the machine does not have."""
+    return found.became is Became.REFUSED and _NO_AXIS not in found.codes
 
 
 def _language(machine: Machine) -> str:

@@ -4,6 +4,7 @@ from trunnion import timing
 from trunnion.machines.forward import tool_axis_rows
 from trunnion.verification.basis import stated_texts
 from trunnion.verification.context import ExpectedValues
+from trunnion.verification.deviations.linearization import write_linearization_errors
 from trunnion.verification.deviations.point_deviations import compare_rows
 from trunnion.verification.expected.path import OperationSettings
 from trunnion.verification.expected.printed_planes import PrintedDigits, tolerances_in_planes
@@ -25,7 +26,7 @@ from trunnion.verification.text import check_lines, failures, place_line, place_
 from trunnion.verification.verifier import reachable_feeds, verify, with_recording
 
 #: Kernels that every program needs.
-KERNELS = (tool_axis_rows, axis_motion_rows, compare_rows, *timing.KERNELS)
+KERNELS = (tool_axis_rows, axis_motion_rows, compare_rows, write_linearization_errors, *timing.KERNELS)
 
 __all__ = [
     "KERNELS",

@@ -7,7 +7,7 @@ from trunnion.messages import phrase
 from trunnion.options.groups import JSON, MACHINE, OTHER_MACHINE, SETTINGS, STOCK, TOOLS
 from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Switch, Text, seconds, whole
 from trunnion.options.option import Many, Option
-from trunnion.options.words import ACTIONS, MOST_TILES, SCHEMAS, SHELLS
+from trunnion.options.words import ACTIONS, MOST_TILES, PREPARED, SCHEMAS, SHELLS
 
 _FOLDER: Final = "for a folder"
 
@@ -143,9 +143,14 @@ _COMPLETION: Final = job(
 
 _PREPARE: Final = job(
     "prepare", "compile everything for this computer now, so that no later command has to",
+    Option(
+        "work", "", Choice(PREPARED, "WORK"),
+        f"only what this command needs: {', '.join(PREPARED)}; by default everything", many=Many.MAYBE,
+    ),
     run="prepare:run",
     examples=[
         ("trunnion prepare", "once, after the installation or an update"),
+        ("trunnion prepare post", "what posting needs, its proof included"),
         ("trunnion prepare --language de", "in German"),
     ],
 )  # fmt: skip

@@ -119,7 +119,7 @@ def nearest_moment(
                 return low, moment, 1.0
             if exact and high < limit:
                 limit, at, share = high, moment, 1.0
-                direction[:] = own
+                _copy(own, direction)
         room, after = low - limit + CLOSE, moment + 1
         while after < end and _moved(course, moment, after, away) < room:
             after += 1
@@ -154,7 +154,7 @@ def nearest_moment(
                 return low, after, finish
             if exact and high < limit:
                 limit, at, share = high, after, finish
-                direction[:] = own
+                _copy(own, direction)
                 wanted = limit - CLOSE + sag * part * part
             if low >= wanted and plane_gap(one, other, pose, own) >= wanted:
                 continue
@@ -165,7 +165,7 @@ def nearest_moment(
                 return low, after, half
             if exact and high < limit:
                 limit, at, share = high, after, half
-                direction[:] = own
+                _copy(own, direction)
             if low - 0.5 * size * part >= limit - CLOSE or size * part < _NO_WAY or count + 2 > stack.shape[0]:
                 continue
             stack[count, 0], stack[count, 1] = half, finish
@@ -173,6 +173,13 @@ def nearest_moment(
             count += 2
         moment = after
     return limit, at, share
+
+
+@inner
+def _copy(source: Floats, target: Floats) -> None:
+    """Write a vector into another: ``target[:] = source`` takes seconds to compile at each place."""
+    for k in range(3):
+        target[k] = source[k]
 
 
 @inner

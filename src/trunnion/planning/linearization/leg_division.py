@@ -78,15 +78,16 @@ def divide_rows(
         if not divisible[row]:
             continue
         if placed == row - 1:
-            begin[:] = end
+            _copy(end, begin)
         else:
             axis_values(kinematics, rows.tip[row - 1], rows.rotary[row - 1], begin)
         axis_values(kinematics, rows.tip[row], rows.rotary[row], end)
         placed = row
         if is_surely_within(chain, kinematics, tolerances, begin, end):
             continue
-        tips[0, :], tips[1, :] = rows.tip[row - 1], rows.tip[row]
-        axes[0, :], axes[1, :] = rows.axis[row - 1], rows.axis[row]
+        for side in range(2):
+            _copy(rows.tip[row - 1 + side], tips[side])
+            _copy(rows.axis[row - 1 + side], axes[side])
         leg = Leg(tips, axes, angle_between(axes[0], axes[1]))
         branch = _leg_branch(kinematics, rows.rotary[row - 1, 1], rows.rotary[row, 1])
         total = _divide_leg(chain, kinematics, tolerances, leg, branch, begin, end, count, added, here, work)
@@ -95,6 +96,13 @@ def divide_rows(
         copies[row] = 1 + total - count
         count = total
     return rows.tip.shape[0], count
+
+
+@inner
+def _copy(source: Floats, target: Floats) -> None:
+    """Write the values of one array into another: ``target[:] = source`` takes seconds to compile at each place."""
+    for k in range(len(target)):
+        target[k] = source[k]
 
 
 @inner
@@ -139,7 +147,7 @@ def _divide_leg(
         pieces = 1
         if step == 0.0:  # only a turn in place is left: over it, and on
             part = done + min(_SHORTEST_PART, 1.0 - done)
-            here[:] = end
+            _copy(end, here)
             if part < 1.0:
                 axis_values_on_leg(kinematics, leg, part, branch, begin, end, here, work[0])
             pieces = _pieces_in_place(chain, kinematics, tolerances, leg, begin, here, part, work)
@@ -152,7 +160,7 @@ def _divide_leg(
         for piece in range(1, new + 1):
             _write_row(kinematics, leg, done, begin, here, piece / pieces, added, count)
             count += 1
-        begin[:] = here
+        _copy(here, begin)
     return count
 
 

@@ -57,6 +57,11 @@ _PROGRAM_WORDS: Final = re.compile(
     re.IGNORECASE | re.MULTILINE,
 )
 
+#: A line that has more than an end of the program: a second end alone takes nothing away.
+_NO_MERE_END: Final = re.compile(
+    rb"^(?![ \t]*(?:N[ \t]*[0-9]+)?[ \t]*(?:M[ \t]*0*(?:2|30)|%)?[ \t]*(?:[(;].*)?\r?$).", re.IGNORECASE | re.MULTILINE
+)
+
 
 class ProgramEnd(Exception):  # noqa: N818 - the end of a program is no error
     """The program has ended."""
@@ -194,7 +199,7 @@ class Interpreter(ABC, Generic[A]):
                 if main.search(self.jump_words):
                     return
                 # A program that ended too early has an end behind its end, and a second one a beginning.
-                is_program = main.search(_PROGRAM_WORDS, first) is not None
+                is_program = bool(main.search(_PROGRAM_WORDS, first) and main.search(_NO_MERE_END, first))
                 variant = "another_program" if is_program else "behind_end"
                 self._note(Wording("NC161", variant), Severity.ERROR if is_program else Severity.WARNING)
                 return

@@ -141,7 +141,7 @@ class LinearizationErrors:
             return
         tips, axes = self._path_ends(first, rows, positions)
         chain = kinematic_chain(self._run.machine_at(first))
-        _linearization_errors(
+        write_linearization_errors(
             chain, positions.joints, positions.tip, positions.axis, self._is_rotary, rows, tips, axes,
             kind[rows] == Kind.RAPID, tcp, self._tip_uncertainty, off_tip, off_axis,
         )  # fmt: skip
@@ -274,7 +274,7 @@ def _off_arcs(machine: Machine, joints: Floats, rotary: Ints, rows: Ints) -> Flo
 
 
 @kernel(writes="off_tip off_axis")
-def _linearization_errors(
+def write_linearization_errors(
     chain: KinematicChain,
     joints: Floats2,
     tip_at: Floats2,
