@@ -123,6 +123,7 @@ class NoAxis(Enum):
     MODAL = auto()  # that of the point before
     Z = auto()  # (0, 0, 1)
     DOUBTFUL = auto()  # that of the point before, which must be (0, 0, 1): systems differ in any other case
+    UPRIGHT = auto()  # the same, of records that never give one
     NEVER = auto()  # each point must give one
 
 

@@ -87,7 +87,9 @@ def _fill(
         if no_axis is NoAxis.NEVER:
             diagnostics.error(int(columns.line[row]), Wording("CL530", "point_without_tool"))
         elif not _is_upright(axis[row]):
-            diagnostics.error(int(columns.line[row]), Wording("CL530", "point_without_tool_axis"))
+            never = no_axis is NoAxis.UPRIGHT
+            said = Wording("CL530", "line_behind_tilted") if never else Wording("CL530", "point_without_tool_axis")
+            diagnostics.error(int(columns.line[row]), said)
             return
 
 

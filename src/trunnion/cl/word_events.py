@@ -47,6 +47,8 @@ def can_be_unknown(text: str) -> bool:
 
 
 def _can_be_unknown(dialect: Dialect, major: str, words: frozenset[str]) -> bool:
+    if dialect.text.has_words == major.isdigit():
+        return False  # records have numbers for codes, statements have words
     if major not in dialect.handlers:
         return True
     listed = ",".join(sorted(words))

@@ -59,6 +59,7 @@ class EventWriter:
         # Before the blocks that may be skipped: the tool height, None for home; the file's size, and the modal state.
         self._height_before_skip: float | None = None
         self._state_before_skip: tuple[int, dict[str, int]] = 0, {}
+        self._coolant_before_skip = "OFF"
         # In the present motion:
         self._motion = program.motions[0]
         self._values: Mapping[str, Value] = {}
@@ -115,11 +116,14 @@ class EventWriter:
         blocks, writer = self._blocks, self._blocks.writer
         state = writer.size, writer.modal_state()
         if on and not writer.skips_blocks:
-            self._height_before_skip, self._state_before_skip = blocks.tool_height if row else None, state
+            highest = max(blocks.tool_height, blocks.height_bound or blocks.tool_height)
+            self._height_before_skip, self._state_before_skip = highest if row else None, state
+            self._coolant_before_skip = blocks.coolant
         elif writer.skips_blocks and not on and state != self._state_before_skip:
             writer.forget()
             before = self._height_before_skip
             blocks.height_bound = None if before is None else max(before, blocks.tool_height)
+            blocks.coolant_may_run |= self._coolant_before_skip != "OFF"
         writer.set_block_skip(on)
 
     def _restart_spindle(self, row: int) -> None:

@@ -307,7 +307,7 @@ class _ProgramWriter:
 
     def _switch_coolant_off(self, motion: Motion, number: int, ends_program: bool) -> None:
         """Switch the coolant off after an operation, unless the end of the operation or of the program says so."""
-        if self._blocks.coolant == "OFF":
+        if self._blocks.coolant == "OFF" and not self._blocks.coolant_may_run:
             return
         ends_program = ends_program and self._files is None
         off, end = (
@@ -321,7 +321,7 @@ class _ProgramWriter:
         said = any(off in self._templates.switching_lines(end, values, motion) for end in ends)
         if not said:
             self._blocks.writer.write_lines([off])
-        self._blocks.coolant = "OFF"
+        self._blocks.coolant, self._blocks.coolant_may_run = "OFF", False
 
     def _stop_between(self, motion: Motion, number: int) -> None:
         """Write an optional stop behind an operation, if that is asked for and the CL file has no stop there."""

@@ -59,10 +59,10 @@ def _has_points_behind(motion: Motion, linearized: Motion, stretch: Stretch) -> 
 
 
 def _leaves_circle(prepared: PreparedOperation, motion: Motion, stretch: Stretch) -> bool:
-    """Whether the rotary axes, turning evenly past a stretch in a cut, lead the tool axis too far off its path."""
+    """Whether the rotary axes, turning evenly past a stretch into a cut, lead the tool axis too far off its path."""
     moves, machine = motion.operation.moves, prepared.request.machine
     rows = np.array([stretch.first - 1, stretch.end])
-    if (moves.kind[rows] == Kind.RAPID).any() or not motion.mode.is_simultaneous:
+    if moves.kind[stretch.end] == Kind.RAPID or not motion.mode.is_simultaneous:
         return False
     positions = continuous_positions(machine, motion.rotary[rows])
     tolerance = prepared.request.options.default_axis_tolerance.of(motion.operation)

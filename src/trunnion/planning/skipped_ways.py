@@ -79,8 +79,15 @@ def with_safe_ways(file: str, operation: Operation, rows: SkipRows) -> tuple[Ope
             path = _Path(operation, rows)
         if not 0 < stretch.first < stretch.end < len(operation.moves):
             continue
+        if rows.holes[stretch.end] and rows.from_home[stretch.first : stretch.end].any():
+            line = int(operation.moves.line[stretch.end])
+            problems.append(Problem(file, line, Wording("CTL460", "tool_axis_turns")))
+            continue
         try:
-            if new := path.rows_behind(stretch):
+            new = path.rows_behind(stretch)
+            if not new and path.begins_circle(stretch):
+                raise _UnsafeError
+            if new:
                 added[stretch] = new
         except _UnsafeError:
             problems.append(way_skipped(file, operation, stretch))
@@ -132,17 +139,29 @@ class _Path:
     rows: SkipRows
 
     def may_begin_behind(self, stretch: Stretch) -> bool:
-        """Whether the first row of a stretch may be gone to in any case: at rapid, above all cuts."""
+        """Whether the first row of a stretch may be gone to in any case: at rapid, above all cuts, a point behind."""
         operation, row = self.operation, stretch.first
+        if stretch.end == len(operation.moves) or self.rows.holes[stretch.end]:
+            return False
         within = [event for event in operation.events if event.row == row]
         at = [isinstance(event, BlockSkip) and event.line == stretch.on for event in within].index(True)
         high = self._is_high(row, operation.moves.axis[row])
         return operation.moves.kind[row] == Kind.RAPID and not self.rows.holes[row] and high and at == len(within) - 1
 
+    def begins_circle(self, stretch: Stretch) -> bool:
+        """Whether a circle begins where a stretch ends, and the tool is elsewhere without the stretch."""
+        moves = self.operation.moves
+        is_circle = moves.kind[stretch.end] == Kind.ARC
+        return bool(is_circle) and not _is_same_place(moves, stretch.first - 1, stretch.end - 1)
+
     def rows_behind(self, stretch: Stretch) -> list[_Row]:
         """Return the rows that lead the tool behind a stretch. Raises ``_UnsafeError`` where none can."""
         moves, before, last, behind = self.operation.moves, stretch.first - 1, stretch.end - 1, stretch.end
-        if self.rows.holes[[before, last, behind]].any() or _is_same_place(moves, before, last):
+        if self.rows.holes[[before, behind]].any() or _is_same_place(moves, before, last):
+            return []
+        if self.rows.holes[last]:
+            if moves.kind[before] != Kind.RAPID and self._is_unsafe_from_cut(stretch):
+                raise _UnsafeError
             return []
         if moves.kind[last] != Kind.RAPID:
             if self._is_unsafe_from_cut(stretch):
@@ -151,7 +170,11 @@ class _Path:
         home = self.rows.from_home[stretch.first : stretch.end + 1]
         if home[:-1].any():
             return []  # a turn over home is not skipped
-        plunges = not home[-1] and self._comes_down(last, behind) and not _goes_along_tool(moves, before, behind)
+        stays = moves.kind[behind] != Kind.RAPID and _is_same_place(moves, last, behind)
+        if stays and self._is_aslant(before, behind):
+            raise _UnsafeError
+        plunges = not home[-1] and not stays and self._comes_down(last, behind)
+        plunges = plunges and not _goes_along_tool(moves, before, behind)
         goes_up = not home[-1] and _goes_up_tool(moves, before, last if plunges else behind)
         leaves = self._leaves_low(stretch) and not goes_up
         if leaves and not self._is_high(last, moves.axis[before]):
@@ -162,24 +185,43 @@ class _Path:
         rows += [_Row(moves.tip[last], last, int(moves.phase[last]))] if plunges else []
         if rows and (self._is_compensated(before) or self._is_compensated(behind)):
             raise _UnsafeError  # compensation is neither begun nor ended on the way
+        if rows and not self._is_high(before, moves.axis[before]) and not _rises(moves, before, rows[0].tip):
+            raise _UnsafeError
+        if rows and moves.kind[behind] != Kind.RAPID and _turns(moves, last, behind):
+            raise _UnsafeError  # the points of that turn begin at a row that may be skipped
         return rows
 
     def _is_unsafe_from_cut(self, stretch: Stretch) -> bool:
-        """Whether the way past a stretch that ends in a cut may lead through the part."""
+        """Whether the way past a stretch that ends in a cut or a hole may lead through the part."""
         moves, before, last, behind = self.operation.moves, stretch.first - 1, stretch.end - 1, stretch.end
-        if moves.kind[before] == Kind.RAPID and moves.kind[behind] == Kind.RAPID:
+        from_cut, to_cut = (moves.kind[row] != Kind.RAPID for row in (before, behind))
+        if not from_cut and to_cut:  # at a feed; aslant as well where the CL file comes to the skipped cuts so
+            return self._plunges(stretch) and self._is_aslant(before, behind)
+        if not from_cut:
             return self._leaves_low(stretch)
-        if moves.kind[before] == Kind.RAPID:
-            return False  # it comes to the next cut at a feed, as the CL file asks
-        if moves.kind[behind] == Kind.RAPID:
-            return _goes_along_tool(moves, last, behind) and not _goes_up_tool(moves, before, behind)
-        return self._leaves_low(stretch) and not _goes_up_tool(moves, before, behind)
+        retracts = not to_cut and _goes_along_tool(moves, last, behind)
+        return (retracts or self._leaves_low(stretch)) and not _goes_up_tool(moves, before, behind)
+
+    def _plunges(self, stretch: Stretch) -> bool:
+        """Whether the last cuts of a stretch begin straight down along the tool."""
+        moves, rows = self.operation.moves, np.arange(stretch.first, stretch.end)
+        begins = rows[(moves.kind[rows - 1] == Kind.RAPID) & (moves.kind[rows] != Kind.RAPID)]
+        return bool(len(begins)) and _goes_along_tool(moves, int(begins[-1]) - 1, int(begins[-1]))
+
+    def _is_aslant(self, first: int, row: int) -> bool:
+        """Whether the way from one row to another leads down, and not straight along the tool."""
+        return self._goes_down(first, row) and not _goes_along_tool(self.operation.moves, first, row)
 
     def _comes_down(self, first: int, row: int) -> bool:
         """Whether the way from one row to another cuts, or leads down along the tool."""
         moves = self.operation.moves
-        step = float((moves.tip[row] - moves.tip[first]) @ moves.axis[row])
-        return step < -_STILL or (bool(moves.kind[row] != Kind.RAPID) and moves.kind[first] == Kind.RAPID)
+        cuts_from_rapid = moves.kind[row] != Kind.RAPID and moves.kind[first] == Kind.RAPID
+        return bool(cuts_from_rapid) or self._goes_down(first, row)
+
+    def _goes_down(self, first: int, row: int) -> bool:
+        """Whether the way from one row to another leads down along the tool of the latter."""
+        moves = self.operation.moves
+        return float((moves.tip[row] - moves.tip[first]) @ moves.axis[row]) < -_STILL
 
     def _leaves_low(self, stretch: Stretch) -> bool:
         """Whether the skipped rows lead the tool up from a cut, or from a place below the top of the cuts."""
@@ -221,8 +263,18 @@ class _Path:
 
 def _goes_along_tool(moves: Moves, first: int, row: int) -> bool:
     axis, step = moves.axis[first], moves.tip[row] - moves.tip[first]
-    turns = float(np.abs(moves.axis[row] - axis).max()) > _SAME_AXIS
-    return not turns and float(np.linalg.norm(step - float(step @ axis) * axis)) <= _STILL
+    return not _turns(moves, first, row) and float(np.linalg.norm(step - float(step @ axis) * axis)) <= _STILL
+
+
+def _turns(moves: Moves, first: int, row: int) -> bool:
+    return float(np.abs(moves.axis[row] - moves.axis[first]).max()) > _SAME_AXIS
+
+
+def _rises(moves: Moves, row: int, tip: Floats) -> bool:
+    """Whether the way from a row to a place (3,) is straight up along the tool."""
+    step, axis = tip - moves.tip[row], moves.axis[row]
+    up = float(step @ axis)
+    return up >= -_STILL and float(np.linalg.norm(step - up * axis)) <= _STILL
 
 
 def _goes_up_tool(moves: Moves, first: int, row: int) -> bool:

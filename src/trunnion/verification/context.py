@@ -157,7 +157,7 @@ class ComparedContext(Context):
 
     def highest_point(self, axis: Floats) -> float:
         """Return how high the CL files come along a direction (3,), mm from the program's zero."""
-        return max(float((section.whole.moves.tip @ axis).max()) for section in self.expected.sections)
+        return max(float((section.whole.moves.tip @ axis).max(initial=-np.inf)) for section in self.expected.sections)
 
     def place_with_cl(self, row: int, value: float, said: Wording, cl: int) -> Place:
         """Return the place of a row, with that of a CL row."""

@@ -8,6 +8,7 @@ from trunnion.cl.dialects.camworks import CAMWORKS
 from trunnion.cl.dialects.catia import CATIA
 from trunnion.cl.dialects.clsf import CLSF
 from trunnion.cl.dialects.fusion import FUSION
+from trunnion.cl.dialects.nci import NCI
 from trunnion.cl.dialects.ncl import NCL
 from trunnion.cl.dialects.recognition import Recognition, recognize
 from trunnion.cl.dialects.solidworks import SOLIDWORKS
@@ -16,7 +17,7 @@ __all__ = ["DIALECTS", "Dialect", "Recognition", "recognize_dialect"]
 
 #: By their names, those of ``trunnion.dialect_names.READ_DIALECTS``.
 DIALECTS: Final[dict[str, Dialect]] = {
-    dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION, APT)
+    dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION, APT, NCI)
 }
 
 

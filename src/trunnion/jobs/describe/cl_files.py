@@ -41,7 +41,7 @@ _UNITS: Final = {1.0: "mm", 25.4: "inch"}
 class ClFileDescription:
     """One CL file.
 
-    dialect       ``clsf``, ``ncl``, ``solidworks``, ``clt``, ``catia``, ``fusion`` or ``apt``
+    dialect       ``clsf``, ``ncl``, ``solidworks``, ``clt``, ``catia``, ``fusion``, ``apt`` or ``nci``
     title         its name in words
     why           by what the dialect was recognized; ``recognized`` in English
     units         ``mm`` or ``inch``

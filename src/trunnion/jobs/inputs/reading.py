@@ -79,8 +79,8 @@ def read_cl(
     units
         Length unit of the file, ``"mm"`` or ``"inch"``; by default the file decides.
     dialect
-        ``"clsf"``, ``"catia"``, ``"ncl"``, ``"solidworks"``, ``"clt"``, ``"fusion"``
-        or ``"apt"``; by default the content of the file decides.
+        ``"clsf"``, ``"catia"``, ``"ncl"``, ``"solidworks"``, ``"clt"``, ``"fusion"``,
+        ``"apt"`` or ``"nci"``; by default the content of the file decides.
     strict
         Raise an error for an unknown statement instead of keeping it with a remark.
     spline_tolerance

@@ -49,7 +49,7 @@ class MotionBlockWriter:
 
     writer          the block writer
     spindle         the last spindle start, also after the spindle has stopped; None before the first
-    coolant         the kind of the last coolant command
+    coolant         the kind of the last coolant command; ``coolant_may_run``: OFF, by a command that may be skipped
     feeds           F and the active feed mode
     tool_height     Z of the tool after the last row, mm
     height_bound    after blocks that may be skipped: the tool may be lower than ``tool_height``, but not higher than
@@ -73,7 +73,7 @@ class MotionBlockWriter:
         self._orientation = OrientationWords(program, self.writer, self._words)
         self._axis_coordinates: AxisCoordinates | None = None
         self.spindle: SpindleOn | None = None
-        self.coolant = "OFF"
+        self.coolant, self.coolant_may_run = "OFF", False
         self.tool_height = 0.0
         self.height_bound: float | None = None
         self.xy_before_z = False
@@ -207,7 +207,7 @@ class MotionBlockWriter:
         if isinstance(event, SpindleOn):
             self.spindle = event
         elif isinstance(event, Coolant):
-            self.coolant = event.kind
+            self.coolant, self.coolant_may_run = event.kind, False
         elif isinstance(event, CutterComp):
             # Where the block of CUTCOM/OFF may be skipped, it may stay on.
             self._compensated = event.side != "OFF" or (self._compensated and self.writer.skips_blocks)

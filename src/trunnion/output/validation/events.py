@@ -26,6 +26,7 @@ from trunnion.model.toolpath import (
     SpindleOn,
 )
 from trunnion.output.program import Program
+from trunnion.planning.holes.operations import cycle_row_ranges
 
 
 def event_problems(
@@ -111,14 +112,29 @@ def _skipped_feeds(program: Program, operation: Operation) -> Iterator[Problem]:
             yield Problem(program.file_of(operation), on.line, Wording("CTL460", "feed_alone", off=off.line))
 
 
+def _from_home(program: Program, motion: Motion) -> Iterator[Problem]:
+    """Yield the row behind blocks that may be skipped at the start of a plane, if it is a hole or a cut."""
+    operation = motion.operation
+    moves, skips = operation.moves, [event for event in operation.events if isinstance(event, BlockSkip)]
+    if len(skips) < 2 or not skips[0].on or skips[0].row > 0 or skips[1].row in (0, len(moves)):
+        return
+    row = skips[1].row
+    if moves.kind[row] != Kind.RAPID or any(cycle.row <= row < end for cycle, end in cycle_row_ranges(operation)):
+        yield Problem(program.file_of(operation), int(moves.line[row]), Wording("CTL460", "tool_axis_turns"))
+
+
 def block_skip_problems(program: Program) -> list[Problem]:
     """Return operations that end, or turn to another plane, among blocks that may be skipped.
 
     The way home is for every run of the program, so that it gets no skip sign. A turn to another plane can have none
-    either: without it, the blocks after it would be somewhere else.
+    either: without it, the blocks after it would be somewhere else. Nor may a hole or a cut come right behind what is
+    skipped in another plane: the tool would come to it from home.
     """
     motions = program.motions
     problems = [problem for motion in motions for problem in _skipped_feeds(program, motion.operation)]
+    problems += [
+        problem for motion in motions if not motion.starts_operation for problem in _from_home(program, motion)
+    ]
     skip: BlockSkip | None = None
     for k, motion in enumerate(motions):
         for event in motion.operation.events:

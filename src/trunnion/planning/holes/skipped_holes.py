@@ -58,8 +58,9 @@ def level_ways(operation: Operation, before: Floats, from_home: Flags, least: Fl
         heights = [float(before[row] @ axis) for row in rows]
         level = max(*heights, float(moves.tip[end] @ axis) + float(least[end]))
         lifts = [row for row, height in zip(rows, heights, strict=True) if height < level - SAME_HEIGHT]
-        if any(moves.kind[row - 1] != Kind.RAPID for row in lifts):
-            # A cut ends there: nothing says that the tool may leave it upwards.
+        cuts = moves.kind != Kind.RAPID
+        if any(cuts[row - 1] for row in lifts) or (first in lifts and cuts[first]):
+            # A cut ends there, or begins: nothing says that it may be left upwards, or begun from above.
             raise HoleCycleError(Wording("PLN650", "cut_beside_skipped"), int(moves.line[end]))
         for row, height in zip(rows, heights, strict=True):
             found.before[row] = before[row] + (level - height) * axis

@@ -70,16 +70,17 @@ def _skipped_blocks(context: ComparedContext) -> Iterator[tuple[RunEvent, list[i
     regions, cl = _regions(context, of_sections), context.matching.cl
     holes = list(_holes(context))
     for event in events:
-        at = (_hole_below(context, holes, event.before_row), _hole_at(context, holes, event.before_row))
-        found = (_stretch_of_hole(context, of_sections, hole.index) for hole in at if hole is not None)
-        if own := next((stretches for stretches in found if stretches), None):
-            yield event, own
-            continue
         pair = context.matching.nc.count_before(event.before_row)
         first = int(cl[pair - 1]) if pair else 0
         last = int(cl[pair]) if pair < len(cl) else len(context.expected)
         moves = event.before_row < len(context.run) and int(context.run.lines[event.before_row]) == event.line
-        if moves and pair < len(cl) and (own := [k for k, (begin, end) in regions.items() if begin <= last < end]):
+        of_point = [k for k, (begin, end) in regions.items() if moves and pair < len(cl) and begin <= last < end]
+        goes_there = pair < len(cl) and int(context.matching.nc[pair]) == event.before_row
+        at = (_hole_below(context, holes, event.before_row), _hole_at(context, holes, event.before_row))
+        found = (_stretch_of_hole(context, of_sections, hole.index) for hole in at if hole is not None)
+        of_hole = next((stretches for stretches in found if stretches), [])
+        own = of_point if goes_there and of_point else of_hole or of_point
+        if own:
             yield event, own
             continue
         yield event, [k for k, (begin, end) in regions.items() if begin <= last and first + moves < end]

@@ -27,13 +27,32 @@ _SAME_AXIS: Final = 1e-6
 
 
 def ways_behind_skipped(context: ComparedContext) -> set[int]:
-    """Return the motions without a CL point that lead the tool safely from blocks that may be skipped."""
-    return {row for rows, _ in _ways(context) for row in rows.tolist()}
+    """Return the motions without a CL point that lead the tool safely to or from blocks that may be skipped."""
+    return {row for rows, _ in _ways(context) for row in rows.tolist()} | set(_raises(context))
 
 
 def points_behind_ways(context: ComparedContext) -> set[int]:
     """Return the motions to CL points to which such ways lead, and to which the tool does not come aslant."""
     return {row for _, row in _ways(context)}
+
+
+def _raises(context: ComparedContext) -> Iterator[int]:
+    """Yield rapids straight up right before blocks that may be skipped: to the height at which both ways go on."""
+    run, matching = context.run, context.matching
+    extra, near = set(matching.extra), 4.0 * context.expected.max_tip_tolerance + 1e-6
+    for point in sorted(context.expected.first_skipped):
+        k = matching.cl.count_before(point)
+        row = int(matching.nc[k]) - 1 if k < len(matching.cl) else 0
+        if (
+            row < 1
+            or row not in extra
+            or run.kind[row] != Kind.RAPID
+            or run.state.machine_frame.at(np.array([row - 1]))[0]
+        ):
+            continue
+        positions = run.positions(np.array([row - 1, row]))
+        if _goes_straight(positions.tip, positions.axis, near, 1):
+            yield row
 
 
 def _ways(context: ComparedContext) -> Iterator[tuple[Ints, int]]:

@@ -263,11 +263,19 @@ class ExpectedPath:
     @cached_property
     def behind_skipped(self) -> frozenset[int]:
         """Rows right behind those that an OPSKIP lets the operator skip."""
+        return self._at_skips(on=False)
+
+    @cached_property
+    def first_skipped(self) -> frozenset[int]:
+        """The first rows of those that an OPSKIP lets the operator skip."""
+        return self._at_skips(on=True)
+
+    def _at_skips(self, *, on: bool) -> frozenset[int]:
         return frozenset(
             section.first + event.row
             for section in self.sections
             for event in section.operation.events
-            if isinstance(event, BlockSkip) and not event.on and event.row < len(section.operation.moves)
+            if isinstance(event, BlockSkip) and event.on == on and event.row < len(section.operation.moves)
         )
 
     @cached_property

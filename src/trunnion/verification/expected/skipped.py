@@ -101,9 +101,16 @@ class _Ways(NamedTuple):
             return rises or bool(retracts and not holes[last])
         if holes[end] or holes[last]:
             return False
-        if to_cut:  # behind skipped cuts it comes there at a feed, as the CL file asks
-            return moves.kind[last] == Kind.RAPID and float((moves.tip[end] - start) @ moves.axis[end]) < -_STILL
+        if to_cut:  # behind skipped cuts aslant as well where the CL file comes to them so
+            straight = moves.kind[last] == Kind.RAPID or self._is_straight(*self._last_plunge(begin, end))
+            return straight and float((moves.tip[end] - start) @ moves.axis[end]) < -_STILL
         return rises and float(start @ along) < self._highest(along) - _STILL
+
+    def _last_plunge(self, begin: int, end: int) -> tuple[int, int]:
+        """Return the rows between which the last cuts before ``end`` begin, behind a rapid."""
+        is_rapid = self.moves.kind[begin - 1 : end] == Kind.RAPID
+        row = begin + int(np.flatnonzero(is_rapid[:-1] & ~is_rapid[1:])[-1])
+        return row - 1, row
 
     def _is_straight(self, first: int, row: int) -> bool:
         """Whether the way from one row to another is along the tool of the first one, and the tool does not turn."""

@@ -31,6 +31,7 @@ from trunnion.verification.matching.rows_to_match import (
     repeats_of_another_kind,
     rows_to_match,
 )
+from trunnion.verification.matching.skipped_rapids import MOST_RAPIDS, rapids_beside_skipped
 from trunnion.verification.row_ranges import CHUNK, RowRanges
 
 #: Motions that are compared at first, and after each mismatch.
@@ -155,6 +156,11 @@ class _PathMatcher:
 
     def _resolve_mismatch(self, i: int, j: int) -> tuple[int, int]:
         """How many motions and points are dealt with where the i-th motion does not go to CL row j."""
+        rapids = rapids_beside_skipped(self._run, self._expected, self._rows.rows(i, i + MOST_RAPIDS + 1), j)
+        ways = next((k for k in range(1, rapids + 1) if self._fits(i + k, j, 1)[0]), 0)
+        if ways:
+            self._extra += self._rows.rows(i, i + ways).tolist()
+            return ways, 0
         repeats = self._count_repeats(i, j)
         if repeats:
             return 0, repeats
