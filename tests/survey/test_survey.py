@@ -258,6 +258,16 @@ def test_programs_find_the_subprograms_beside_them(tmp_path: Path, monkeypatch: 
     assert became["lost/main.h"] == ("refused", "NC132")
 
 
+def test_subprograms_of_cl_data_are_refused_and_no_turning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    cl = "PARTNO/A\nUNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/200,MMPM\nGOTO/1,2,3\n{}\nFINI\n"
+    (tmp_path / "called.apt").write_text(cl.format("CALSUB/5"))
+    (tmp_path / "turned.apt").write_text(cl.format("MODE/TURN"))
+    called, turned = take_survey(tmp_path, machine=["dmu65"]).files
+    assert (called.became, called.tries[0].codes) == (Became.REFUSED, ("CL260",))
+    assert (turned.became, turned.looks) == (Became.NOT_OURS, "CL data of turning")
+
+
 def test_what_only_the_machine_cannot_do_is_no_fault_of_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -78,8 +78,8 @@ _SEQUELS: Final = frozenset({"CNV130", "CTL940", "PLN160"})
 #: Checks and codes of travel and of the spindle's speed.
 _OF_MACHINE: Final = frozenset({"travel", "rpm", "PLN120", "PLN125", "PLN430"})
 
-#: The code of a statement that belongs to turning.
-_TURNING: Final = "CL260"
+#: Statements that belong to turning.
+_TURNING: Final = frozenset(("CL260", each) for each in ("turning", "toolno_belongs_turning", "mode_turn_turning"))
 
 #: The code of a program of which more is not understood than understood.
 _OTHER_CONTROL: Final = "NC113"
@@ -322,11 +322,15 @@ def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     counted = tuple(tries) if file.kind is FileKind.CL else (min(tries, key=worth),)
     if not file.looks and _OTHER_CONTROL in counted[0].codes:
         return SurveyedFile(file.name, FileKind.OTHER, "understood by no reader", Became.NOT_OURS)
-    if file.kind is FileKind.CL and all(_TURNING in each.codes for each in counted):
+    if file.kind is FileKind.CL and all(map(_is_of_turning, counted)):
         return SurveyedFile(file.name, FileKind.OTHER, "CL data of turning", Became.NOT_OURS)
     return SurveyedFile(
         file.name, file.kind, file.looks, max((t.became for t in counted), key=_ORDER.__getitem__), counted
     )
+
+
+def _is_of_turning(found: Trying) -> bool:
+    return any((each.code, each.wording.variant) in _TURNING for each in found.errors)
 
 
 def worth(each: Trying) -> tuple[int, bool, int]:

@@ -103,6 +103,19 @@ KINDS: Final = (
         r"^N?\d* ?#(?:CLEAR|PRINT|IF|GOTO|R\d|[A-Z]\d* ?=)", r"\bE\d+ [XY]", _N + r"L\d{3,4}\b", r"\bE0\b.*\bH0\b",
         _N + r"M4[59]\b",
     ),
+    _kind(
+        phrase("program_of_acramatic"),
+        r"\(PGM, ?NAME=", r"^: ?[GT]\d+\b",
+    ),
+    _kind(
+        phrase("program_of_heidenhain_iso"),
+        r"^% ?\w+ G7[01]\b", r"^Q2\d\d ?= ?[-+\d.]", r"^N\d+ G2\d\d (?:[A-Z]{4}|Q2\d\d)", r"^N\d+ G99 T\d+ L",
+        r"^N\d+ G30 G17 X",
+    ),
+    _kind(
+        phrase("program_of_millplus"),
+        r"\bG7 ?[ABC]5=", r"\b[ABC]5=-?[\d.]+ [ABC]5=", r"\bG174\b", r"\bG54 ?I\d",
+    ),
     _kind(phrase("program_of_mach"), r"\bMach ?[34]\b", r"\bG40\.1\b", r"\bG80 ?G50\b", r"^M998\b"),
     _kind(
         phrase("program_on_tape"),
