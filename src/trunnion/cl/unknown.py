@@ -32,7 +32,7 @@ def shop_statement(event: UnknownStatement) -> ShopStatement:
 
 def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
     """Return the statements of a toolpath that are not known, those alike together, by their first lines."""
-    alike: dict[str, list[UnknownStatement]] = {}
+    alike: dict[Wording, list[UnknownStatement]] = {}
     for event in _unknown_events(toolpath):
         alike.setdefault(event.what, []).append(event)
     return list(alike.values())
