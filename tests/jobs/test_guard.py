@@ -30,6 +30,13 @@ OWN = {"test"}
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a file of each kind, from which commands are run."""
+    fill_folder(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def fill_folder(tmp_path: Path) -> None:
+    """Put a file of each kind into a folder."""
     shutil.copy(YL569 / "2_hub_rough.cls", tmp_path / "part.cls")
     shutil.copy(YL569 / "2_hub_rough.expected.mpf", tmp_path / "part.mpf")
     shutil.copytree(ROOT / "examples" / "impeller", tmp_path / "impeller")
@@ -39,8 +46,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copy(ROOT / "examples" / "simulation" / "plate.stl", tmp_path / "stock.stl")
     for name in ("nodes.toml", "jobs.toml"):
         (tmp_path / name).touch()
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def pairs() -> Iterator[tuple[Job, Option, Option]]:
