@@ -48,7 +48,7 @@ def test_another_synonym_is_refused(read: Read, synonym: str) -> None:
 def test_another_function_of_the_post_processor_is_not_known(read: Read, function: str) -> None:
     (operation,) = read(written(*HEAD, function, *PART)).operations
     (unknown,) = [event for event in operation.events if isinstance(event, UnknownStatement)]
-    assert (unknown.line, unknown.what, unknown.acts) == (3, "PPFUN is not known", True)
+    assert (unknown.line, str(unknown.what), unknown.acts) == (3, "PPFUN is not known", True)
 
 
 def test_a_tool_axis_that_the_points_contradict_is_refused(read: Read) -> None:

@@ -113,7 +113,7 @@ def test_a_damaged_word_of_a_dialect_is_never_dropped(
 ) -> None:
     (event,) = (e for e in apt(dialect, "GOTO/0,0,0", statement).events if isinstance(e, UnknownStatement))
     assert event.acts
-    assert event.what.endswith(f"may be a damaged {meant}")
+    assert str(event.what).endswith(f"may be a damaged {meant}")
 
 
 @pytest.mark.parametrize("statement", ["CLAMP,ON", "SHOPWD,ROTATE,90"])

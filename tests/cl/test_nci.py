@@ -185,7 +185,7 @@ def test_an_arc_needs_a_start(fails: Fails) -> None:
 
 def test_an_unknown_record_is_kept_and_may_be_said_what_becomes_of_it(reads: Reads) -> None:
     toolpath = reads(*CUT, "1031", "7 2.5", "1025", "0 3 0 0 0 0 0 0 0 0")
-    said = [(event.line, event.what) for alike in unknown_statements(toolpath) for event in alike]
+    said = [(event.line, str(event.what)) for alike in unknown_statements(toolpath) for event in alike]
     assert said == [(17, "1031 is not known"), (19, "1025 calls a text of Mastercam's post")]
     assert can_be_unknown("1031")
     assert not can_be_unknown("GOTO")

@@ -4,6 +4,7 @@ import pytest
 
 from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Body, Fail, Read
+from trunnion.cl.unknown import unknown_statement_errors
 from trunnion.model.toolpath import CutterComp, CycleOn, SpindleOff, SpindleOn, UnknownStatement
 
 CUT = ["RAPID", "GOTO/0,0,50", "FEDRAT/200,MMPM", "GOTO/0,0,-2"]
@@ -242,7 +243,7 @@ def test_what_stands_beside_off_is_not_lost(body: Body) -> None:
 def test_zeros_for_letters_are_a_damaged_word(body: Body) -> None:
     (event,) = body("GOTO/0,0,0", "G0T0/5,5,5").events
     assert isinstance(event, UnknownStatement)
-    assert (event.acts, event.what) == (True, "G0T0 may be a damaged GOTO")
+    assert (event.acts, str(event.what)) == (True, "G0T0 may be a damaged GOTO")
 
 
 @pytest.mark.parametrize(
@@ -259,3 +260,10 @@ def test_a_feed_in_a_unit_that_the_file_does_not_have_is_told_once(read: Read, u
     lines = ["PARTNO A", f"UNITS/{unit}", "LOADTL/1", "RAPID", "GOTO/0,0,50", feed, "GOTO/0,0,-2", feed, "GOTO/1,0,-2"]
     remarks = [each for each in read("\n".join([*lines, "FINI"]) + "\n").remarks if each.code == "CL716"]
     assert [(each.line, told in each.what) for each in remarks] == ([(6, True)] if told else [])
+
+
+def test_a_cycle_without_its_slash_is_no_two_statements(read: Read) -> None:
+    lines = "CYCLE,DRILL,DEPTH,12,IPM,5,CLEAR,3,DWELL,1", "GOTO/5,0,0", "CYCLE/OFF"
+    (problem,) = unknown_statement_errors(read(text("apt", *CUT, *lines)))
+    assert (problem.line, problem.cure.split(",")[0]) == (len(HEADS["apt"]) + len(CUT) + 1, "write CYCLE")
+    assert "with a slash before its values" in problem.cure

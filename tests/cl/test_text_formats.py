@@ -255,7 +255,7 @@ def test_an_unknown_record_is_kept_and_no_program_is_made_without_it(
     text = PAIRED.replace("1003\n", "1018\n7 2.5\n1003\n")
     file = file_of(tmp_path, text)
     ((event,),) = unknown_statements(read_cl(file))
-    assert (event.line, event.what, event.acts) == (23, "1018 is not known", True)
+    assert (event.line, str(event.what), event.acts) == (23, "1018 is not known", True)
     statement = shop_statement(event)
     assert (statement.word, statement.numbers) == ("1018", (7.0, 2.5))
     assert can_be_unknown("1018")

@@ -25,7 +25,7 @@ TYPED = {
     ("post", "part.cls", "--machine", "dmu6"): "dmu65",
     ("post", "par"): "part.cls",
     ("schema", "proj"): "project",
-    ("explain", "CL11"): "CL110",
+    ("explain", "CL12"): "CL120",
     ("verify", "--set", "radius_reg"): "radius_register=",
 }
 
@@ -57,7 +57,7 @@ def test_bash_completes_commands_options_words_and_files(tmp_path: Path) -> None
     assert completed("post", "par", folder=tmp_path) == ["part.cls"]
     assert completed("schema", "proj", folder=tmp_path) == ["project"]
     assert completed("post", "--turn", "", folder=tmp_path) == []
-    assert completed("explain", "CL11", folder=tmp_path) == ["CL110"]
+    assert completed("explain", "CL12", folder=tmp_path) == ["CL120"]
     assert completed("verify", "--set", "radius_reg", folder=tmp_path) == ["radius_register="]
 
 

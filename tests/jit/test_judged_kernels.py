@@ -37,10 +37,14 @@ def test_every_kernel_has_a_test_that_makes_up_its_arguments() -> None:
     assert sorted(named) == sorted(each.name.removeprefix("trunnion.") for each in all_kernels())
 
 
-@pytest.mark.third
-@pytest.mark.parametrize(
-    ("name", "test"), [pytest.param(name, test, id=name) for test, names in INPUTS.items() for name in names]
-)
+#: Kernels and their tests; every other one is left to nightly, as Numba compiles each anew.
+_CASES = [
+    pytest.param(name, test, id=name, marks=[pytest.mark.nightly] * (k % 2))
+    for k, (name, test) in enumerate((name, test) for test, names in INPUTS.items() for name in names)
+]
+
+
+@pytest.mark.parametrize(("name", "test"), _CASES)
 def test_a_library_gives_and_writes_the_bits_of_numba(
     name: str,
     test: tuple[str, ...],

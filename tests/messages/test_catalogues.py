@@ -34,13 +34,15 @@ SAYERS = {
     "line": "results",
     "part": "results",
     "label": "report",
+    "on_sheet": "sheet",
+    "on_survey": "survey",
     "Fault": "DEF580",
     "_TextError": "SIM153",
     "_SizeError": "SIM123",
 }
 
 #: Catalogues of the lines of results and reports.
-OF_RESULTS = {"results", "report"}
+OF_RESULTS = {"results", "report", "sheet", "survey"}
 
 #: Names of fields that are no parameters but what a user may set.
 SETTABLE = {"setting", "argument", "switch"}

@@ -133,7 +133,7 @@ def rows_of(path: Operation) -> list[Row]:
 
 def conditions(home: Flags) -> HoleConditions:
     """Conditions under which every hole becomes motion, if motion can make it."""
-    return HoleConditions(SPINDLE, home, "", lambda cycle, spindle: "", prefers_motion=True)
+    return HoleConditions(SPINDLE, home, None, lambda cycle, spindle: None, prefers_motion=True)
 
 
 def expanded(path: Operation) -> Operation:

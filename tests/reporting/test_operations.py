@@ -11,13 +11,14 @@ import trunnion
 from tests.support.locations import YL569
 from tests.support.reports import Page, blade
 from trunnion.cli import main
+from trunnion.messages import word_said
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.reporting.write import write_report
 from trunnion.verification import OperationRows
 
 DECIDED = [
-    Decision("blade.cls", "BLADE", 12, 0, DecisionTopic.START, "starts at C 1.000 B 2.000"),
-    Decision("blade.cls", "<b>BLADE</b>", 40, 7, DecisionTopic.POLE, "axis C holds & turns <script>\x00"),
+    Decision("blade.cls", "BLADE", 12, 0, DecisionTopic.START, word_said("starts at C 1.000 B 2.000")),
+    Decision("blade.cls", "<b>BLADE</b>", 40, 7, DecisionTopic.POLE, word_said("axis C holds & turns <script>\x00")),
 ]
 
 

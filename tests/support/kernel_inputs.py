@@ -4,6 +4,7 @@ from typing import Final
 
 #: Module of a test and its name, and what it is called with: a text, or a name of the module -> kernels that it calls.
 INPUTS: Final[dict[tuple[str, ...], tuple[str, ...]]] = {
+    ("cl.test_nci", "test_no_pairs_and_no_bytes_end_in_anything_but_a_problem"): ("cl.pair_scan.pair_scan",),
     ("cl.test_scan", "test_axes_are_settled_as_by_the_twin"): ("cl.scan.fill_modal_axes",),
     ("cl.test_scan", "test_the_walk_finds_the_statements_of_its_twin"): ("cl.scan.scan",),
     ("cl.test_surface_normals", "test_contact_points_are_those_that_a_plain_look_finds"): (

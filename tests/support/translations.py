@@ -21,10 +21,13 @@ from trunnion.jobs.capability.fitting import FitStatus
 from trunnion.jobs.describe.controls import describe_controls
 from trunnion.jobs.registry import GROUPS, JOBS
 from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines.sensitivity import NumberKind
 from trunnion.messages import DECLARED, ENGLISH, LANGUAGES, digest
-from trunnion.model.motion import DecisionTopic
+from trunnion.model.motion import DecisionTopic, MachiningMode
 from trunnion.simulation.finding import What
 from trunnion.simulation.tools.profile import Role
+from trunnion.survey.found_files import FileKind
+from trunnion.survey.result import Became
 
 FOLDER = Path(messages.__file__).parent
 DATA = TESTS / "data" / "translated"
@@ -42,6 +45,10 @@ WORDS = (
     "bed", *FitStatus, *What, "stock", "part", "fixture", "hub", *Role,
     "Rotary speeds", "Tip feed", "tip", "programmed", "linear axes at rapid", "limits not stated", "endless", "limits",
     "from above", "from below, from the other side", *DecisionTopic,
+    *MachiningMode, "ROUGH", "SEMI", "FINISH", "on", "flood", "mist", "through the tool", "air", "for tapping",
+    "ball mill", "mill", "T-cutter", "barrel cutter", "drill", "clockwise", "counterclockwise", "standing",
+    "contour", "tool's centre", "diameter", "radius", *FileKind, *Became, *NumberKind, "APT CL data (ISO 4343)",
+    "CAMWorks CL data", "Autodesk Fusion or HSMWorks APT",
 )  # fmt: skip
 
 

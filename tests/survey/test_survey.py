@@ -20,7 +20,7 @@ from trunnion.cli import main
 from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES
 from trunnion.jobs.inputs.reading import as_machine
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording, foreign, word_said
 from trunnion.readers.program.settings import family_of
 from trunnion.survey import taking
 from trunnion.survey.found_files import FileKind, FoundFile, found_files
@@ -295,7 +295,7 @@ def test_what_only_follows_from_other_errors_blocks_nothing() -> None:
     problems = [Problem("a.cls", line, foreign("x", "y", code)) for line, code in ((3, "PLN120"), (4, "PLN160"))]
     outcome = Outcome(Status.FAILED, (*problems, Problem("a.cls", 0, foreign("z", "", "CTL940"))))
     tried = trying(SurveyedMachine("m", "c"), FileKind.CL, outcome)
-    file = surveyed(FoundFile("a.cls", Path("a.cls"), FileKind.CL, "NX CLSF"), [tried])
+    file = surveyed(FoundFile("a.cls", Path("a.cls"), FileKind.CL, word_said("NX CLSF")), [tried])
     (blocker,) = Survey("f", (), 1.0, {}, (file,)).blockers
     assert (blocker.code, blocker.opens, blocker.first.line) == ("PLN120", 1, 3)
 

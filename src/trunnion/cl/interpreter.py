@@ -16,7 +16,7 @@ from trunnion.cl.statement import Statement, comments_of
 from trunnion.cl.statements.cutcom_points import CutcomPoints
 from trunnion.cl.statements.operations import LENGTH_UNITS
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import Clamping
 from trunnion.model.clamping_notices import may_be_notice, read_place
 from trunnion.model.toolpath import Frame
@@ -233,25 +233,28 @@ class ClInterpreter:
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
             raise self._diagnostics.nothing_known(Wording("CL110", "not_cl_file"))
         if self._glued is None:
-            self._state.note_unknown(statement, f"{statement.major} is not known")
+            self._state.note_unknown(statement, phrase("not_known", statement=statement.major))
             return
         found = acts_on_machine(statement.major, self._words)
-        why = found.why if found else ""
-        if statement.major.startswith("->") and not why and not self._state.strict:
-            what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
+        meant = found.meant if found else ()
+        if statement.major.startswith("->") and found is None and not self._state.strict:
             self._diagnostics.remark(self._state.line, Wording("CL220", "comment_all_but", major=statement.major[:40]))
             return
         _refuse_no_word(statement)
         if drives_tool(statement.major):
             self._state.direction = None
             raise StatementError(Wording("CL250", "motion_cannot_read", major=statement.major))
-        if not why and self._dialect.alias is not None and _is_system(statement, 12) and not self._state.strict:
+        if found is None and self._dialect.alias is not None and _is_system(statement, 12) and not self._state.strict:
             self._dialect.alias(self._state, statement)
             return
-        if not why and _is_system(statement, 9, 12) and statement.values not in _NO_SYSTEMS:
-            why = "may be the coordinate system of the points behind it"
-        what = f"{statement.major} {why if why.startswith('may') else 'is not known'}"
-        self._state.note_unknown(statement, what, acts=bool(why), meant=found.meant if found else ())
+        may_be_system = found is None and _is_system(statement, 9, 12) and statement.values not in _NO_SYSTEMS
+        if may_be_system:
+            what = phrase("may_be_system", statement=statement.major)
+        elif found is not None and found.damaged:
+            what = phrase("may_be_damaged", statement=statement.major, word=found.damaged)
+        else:
+            what = phrase("not_known", statement=statement.major)
+        self._state.note_unknown(statement, what, acts=found is not None or may_be_system, meant=meant)
 
 
 def _is_system(statement: Statement, *counts: int) -> bool:

@@ -20,6 +20,7 @@ from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.joining import join_cuts, join_first_tool
 from trunnion.cl.kept_states import report_kept_states
 from trunnion.cl.open_cycles import OpenCycle, settle_open_cycles
+from trunnion.cl.other_files import other_binary, other_form
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, Piece
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
@@ -182,7 +183,11 @@ def _surveyed(file: BinaryIO, source: ClSource, diagnostics: Diagnostics) -> Sur
             bom_bytes = len(_BOM) if piece.startswith(_BOM) else 0
             per_byte = (piece.count(b"\n") + 1) / len(piece)
             head = piece[bom_bytes:_HEAD]
+            if form := other_form(head):
+                raise diagnostics.fatal(0, form)
         if (nul := piece.find(0)) >= 0:
+            if size == 0 and (binary := other_binary(source.name, piece)):
+                raise diagnostics.fatal(0, binary)
             line = _line_at(source, size + nul)
             raise diagnostics.fatal(line, Wording("CL150", "unknown_encoding_nul"))
         detector.add(piece)

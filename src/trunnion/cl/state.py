@@ -7,7 +7,7 @@ from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBui
 from trunnion.cl.conventions import Conventions
 from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.statement import Statement
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
 
 MM_PER_INCH = 25.4
@@ -246,7 +246,7 @@ class ReaderState:
             self.diagnostics.remark(self.line, Wording("CL716", variant, **said))
 
     def note_unknown(
-        self, statement: Statement, what: str, *words: str, acts: bool = True, meant: tuple[str, ...] = ()
+        self, statement: Statement, what: Wording, *words: str, acts: bool = True, meant: tuple[str, ...] = ()
     ) -> None:
         """Note that a statement, or some ``words`` of it, are not known: one event a statement, which says why.
 
@@ -255,7 +255,7 @@ class ReaderState:
         """
         events = self.builder.events
         if "" in words:
-            what = f"{statement.major} has nothing behind a comma"
+            what = phrase("nothing_behind_comma", major=statement.major)
         if self.strict:
             self.diagnostics.error(self.line, Wording("CL210", "unknown_in_strict", unknown=what))
         found = UnknownStatement(self.operation_row, self.line, statement.source, words, what, acts, meant)
@@ -264,7 +264,9 @@ class ReaderState:
             if before.line != self.line:
                 break
             if isinstance(before, UnknownStatement):
-                events[k] = replace(found, words=before.words + words, what=f"{before.what}; {what}")
+                events[k] = replace(
+                    found, words=before.words + words, what=phrase("both_faults", fault=before.what, other=what)
+                )
                 return
         self.add(found)
 

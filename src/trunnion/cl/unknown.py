@@ -32,7 +32,7 @@ def shop_statement(event: UnknownStatement) -> ShopStatement:
 
 def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
     """Return the statements of a toolpath that are not known, those alike together, by their first lines."""
-    alike: dict[str, list[UnknownStatement]] = {}
+    alike: dict[Wording, list[UnknownStatement]] = {}
     for event in _unknown_events(toolpath):
         alike.setdefault(event.what, []).append(event)
     return list(alike.values())
@@ -63,9 +63,15 @@ def _said(event: UnknownStatement, otherwise: Wording) -> Wording:
         return Wording("CL210", "empty_value", unknown=event.what)
     if not event.meant:
         return otherwise
-    if len(event.meant) > 1:
+    if len(event.meant) > 1 and not _lacks_slash(event):
         return Wording("CL210", "in_one_line", unknown=event.what, meant=event.meant)
     return Wording("CL210", "damaged", unknown=event.what, meant=event.meant[0])
+
+
+def _lacks_slash(event: UnknownStatement) -> bool:
+    """Whether a cycle begins the statement, of which the other words are values: CYCLE,DRILL,DEPTH,9,DWELL,1."""
+    first, comma, _ = event.text.partition(",")
+    return bool(comma) and "/" not in event.text and first.strip().upper() == event.meant[0] == "CYCLE"
 
 
 def _unknown_events(toolpath: Toolpath) -> Iterator[UnknownStatement]:

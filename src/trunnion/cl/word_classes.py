@@ -92,9 +92,13 @@ def words_that_count(dialect: Dialect) -> frozenset[str]:
 
 
 class Suspicion(NamedTuple):
-    """Why a statement may have changed the machine; ``meant``: the words that it may be, if any."""
+    """Why a statement may have changed the machine.
 
-    why: str
+    damaged  the word that it may be, damaged; empty: it has one that acts
+    meant    the words that it may be, if any
+    """
+
+    damaged: str = ""
     meant: tuple[str, ...] = ()
 
 
@@ -106,9 +110,9 @@ def acts_on_machine(major: str, words: Collection[str]) -> Suspicion | None:
     """
     parts = major.split(",")
     if not ACTING_WORDS.isdisjoint((major, *parts)):
-        return Suspicion("is not known", tuple(part for part in parts if part in ACTING_WORDS) if parts[1:] else ())
+        return Suspicion(meant=tuple(part for part in parts if part in ACTING_WORDS) if parts[1:] else ())
     meant = _damaged_word(major, words)
-    return Suspicion(f"may be a damaged {meant}", (meant,)) if meant else None
+    return Suspicion(meant, (meant,)) if meant else None
 
 
 def _damaged_word(major: str, words: Collection[str]) -> str:

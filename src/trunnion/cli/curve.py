@@ -6,7 +6,7 @@ from typing import Final
 from trunnion.cli.columns import padded
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.cli.wording import line, part
+from trunnion.cli.wording import line, part, spoken
 from trunnion.geometry.fitting import CurveFit
 from trunnion.jobs.impeller.curves import fit_curve, read_points, write_curve_picture
 from trunnion.jobs.job import Given
@@ -23,7 +23,7 @@ def run(given: Given) -> int:
     fits = [fit_curve(table, **given.arguments("file")) for table in tables]
     Terminal().problems([remark for one in fits for remark in one.remarks])
     if given.picture is not None:
-        write_curve_picture(fits, given.picture, inputs=given.read)
+        write_curve_picture(fits, given.picture, inputs=given.read, words=spoken())
     show(given, lambda: {"schema": 2, "curves": fits}, curve_lines(fits))
     return 0
 

@@ -5,7 +5,7 @@ from typing import Final
 
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.cli.wording import in_words, line, part, together
+from trunnion.cli.wording import in_words, line, part, spoken, together
 from trunnion.jobs.describe.cl_files import (
     ClDescription,
     ClFileDescription,
@@ -32,7 +32,7 @@ def info(given: Given) -> int:
     found = describe_cl(**given.arguments(), observer=terminal)
     terminal.problems(found.remarks)
     if given.plot is not None:
-        write_plot(found, given.plot)
+        write_plot(found, given.plot, spoken())
     show(given, lambda: found, info_lines(found))
     return 0
 
@@ -66,7 +66,7 @@ def info_lines(found: ClDescription) -> Iterator[str]:
                 line=each.line,
                 statement=each.statement,
                 count=each.count,
-                what=each.what,
+                what=each.said,
             )
 
 

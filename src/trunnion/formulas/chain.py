@@ -1,13 +1,15 @@
 """The chain of a machine as symbols: what stands between the workpiece and the tool, in order."""
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.formulas.symbols import Expression, Rows, Triple, exact_direction, number, rotation, symbol
 from trunnion.machines import Axis, Machine
+from trunnion.messages import Wording
+from trunnion.results import Figure
 
 #: Parts of an offset that are smaller are zero, mm.
 _NO_OFFSET: Final = 1e-12
@@ -26,15 +28,20 @@ class Parameter:
     """A number that formulas have as a symbol.
 
     name     as formulas have it
-    meaning  in words
+    meant    what it is; ``meaning`` in English
     value    mm, degrees or without a unit; None if it is not known
     unit     ``mm``, ``deg`` or empty
     """
 
     name: str
-    meaning: str
+    meant: Annotated[Wording, Figure("meaning", take=str)]
     value: float | None
     unit: str
+
+    @property
+    def meaning(self) -> str:
+        """What it is, in words."""
+        return str(self.meant)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,7 +132,10 @@ def symbolic_chain(machine: Machine) -> Chain:
     offsets = {
         first.name: _first_offset(machine, first, parameters),
         second.name: _offset(
-            parameters, "e", np.subtract(second.point, first.point), f"from axis {first.name} to axis {second.name}"
+            parameters,
+            "e",
+            np.subtract(second.point, first.point),
+            Wording("kinematics", "between_axes", axis=first.name, other=second.name),
         ),
     }
     zero = number(0)
@@ -134,22 +144,25 @@ def symbolic_chain(machine: Machine) -> Chain:
             axis,
             symbol(axis_symbol(axis.name)),
             _direction(
-                parameters, f"n_{axis.name}", f"axis {axis.name}", [axis.sense * part + 0.0 for part in axis.direction]
+                parameters,
+                f"n_{axis.name}",
+                Wording("kinematics", "of_axis", axis=axis.name),
+                [axis.sense * part + 0.0 for part in axis.direction],
             ),
             offsets.get(axis.name, (zero, zero, zero)),
         )
         for axis in machine.axes
     )
-    stated = "" if machine.spindle_point_is_stated else " (not stated: assumed at 0, 0, 0)"
+    gauge_point = "to_gauge_point" if machine.spindle_point_is_stated else "to_assumed_gauge_point"
     gauge = _offset(
         parameters,
         "g",
         np.subtract(machine.spindle_point, second.point),
-        f"from axis {second.name} to the gauge point{stated}",
+        Wording("kinematics", gauge_point, axis=second.name),
     )
-    spindle = _direction(parameters, "s", "the spindle, from the tip to the holder", machine.spindle_direction)
+    spindle = _direction(parameters, "s", Wording("kinematics", "of_spindle"), machine.spindle_direction)
     length = symbol(LENGTH)
-    parameters.append(Parameter(LENGTH, "tool length, gauge point to tip", machine.tool_length, "mm"))
+    parameters.append(Parameter(LENGTH, Wording("kinematics", "length"), machine.tool_length, "mm"))
     tool = tuple(part - length * along for part, along in zip(gauge, spindle, strict=True))
     return Chain(machine, joints, (tool[0], tool[1], tool[2]), spindle, tuple(parameters))
 
@@ -160,15 +173,15 @@ def axis_symbol(name: str) -> str:
 
 
 def _first_offset(machine: Machine, first: Axis, parameters: list[Parameter]) -> Triple:
-    about = f"from the workpiece zero to axis {first.name}"
+    about = Wording("kinematics", "from_zero", axis=first.name)
     if machine.workpiece_zero is not None:
         return _offset(parameters, "a", np.subtract(first.point, machine.workpiece_zero), about)
-    parameters += [Parameter(f"a_{letter}", f"{about}, along {letter.upper()}", None, "mm") for letter in TIP]
+    parameters += [Parameter(f"a_{letter}", _along(about, letter), None, "mm") for letter in TIP]
     x, y, z = (symbol(f"a_{letter}") for letter in TIP)
     return x, y, z
 
 
-def _offset(parameters: list[Parameter], name: str, values: Floats, about: str) -> Triple:
+def _offset(parameters: list[Parameter], name: str, values: Floats, about: Wording) -> Triple:
     """Return an offset as symbols, those parts left out that are zero, and note what they are."""
     found = []
     for letter, value in zip(TIP, values.tolist(), strict=True):
@@ -176,12 +189,12 @@ def _offset(parameters: list[Parameter], name: str, values: Floats, about: str) 
             found.append(number(0))
             continue
         found.append(symbol(f"{name}_{letter}"))
-        parameters.append(Parameter(f"{name}_{letter}", f"{about}, along {letter.upper()}", value, "mm"))
+        parameters.append(Parameter(f"{name}_{letter}", _along(about, letter), value, "mm"))
     return found[0], found[1], found[2]
 
 
 def _direction(
-    parameters: list[Parameter], name: str, about: str, direction: tuple[float, ...] | list[float]
+    parameters: list[Parameter], name: str, about: Wording, direction: tuple[float, ...] | list[float]
 ) -> Triple:
     """Return a unit vector in exact numbers, or as symbols if it is measured."""
     exact = exact_direction(direction)
@@ -193,5 +206,12 @@ def _direction(
             found.append(number(0))
             continue
         found.append(symbol(f"{name}_{letter}"))
-        parameters.append(Parameter(f"{name}_{letter}", f"direction of {about}, along {letter.upper()}", value, ""))
+        parameters.append(
+            Parameter(f"{name}_{letter}", _along(Wording("kinematics", "direction", of=about), letter), value, "")
+        )
     return found[0], found[1], found[2]
+
+
+def _along(about: Wording, letter: str) -> Wording:
+    """Return what the part of something along one axis is."""
+    return Wording("kinematics", "along", about=about, letter=letter.upper())

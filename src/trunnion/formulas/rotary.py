@@ -28,6 +28,7 @@ from trunnion.formulas.symbols import (
     symbol,
     sympy,
 )
+from trunnion.messages import Wording
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,12 +73,13 @@ def tilt_of(chain: Chain) -> Tilt:
     greatest = sp.sqrt(sp.expand((1 - one**2) * (1 - two**2)))
     noted = list[Parameter]()
     if fixed.free_symbols or greatest.free_symbols:
-        about = f"of the tool axis along axis {first.axis.name}"
-        noted.append(Parameter("kappa", f"what no turn changes {about}", float_of(fixed, values), ""))
-        noted.append(Parameter("nu", f"the most that a turn changes {about}", float_of(greatest, values), ""))
+        kept = Wording("kinematics", "no_turn_changes", axis=first.axis.name)
+        most = Wording("kinematics", "turn_changes_most", axis=first.axis.name)
+        noted.append(Parameter("kappa", kept, float_of(fixed, values), ""))
+        noted.append(Parameter("nu", most, float_of(greatest, values), ""))
         fixed, greatest = symbol("kappa"), symbol("nu")
     if delta != round(delta):
-        meaning = f"angle about axis {second.axis.name} from axis {first.axis.name} to the spindle"
+        meaning = Wording("kinematics", "angle_about", axis=second.axis.name, other=first.axis.name)
         noted.append(Parameter("delta", meaning, math.degrees(math.atan2(sense * turn, sense * lean)), "deg"))
     cosine = (along - fixed) / greatest
     if not cosine.free_symbols & {symbol("nu"), symbol("kappa")}:

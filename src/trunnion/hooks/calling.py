@@ -22,7 +22,7 @@ from trunnion.hooks import Block, Context
 from trunnion.hooks.checks import fingerprint, operation_fault, value_fault
 from trunnion.hooks.files import HookFile, function_failure
 from trunnion.hooks.functions import RunOf, with_functions
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines
 from trunnion.model.toolpath import (
@@ -38,7 +38,6 @@ from trunnion.model.toolpath import (
     Tool,
     Toolpath,
 )
-from trunnion.wording import counted
 
 _Kind = TypeVar("_Kind", Operation, Event)
 
@@ -124,15 +123,13 @@ class Hooks:
             self.changed_motion += [each.name for each in after] or [before.name]
         old, new = list(before.events), [event for each in after for event in each.events]
         if after and old != new:
-            what.append(f"changed its events ({len(old)} to {len(new)})")
+            what.append(phrase("hooks_changed_events", before=len(old), after=len(new)))
         if len(after) == 1 and (before.name, before.tool) != (after[0].name, after[0].tool):
-            what.append("changed its name or tool")
+            what.append(phrase("hooks_changed_name"))
         if not what:
             return []
-        text = f"operation {before.name}: hooks {' and '.join(what)}; the program is proven against what they made"
-        self.decisions.append(
-            Decision(before.file, before.name, before.line, -1, DecisionTopic.HOOKS, f"{file.path.name}: {text}")
-        )
+        said = Wording("decision", "hooks", file=file.path.name, operation=before.name, changes=tuple(what))
+        self.decisions.append(Decision(before.file, before.name, before.line, -1, DecisionTopic.HOOKS, said))
         name = next(iter(file.functions))
         return [
             warning(
@@ -147,23 +144,23 @@ def _moves(toolpaths: Iterable[Toolpath]) -> bool:
     return any(len(operation.moves) for toolpath in toolpaths for operation in toolpath.operations)
 
 
-def _motion_change(before: Operation, after: Sequence[Operation]) -> list[str]:
+def _motion_change(before: Operation, after: Sequence[Operation]) -> list[Wording]:
     """How operations move the tool otherwise than the one in whose place they stand, in words; none if they do not."""
     if len(after) != 1:
-        return [f"made {counted(len(after), 'operation')} of it" if after else "left it out"]
+        return [phrase("hooks_made", count=len(after)) if after else phrase("hooks_left_out")]
     old, new = before.moves, after[0].moves
     if len(old) != len(new):
-        return [f"changed its motion from {counted(len(old), 'point')} to {len(new)}"]
+        return [phrase("hooks_changed_points", count=len(old), after=len(new))]
     differs = np.zeros(len(old), np.bool_)
     for one, other in ((old.tip, new.tip), (old.axis, new.axis), (old.kind, new.kind), (old.per_rev, new.per_rev)):
         differs |= (one != other).reshape(len(old), -1).any(axis=1)
     differs |= ~((old.feed == new.feed) | (np.isnan(old.feed) & np.isnan(new.feed)))
     if differs.any():
-        return [f"changed its motion at {int(differs.sum())} of {counted(len(old), 'point')}"]
+        return [phrase("hooks_changed_motion", changed=int(differs.sum()), count=len(old))]
     arcs, frame = (before.arcs, after[0].arcs), before.frame == after[0].frame
     names = ("row", "centre", "normal", "radius", "full_turns")
     same = frame and all(np.array_equal(*(getattr(each, name) for each in arcs)) for name in names)
-    return [] if same else ["changed its circles or its coordinate system"]
+    return [] if same else [phrase("hooks_changed_circles")]
 
 
 class _Caller:

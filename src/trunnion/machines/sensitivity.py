@@ -28,6 +28,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines.forward import KinematicChain, kinematic_chain
 from trunnion.machines.machine import Machine
+from trunnion.messages import Wording, phrase, word_said
 
 #: A component along a direction is left out if less than this of it lies across, where it could matter.
 _ALONG: Final = 1e-9
@@ -71,8 +72,22 @@ class GeometryNumber:
     @property
     def name(self) -> str:
         """As a shop calls it, such as ``C point X`` or ``B direction about Z``."""
-        about = "about " if self.component and self.is_angle else ""
-        return " ".join(word for word in (self.axis, str(self.kind), about + self.component) if word)
+        return str(self.said)
+
+    @property
+    def said(self) -> Wording:
+        """The same in the language of who asks."""
+        kind = word_said(self.kind)
+        about = {"kind": kind, "letter": self.component}
+        if not self.component:
+            return phrase("number_of_axis", axis=self.axis, kind=kind) if self.axis else kind
+        if self.is_angle:
+            return (
+                phrase("number_about_of_axis", axis=self.axis, **about)
+                if self.axis
+                else phrase("number_about", **about)
+            )
+        return phrase("number_along_of_axis", axis=self.axis, **about) if self.axis else phrase("number_along", **about)
 
     @property
     def key(self) -> str:

@@ -45,8 +45,12 @@ CATALOGUES: Final = {
     "SIM": "simulation",
     "TWN": "twin",
     "comparison": "comparison",
+    "decision": "decisions",
+    "kinematics": "kinematics",
     "report": "report",
     "results": "results",
+    "sheet": "sheet",
+    "survey": "survey",
     "terminal": "terminal",
 }
 

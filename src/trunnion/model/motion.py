@@ -6,6 +6,7 @@ from typing import Annotated
 
 from trunnion.arrays import Floats, Ints, make_read_only
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.arcs import with_closed_turns
 from trunnion.model.deviations import Deviations
 from trunnion.model.frames import into_plane
@@ -111,7 +112,7 @@ class DecisionTopic(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What the planner decided before a row, and why, as text.
+    """What the planner decided before a row, and why; ``text`` in English.
 
     line  of the CL file
     row   of the operation, in which arcs that became lines count as several; -1: it is about the whole operation
@@ -122,7 +123,12 @@ class Decision:
     line: Annotated[int, Figure("cl_line", none=0, after="cl_file")]
     row: Annotated[int, NOT_DATA]
     topic: Annotated[DecisionTopic, Figure("about")]
-    text: str
+    said: Annotated[Wording, Figure("text", take=str)]
+
+    @property
+    def text(self) -> str:
+        """What was decided, and why, in words."""
+        return str(self.said)
 
     def __str__(self) -> str:
         """Return ``file:line: operation: text``."""

@@ -284,7 +284,7 @@ class UnknownStatement(Event):
 
     text: str
     words: tuple[str, ...] = field(default=(), compare=False)
-    what: str = field(default="", compare=False)
+    what: Wording = field(default=foreign(""), compare=False)
     acts: bool = field(default=True, compare=False)
     meant: tuple[str, ...] = field(default=(), compare=False)
 

@@ -46,17 +46,27 @@ class CompensationEntry:
     def where(self) -> str:
         """Where it is entered, and when twice that is."""
         place = f"in D{self.register}" if self.register else "in the tool table"
-        return f"{place}, twice that if {self.doubled}" if self.doubled not in ("", _ALWAYS) else place
+        return f"{place}, twice that if {self.doubled_if}" if self.doubled_if else place
 
     @property
-    def path(self) -> str:
-        """Whose path the program has."""
-        return "contour" if self.contour else "tool's centre"
+    def doubled_if(self) -> str:
+        """On what condition the control takes the diameter instead; empty: on none."""
+        return "" if self.doubled == _ALWAYS else self.doubled
+
+    @property
+    def size_name(self) -> str:
+        """What of the tool is entered."""
+        return "diameter" if self.doubled == _ALWAYS else "radius"
+
+    @property
+    def size(self) -> float:
+        """Its size in the CL file, mm; 0: not known."""
+        return 2.0 * self.radius if self.doubled == _ALWAYS else self.radius
 
     @property
     def value(self) -> str:
         """What is entered."""
-        what, size = ("diameter", 2.0 * self.radius) if self.doubled == _ALWAYS else ("radius", self.radius)
+        what, size = self.size_name, self.size
         if self.contour or self.holds == "radius":
             return f"the {what}"
         return f"the {what} minus {size:.10g} mm" if size else f"the {what} minus that of CAM"

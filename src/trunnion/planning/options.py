@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Final, TypeAlias
 
+from trunnion.messages import Wording
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.motion import MachiningMode, PoleStrategy
 from trunnion.model.splines import Spline
@@ -18,9 +19,9 @@ from trunnion.planning.retracts.clearance import Clearance
 #: Tolerance of the tool axis between CL points without TCP, degrees, unless the user sets another.
 AXIS_TOLERANCE_WITHOUT_TCP: Final = 0.05
 
-#: Takes a cycle and the spindle at its holes (None: it stands still). Returns why the control has no such cycle; empty
+#: Takes a cycle and the spindle at its holes (None: it stands still). Returns why the control has no such cycle; None
 #: if it has one.
-CycleObjection: TypeAlias = Callable[[Cycle, SpindleState | None], str]
+CycleObjection: TypeAlias = Callable[[Cycle, SpindleState | None], Wording | None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,8 +89,8 @@ class PlanOptions:
         return math.inf if self.tcp else AXIS_TOLERANCE_WITHOUT_TCP
 
 
-def _supports_every_cycle(cycle: Cycle, spindle: SpindleState | None) -> str:
-    return ""
+def _supports_every_cycle(cycle: Cycle, spindle: SpindleState | None) -> Wording | None:
+    return None
 
 
 def _takes_every_spline(spline: Spline) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.errors import Problem, RefusedError, warning
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
 from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation, Phase
@@ -210,9 +210,9 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
     options, capabilities = prepared.request.options, prepared.request.capabilities
     ranges = _ranges_in_planes(prepared)
     mode = prepared.mode if ranges is None else MachiningMode.TILTED
-    objection = ""
+    objection: Wording | None = None
     if mode.is_simultaneous and not _drills_along_tool(prepared):
-        objection = f"no cycle along a tilted tool axis {'with' if mode is MachiningMode.TCP else 'without'} TCP"
+        objection = phrase("no_tilted_cycle_with_tcp" if mode is MachiningMode.TCP else "no_tilted_cycle_without_tcp")
         ranges = row_ranges(_turns_at_rapid(operation), len(operation.moves))
     from_home = np.zeros(len(operation.moves), np.bool_)
     from_home[[first for first, _ in ranges or ()]] = True
@@ -221,8 +221,8 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
     new = holes.first_rows
     log, warnings = [], list(prepared.warnings)
     for cycles in holes.converted:
-        text = f"{cycles.description}: {cycles.reason}"
-        log.append(Decision(prepared.file, operation.name, cycles.line, -1, DecisionTopic.HOLES, text))
+        said = Wording("decision", "holes", description=cycles.description, reason=cycles.reason)
+        log.append(Decision(prepared.file, operation.name, cycles.line, -1, DecisionTopic.HOLES, said))
         if cycles.reason != REQUESTED:
             warnings.append(
                 warning(

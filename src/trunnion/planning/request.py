@@ -87,7 +87,7 @@ class PreparedOperation:
         x_direction = machine_x_direction(machine, rotary) if capabilities.plane_x_from_machine else None
         return tilted_plane(axis, self.own_frame, x_direction)
 
-    def decision(self, row: int, topic: DecisionTopic, text: str) -> Decision:
+    def decision(self, row: int, topic: DecisionTopic, said: Wording) -> Decision:
         """Return a decision about a row; -1: about the whole operation."""
         line = int(self.operation.moves.line[max(row, 0)])
-        return Decision(self.file, self.operation.name, line, row, topic, text)
+        return Decision(self.file, self.operation.name, line, row, topic, said)

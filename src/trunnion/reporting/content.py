@@ -179,4 +179,6 @@ def _clean_check(check: Check) -> Check:
 
 
 def _clean_decision(decision: Decision) -> Decision:
-    return replace(decision, operation=clean(decision.operation), file=clean(decision.file), text=clean(decision.text))
+    return replace(
+        decision, operation=clean(decision.operation), file=clean(decision.file), said=decision.said.changed(clean)
+    )

@@ -17,6 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.geometry.fitting import CurveFit
+from trunnion.reporting.page_words import label
 
 _WIDTH: Final = 1040.0
 _HEIGHT: Final = 340.0
@@ -80,7 +81,8 @@ def _row(fitted: CurveFit) -> Iterator[str]:
     curve = fitted.curve
     samples = _Samples(curve.points(at), curve.curvatures(at), np.r_[0.0, np.cumsum(curve.lengths(at))])
     count = len(fitted.curve.control_points)
-    title = f"{fitted.name or 'curve'}: {len(fitted.points)} points, {count} control points, {fitted.length:.3f} mm"
+    name = fitted.name or label("curve_without_name")
+    title = label("curve_points", name=name, points=len(fitted.points), count=count, length=fitted.length)
     yield f'<text x="{_MARGIN:g}" y="22">{escape(title)}</text>\n'
     yield from _view(fitted, samples)
     yield from _graph(samples)
@@ -116,7 +118,7 @@ def _view(fitted: CurveFit, samples: _Samples) -> Iterator[str]:
     yield f'<path class="curve" d="{_path(foot)}"/>\n'
     for x, y in place(fitted.points):
         yield f'<circle class="point" cx="{x:.2f}" cy="{y:.2f}" r="2"/>\n'
-    note = f"a tooth of 10 mm of the curve's scale: curvature {10.0 * scale / factor:.3g} /mm; red: cut off"
+    note = escape(label("curve_tooth", curvature=10.0 * scale / factor))
     yield f'<text class="note" x="{_MARGIN:g}" y="{_HEIGHT - 8:g}">{note}</text>\n'
 
 
@@ -132,9 +134,10 @@ def _graph(samples: _Samples) -> Iterator[str]:
     if beyond.any():
         marks = "".join(f"M{each:.2f} {top - 6:g}v6" for each in x[beyond])
         yield f'<path class="cut" d="{marks}"/>\n'
-        text = f"up to {samples.bend.max():.3g} /mm"
+        text = escape(label("curve_up_to", curvature=samples.bend.max()))
         yield f'<text class="note" x="{right:g}" y="{top - 10:g}" text-anchor="end">{text}</text>\n'
-    yield f'<text class="note" x="{left + 4:g}" y="{top + 10:g}">curvature, top {highest:.3g} /mm</text>\n'
+    text = escape(label("curve_top", curvature=highest))
+    yield f'<text class="note" x="{left + 4:g}" y="{top + 10:g}">{text}</text>\n'
     yield f'<text class="note" x="{right:g}" y="{low + 16:g}" text-anchor="end">{samples.lengths[-1]:.3f} mm</text>\n'
 
 

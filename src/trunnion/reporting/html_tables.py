@@ -232,7 +232,7 @@ def _decisions(content: ReportContent) -> str:
     rows = [
         f"<tr><td><bdi>{escape(decision.operation)}</bdi></td>"
         f'<td class=n title="{escape(decision.file)}">{decision.line or ""}</td>'
-        f"<td>{escape(word(decision.topic))}</td><td>{prose(decision.text)}</td></tr>"
+        f"<td>{escape(word(decision.topic))}</td><td>{prose(told(decision.said))}</td></tr>"
         for decision in content.decisions
     ]
     headings = ("operation", "#cl_line", "about", "decision")

@@ -45,6 +45,16 @@ def label(variant: str, /, **parameters: object) -> str:
     return told(Wording("report", variant, **parameters))
 
 
+def on_sheet(variant: str, /, **parameters: object) -> str:
+    """Return a text of the catalogue ``sheet``: of setup sheets."""
+    return told(Wording("sheet", variant, **parameters))
+
+
+def on_survey(variant: str, /, **parameters: object) -> str:
+    """Return a text of the catalogue ``survey``."""
+    return told(Wording("survey", variant, **parameters))
+
+
 def told(wording: Wording) -> str:
     """Return what a wording says."""
     return wording.text("what", page_words())

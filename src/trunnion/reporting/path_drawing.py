@@ -16,6 +16,7 @@ from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.html_text import escape
 from trunnion.reporting.known_tips import KnownTips
+from trunnion.reporting.page_words import label
 
 #: Size of the drawing and its margin, in units of which a page is some 700 wide.
 _WIDTH, _HEIGHT, _MARGIN = 720, 360, 50
@@ -72,8 +73,7 @@ def path_drawing(run: Run, bodies: Sequence[DrawnBody] = ()) -> str:
         parts.append(f'<path class="{kind}" d="{data}"/>')
     parts += _triad(placed(np.zeros((1, 2)))[0], view)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img"'
-    label = "Tool path in the workpiece: cuts as lines, rapids dashed, and the program zero"
-    return f'{head} aria-label="{label}">' + "".join(parts) + "</svg>"
+    return f'{head} aria-label="{escape(label("path_drawing"))}">' + "".join(parts) + "</svg>"
 
 
 def _view() -> Floats:

@@ -73,9 +73,7 @@
     item.append(label, details);
     byId("operations").append(item);
   });
-  const shown = data.operations.reduce((sum, operation) => sum + operation.points, 0);
-  const left = data.tolerance ? ` Points within ${data.tolerance.toPrecision(2)} mm of a line are left out.` : "";
-  status.textContent = `${shown} points.${left}`;
+  status.textContent = data.status;
 
   // ------------------------------------------------------------------------------------------------------------------
   // The camera: rows of `turn` are the directions right, up and towards the eye in coordinates of the part

@@ -10,15 +10,26 @@ from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from typing import Final
 
+from trunnion.messages import LIBRARY, Words
 from trunnion.reporting.html_plots import column_element, script_json
-from trunnion.reporting.html_text import page_head, source_hash
+from trunnion.reporting.html_text import escape, page_head, source_hash
+from trunnion.reporting.page_words import in_language, label
 from trunnion.reporting.path_series import PathSeries
 
 _ASSETS: Final = files("trunnion.reporting")
 
 
-def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) -> Iterator[bytes]:
-    """Yield the page, piece by piece.
+#: Texts of the page.
+_TEXTS: Final = (
+    "in_space", "from_top", "from_front", "from_right", "rapids_dashed", "loading", "of_first_operation", "how_to_turn",
+    "path_needs_javascript",
+)  # fmt: skip
+
+
+def render_path_page(
+    title: str, paths: Sequence[PathSeries], tolerance: float, words: Words = LIBRARY
+) -> Iterator[bytes]:
+    """Yield the page in the language of who asks, piece by piece.
 
     title      of the page
     tolerance  how far points that are left out lie off the lines, mm; 0 if none is
@@ -26,26 +37,30 @@ def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) 
     style, script = _asset("path_page.css"), _asset("unpack.js") + _asset("path_page.js")
     allowed = f"script-src {source_hash(script)}; style-src {source_hash(style)}"
     policy = f"default-src 'none'; {allowed}; base-uri 'none'; form-action 'none'"
+    with in_language(words):
+        head = page_head(title, style, policy)
+        said = {name: escape(label(name)) for name in _TEXTS}
+        status = _status(sum(len(path.points) for path in paths), tolerance)
     data = {
         "title": title,
-        "tolerance": tolerance,
+        "status": status,
         "operations": [{"name": path.name, "details": path.details, "points": len(path.points)} for path in paths],
     }
-    yield f"""{page_head(title, style, policy)}<body>
+    yield f"""{head}<body>
 <canvas id="space"></canvas>
 <canvas id="marks"></canvas>
 <aside>
 <h1 id="title"></h1>
-<div id="views"><button type=button data-view="space">in space</button>
-<button type=button data-view="top">from above</button>
-<button type=button data-view="front">from the front</button>
-<button type=button data-view="right">from the right</button></div>
-<label><input type=checkbox id="rapids" checked> <span id="rapid-line"></span> rapids, dashed</label>
+<div id="views"><button type=button data-view="space">{said["in_space"]}</button>
+<button type=button data-view="top">{said["from_top"]}</button>
+<button type=button data-view="front">{said["from_front"]}</button>
+<button type=button data-view="right">{said["from_right"]}</button></div>
+<label><input type=checkbox id="rapids" checked> <span id="rapid-line"></span> {said["rapids_dashed"]}</label>
 <ol id="operations"></ol>
-<p id="status">Loading …</p>
-<p>Coordinates of the first operation, mm.</p>
-<p class=hint>Drag turns, drag with Shift or the right button moves, the wheel zooms.</p>
-<noscript><p>The path needs JavaScript, which this browser has switched off.</p></noscript>
+<p id="status">{said["loading"]}</p>
+<p>{said["of_first_operation"]}</p>
+<p class=hint>{said["how_to_turn"]}</p>
+<noscript><p>{said["path_needs_javascript"]}</p></noscript>
 </aside>
 <script type="application/json" id="data">{script_json(data)}</script>
 """.encode()
@@ -54,6 +69,13 @@ def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) 
             yield column_element(f"{number}-{letter}", column)
         yield column_element(f"{number}-rapid", path.rapid)
     yield f"<script>{script}</script>\n</body>\n</html>\n".encode()
+
+
+def _status(points: int, tolerance: float) -> str:
+    """Return how much is shown."""
+    if not tolerance:
+        return label("points_shown", count=points)
+    return label("points_shown_within", count=points, tolerance=f"{tolerance:.2g}")
 
 
 def _asset(name: str) -> str:

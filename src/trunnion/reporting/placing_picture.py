@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.placing.placement import Placement
+from trunnion.reporting.page_words import label
 
 _WIDTH: Final = 980.0
 _HEIGHT: Final = 484.0
@@ -80,9 +81,9 @@ def _map(found: Placement) -> Iterator[str]:
     x, y, margins = map_margins(found)
     step = float(x[1] - x[0])
     top = max(float(margins.max()), best.margin_mm, 1e-9)
-    tilted = f"tilted {best.tilt_deg:g}°, " if best.tilt_deg else ""
-    title = f"margin at Z {best.zero_mm[2]:g}, {tilted}turned {best.turn_deg:g}°, mm"
-    yield f'<text x="{_LEFT:g}" y="24">{escape(found.machine)}: {title}</text>\n'
+    place = {"machine": found.machine, "z": best.zero_mm[2], "turn": best.turn_deg}
+    title = label("margin_tilted", tilt=best.tilt_deg, **place) if best.tilt_deg else label("margin_turned", **place)
+    yield f'<text x="{_LEFT:g}" y="24">{escape(title)}</text>\n'
     size = _SIDE / len(x)
     band = np.where(margins < 0.0, -1, np.minimum(len(_BANDS) * margins / top, len(_BANDS) - 1).astype(np.int64))
     for k, row in enumerate(band):
@@ -120,7 +121,7 @@ def _scales(x: Floats, y: Floats) -> Iterator[str]:
         py = _TOP + _SIDE - ((value - y[0]) / (y[1] - y[0]) + 0.5) * size
         yield f'<text class="note" x="{_LEFT - 6:g}" y="{py + 4:.1f}" text-anchor="end">{value:g}</text>\n'
     end = f'x="{_LEFT + _SIDE:g}" y="{_TOP + _SIDE + 30:g}" text-anchor="end"'
-    yield f'<text class="note" {end}>X of the zero, mm</text>\n'
+    yield f'<text class="note" {end}>{escape(label("x_of_zero"))}</text>\n'
     yield f'<text class="note" x="{_LEFT - 50:g}" y="{_TOP - 6:g}">Y, mm</text>\n'
 
 
@@ -134,11 +135,7 @@ def _legend(top: float, present: bool) -> Iterator[str]:
         yield f'<text class="note" x="{left + 19:g}" y="{below + height + 4:.1f}">{top * k / len(_BANDS):.3g}</text>\n'
     yield _field(left, _TOP + _SIDE - height, width, height, "url(#no)")
     yield f'<text class="note" x="{left + 19:g}" y="{_TOP + 4:g}">{top:.3g}</text>\n'
-    marks = (
-        "ring: best place"
-        + (", cross: X and Y of the present one" if present else "")
-        + "; hatched: the part does not fit"
-    )
+    marks = escape(label("place_marks_with_present" if present else "place_marks"))
     yield f'<text class="note" x="{_LEFT:g}" y="{_TOP + _SIDE + 48:g}">{marks}</text>\n'
 
 
@@ -149,7 +146,7 @@ def _turns(found: Placement) -> Iterator[str]:
     tried = [turn for turn in found.turns if turn.tilt_deg == tilt]
     turns = [turn for turn in tried if turn.margin_mm is not None]
     margins = np.array([turn.margin_mm for turn in turns], np.float64)
-    yield f'<text x="{left:g}" y="24">best margin over the turn, mm</text>\n'
+    yield f'<text x="{left:g}" y="24">{escape(label("best_margin_over_turn"))}</text>\n'
     yield f'<path class="frame" d="M{left:g} {top:g}V{low:g}H{right:g}"/>\n'
     if not len(margins):
         return
@@ -182,7 +179,8 @@ def _turns(found: Placement) -> Iterator[str]:
     for value in _ticks(begin, end):
         px = at(value, 0.0).split()[0]
         yield f'<text class="note" x="{px}" y="{low + 15:g}" text-anchor="middle">{value:g}</text>\n'
-    yield f'<text class="note" x="{right:g}" y="{low + 30:g}" text-anchor="end">turn about Z, degrees</text>\n'
+    text = escape(label("turn_about_z"))
+    yield f'<text class="note" x="{right:g}" y="{low + 30:g}" text-anchor="end">{text}</text>\n'
 
 
 def _field(x: float, y: float, width: float, height: float, fill: str) -> str:

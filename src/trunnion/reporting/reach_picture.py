@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from html import escape
 from typing import Final
 
+from trunnion.reporting.page_words import label
+
 _WIDTH: Final = 1040.0
 _HEIGHT: Final = 480.0
 _CENTRE: Final = (240.0, 246.0)
@@ -92,8 +94,8 @@ def _sphere(content: ReachPicture) -> Iterator[str]:
             yield f'<circle class="path" cx="{x:g}" cy="{y:g}" r="{_ring(least):.2f}"/>\n'
     yield f'<text class="note" x="{x + _RADIUS + 4:g}" y="{y + 4:g}">+X</text>\n'
     yield f'<text class="note" x="{x - 8:g}" y="{y - _RADIUS - 5:g}">+Y</text>\n'
-    notes = ["tool axes by tilt from Z (rings) and azimuth: dark two rotary positions, light one, grey none"]
-    notes += ["red: least and greatest tilt of each CL file"] if content.paths else []
+    notes = [escape(label("reach_sphere"))]
+    notes += [escape(label("reach_paths"))] if content.paths else []
     for k, note in enumerate(notes):
         yield f'<text class="note" x="28" y="{_HEIGHT - 24 + 14 * k:g}">{note}</text>\n'
 
@@ -140,7 +142,7 @@ def _graph(content: ReachPicture) -> Iterator[str]:
     left, right, top, bottom = _GRAPH
     drawn = [each for each in content.tilts if each.some is not None and each.every is not None]
     if not drawn:
-        yield f'<text class="note" x="{left:g}" y="{top:g}">no volumes: the definition states no slide limits</text>\n'
+        yield f'<text class="note" x="{left:g}" y="{top:g}">{escape(label("reach_no_volumes"))}</text>\n'
         return
     most = max(each.some[2] for each in drawn if each.some is not None) or 1.0
     top_value = _round_up(most / _LITRE)
@@ -167,12 +169,12 @@ def _graph(content: ReachPicture) -> Iterator[str]:
             yield f'<path class="band-{kind}" d="M{"L".join(upper + lower)}Z"/>\n'
             yield f'<path class="line {kind}" d="M{"L".join(place(tilt, volume[1]) for tilt, volume in known)}"/>\n'
         yield f'<path class="line pose" d="M{"L".join(place(each.tilt, each.one_pose) for each in stretch)}"/>\n'
-    legend = (("some", "some azimuth"), ("every", "every azimuth"), ("pose", "one rotary position"))
+    legend = (("some", "reach_some"), ("every", "reach_every"), ("pose", "reach_pose"))
     for k, (kind, name) in enumerate(legend):
         x = left + 150.0 * k
         yield f'<path class="line {kind}" d="M{x:g} {top - 22:g}h22"/>\n'
-        yield f'<text class="note" x="{x + 28:g}" y="{top - 18:g}">{name}</text>\n'
-    note = "volume of the tips over the tilt of the tool axis; bands: between the bounds"
+        yield f'<text class="note" x="{x + 28:g}" y="{top - 18:g}">{escape(label(name))}</text>\n'
+    note = escape(label("reach_volumes"))
     yield f'<text class="note" x="{left:g}" y="{_HEIGHT - 24:g}">{note}</text>\n'
 
 

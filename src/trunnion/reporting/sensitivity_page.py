@@ -7,8 +7,10 @@ Out:    UTF-8 HTML that needs nothing else, with all text from outside escaped.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from trunnion.messages import LIBRARY, Words
 from trunnion.reporting.html_page import plot_page
-from trunnion.reporting.html_text import escape, format_number, note_lines
+from trunnion.reporting.html_text import escape, format_number, note_lines, said_table
+from trunnion.reporting.page_words import in_language, label
 from trunnion.reporting.plot_series import PlotSeries
 
 
@@ -47,9 +49,11 @@ class SensitivityContent:
     notes: Sequence[str]
 
 
-def render_sensitivity_page(content: SensitivityContent, series: PlotSeries) -> Iterator[bytes]:
-    """Yield the page, piece by piece."""
-    yield from plot_page(f"{content.program}: calibration sensitivity", _body(content), [series])
+def render_sensitivity_page(content: SensitivityContent, series: PlotSeries, words: Words = LIBRARY) -> Iterator[bytes]:
+    """Yield the page in the language of who asks, piece by piece."""
+    with in_language(words):
+        title, body = label("sensitivity_title", program=content.program), _body(content)
+    yield from plot_page(title, body, [series], words)
 
 
 def _body(content: SensitivityContent) -> str:
@@ -60,11 +64,11 @@ def _body(content: SensitivityContent) -> str:
     return f"""<body>
 <main>
 <header>
-<h1><bdi>{escape(content.program)}</bdi>: what the numbers of the machine do to it</h1>
+<h1>{escape(label("sensitivity_of", program=content.program))}</h1>
 <dl>{facts}</dl>
 </header>
 <section>
-<h2>Tip error by number, the worst first</h2>
+<h2>{escape(label("tip_errors"))}</h2>
 {_table(content.numbers)}
 {notes}</section>
 """
@@ -72,14 +76,10 @@ def _body(content: SensitivityContent) -> str:
 
 def _table(numbers: Sequence[NumberRow]) -> str:
     zeroed = any(each.zeroed is not None for each in numbers)
-    heads = ["Number", "#Off by"]
-    heads += ["#With the zero set mm", "at", "#rms mm"] if zeroed else []
-    heads += ["#As it is mm", "at", "#rms mm", "#Tool axis °"]
-    head = "".join(
-        f"<th scope=col class=n>{each[1:]}</th>" if each[0] == "#" else f"<th scope=col>{each}</th>" for each in heads
-    )
-    rows = "".join(_row(each) for each in numbers)
-    return f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>'
+    heads = ["number_of_machine", "#off_by"]
+    heads += ["#with_zero_set", "at", "#rms"] if zeroed else []
+    heads += ["#as_it_is", "at", "#rms", "#axis_error"]
+    return said_table(heads, map(_row, numbers))
 
 
 def _row(each: NumberRow) -> str:
@@ -92,7 +92,7 @@ def _row(each: NumberRow) -> str:
     axis = format_number(each.axis_deg) if each.axis_deg else ""
     return (
         f"<tr><th scope=row><bdi>{escape(each.name)}</bdi></th><td class=n>{escape(each.amount)}</td>{cells}"
-        f"<td class=n>{axis}</td></tr>\n"
+        f"<td class=n>{axis}</td></tr>"
     )
 
 

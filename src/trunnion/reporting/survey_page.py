@@ -8,7 +8,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 
-from trunnion.reporting.html_text import capitalised, escape, page_head, source_hash
+from trunnion.reporting.html_text import escape, page_head, source_hash
+from trunnion.reporting.page_words import on_survey
 from trunnion.reporting.text import clean
 
 
@@ -76,32 +77,35 @@ def render_survey_page(content: SurveyContent) -> bytes:
     style = "\n" + files("trunnion.reporting").joinpath("page.css").read_text(encoding="utf-8")
     policy = f"default-src 'none'; style-src {source_hash(style)}; base-uri 'none'; form-action 'none'"
     facts = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in content.facts)
-    machines = ", ".join(f"<bdi>{_text(name)}</bdi> ({_text(control)})" for name, control in content.machines)
-    others = f"; programs were read for {', '.join(map(_text, content.others))} as well" if content.others else ""
+    title = on_survey("survey_of", folder=clean(content.folder))
+    listed = on_survey(
+        "machines", machines=tuple(f"{clean(name)} ({clean(control)})" for name, control in content.machines)
+    )
+    if content.others:
+        others = tuple(map(clean, content.others))
+        listed = on_survey("machines_and_others", machines=listed, others=others)
     parts = (_rates(content.rates), _blockers(content.blockers), _files(content.files))
     body = f"""<body>
 <main>
 <header>
-<h1>Survey of <bdi>{_text(content.folder)}</bdi></h1>
+<h1>{escape(title)}</h1>
 <dl>{facts}</dl>
-<p class="note">Each CL file was posted for each of these machines, and its program proven against it; each NC program
-was read and run by itself, without a CL file, for the machines of the control that it looks like, and the one that
-reads it best counts. A program that was read is not proven. Machines: {machines}{others}.</p>
+<p class="note">{escape(on_survey("how"))} {escape(listed)}</p>
 </header>
 {"".join(parts)}</main>
 </body>
 </html>
 """
-    return (page_head(f"Survey of {clean(content.folder)}", style, policy) + body).encode()
+    return (page_head(title, style, policy) + body).encode()
 
 
 def _rates(rates: Sequence[RateRow]) -> str:
     rows = (
-        (_cell(each.kind), _cell(each.looks or "of no certain control"), _cell(each.control),
-         _number(f"{each.passed} of {each.files}"), _cell(each.became))
+        (_cell(each.kind), _cell(each.looks or on_survey("no_control")), _cell(each.control),
+         _number(on_survey("of", passed=each.passed, count=each.files)), _cell(each.became))
         for each in rates
     )  # fmt: skip
-    return _section("By dialect and control", ("What", "Looks like", "Control", "#Went through", "Became"), rows)
+    return _section("by_dialect", ("what", "looks_like", "control", "#went_through", "became"), rows)
 
 
 def _blockers(blockers: Sequence[BlockerRow]) -> str:
@@ -110,9 +114,8 @@ def _blockers(blockers: Sequence[BlockerRow]) -> str:
          _cell(each.cure))
         for each in blockers
     )  # fmt: skip
-    heads = ("Code", "#Files", "#No other error", "First place", "What", "Cure")
-    note = "Files without another error may have further faults behind it."
-    return _section("Blocked by", heads, rows, note) if blockers else ""
+    heads = ("code", "#files", "#no_other_error", "first_place", "fault", "cure")
+    return _section("blocked_by", heads, rows, on_survey("further_faults")) if blockers else ""
 
 
 def _files(found: Sequence[FileRow]) -> str:
@@ -122,9 +125,9 @@ def _files(found: Sequence[FileRow]) -> str:
         f"<td>{'<br>'.join(map(_text, each.reasons))}</td></tr>\n"
         for each in found
     )
-    head = _head(("File", "What", "Looks like", "Became", "#Machines", "Why"))
+    head = _head(("file", "what", "looks_like", "became", "#on_machines", "why"))
     table = f'<div class="wide"><table>\n{head}<tbody>\n{rows}</tbody>\n</table></div>'
-    return f"<section>\n<h2>Files</h2>\n{table}\n</section>\n"
+    return f"<section>\n<h2>{escape(on_survey('files'))}</h2>\n{table}\n</section>\n"
 
 
 def _colour(each: FileRow) -> str:
@@ -138,14 +141,15 @@ def _section(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], no
     lines = "".join(f"<tr>{''.join(cells)}</tr>\n" for cells in rows)
     said = f'<p class="note">{escape(note)}</p>\n' if note else ""
     return (
-        f'<section>\n<h2>{capitalised(title)}</h2>\n<div class="wide"><table>\n{_head(heads)}'
+        f'<section>\n<h2>{escape(on_survey(title))}</h2>\n<div class="wide"><table>\n{_head(heads)}'
         f"<tbody>\n{lines}</tbody>\n</table></div>\n{said}</section>\n"
     )
 
 
 def _head(heads: Sequence[str]) -> str:
     cells = "".join(
-        f"<th scope=col class=n>{each[1:]}</th>" if each[0] == "#" else f"<th scope=col>{each}</th>" for each in heads
+        f"<th scope=col{' class=n' if each[0] == '#' else ''}>{escape(on_survey(each.lstrip('#')))}</th>"
+        for each in heads
     )
     return f"<thead><tr>{cells}</tr></thead>\n"
 

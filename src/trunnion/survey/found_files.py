@@ -16,10 +16,14 @@ from trunnion.cl import is_cl_file
 from trunnion.cl.dialects import recognize_dialect
 from trunnion.cl.sources import cl_sources
 from trunnion.errors import InputError
+from trunnion.messages import Wording, foreign, word_said
 from trunnion.readers.program.kinds import recognize
 
 #: Larger files are not tried, bytes: a program of so many has some five million blocks.
 MOST_BYTES: Final = 200_000_000
+
+#: What a file looks like that says too little.
+UNKNOWN: Final = foreign("")
 
 #: So much of a file is looked at, bytes.
 _HEAD: Final = 1 << 16
@@ -39,7 +43,7 @@ class FoundFile:
 
     name       from the folder on, with ``/``
     kind       what it is
-    looks      dialect of a CL file; what another one looks like, or why it is not tried; empty: it says too little
+    looks_said dialect of a CL file; what another one looks like, or why it is not tried; empty: it says too little
     languages  folders of the readers that read a program; None: its content does not tell
     is_tried   whether anything is to be tried
     caller     the file beside it that calls it: a subprogram is read through that one
@@ -48,10 +52,15 @@ class FoundFile:
     name: str
     path: Path
     kind: FileKind
-    looks: str = ""
+    looks_said: Wording = UNKNOWN
     languages: tuple[str, ...] | None = None
     is_tried: bool = True
     caller: str = ""
+
+    @property
+    def looks(self) -> str:
+        """What it looks like, in English."""
+        return str(self.looks_said)
 
 
 def found_files(folder: Path) -> Iterator[FoundFile]:
@@ -92,43 +101,43 @@ def _found(name: str, path: Path) -> FoundFile:
         try:
             return FoundFile(name, path, FileKind.CL, _dialect(path))
         except InputError as error:
-            return _other(name, path, f"an archive: {error.problems[0].what}")
+            return _other(name, path, Wording("survey", "archive", what=error.problems[0].wording))
     if not head.strip():
-        return _other(name, path, "an empty file")
+        return _other(name, path, Wording("survey", "empty_file"))
     if b"\0" in head:
-        return _other(name, path, "a binary file")
+        return _other(name, path, Wording("survey", "binary_file"))
     found = recognize(path)
     if found is None:
         return FoundFile(name, path, FileKind.PROGRAM)
     if not found.kind.languages:
-        return _other(name, path, found.kind.name.what)
-    return FoundFile(name, path, FileKind.PROGRAM, found.kind.name.what, found.kind.readers)
+        return _other(name, path, found.kind.name)
+    return FoundFile(name, path, FileKind.PROGRAM, found.kind.name, found.kind.readers)
 
 
-def _other(name: str, path: Path, looks: str) -> FoundFile:
+def _other(name: str, path: Path, looks: Wording) -> FoundFile:
     return FoundFile(name, path, FileKind.OTHER, looks, ())
 
 
-def _untouchable(path: Path) -> str:
-    """Return why a file is not opened; empty if it is."""
+def _untouchable(path: Path) -> Wording | None:
+    """Return why a file is not opened; None if it is."""
     try:
         found = path.lstat()
     except OSError as error:
         return _unreadable(error)
     if stat.S_ISLNK(found.st_mode):
-        return "a link"
+        return Wording("survey", "link")
     if not stat.S_ISREG(found.st_mode):
-        return "a device or a pipe"
-    return f"larger than {MOST_BYTES / 1e6:.0f} MB" if found.st_size > MOST_BYTES else ""
+        return Wording("survey", "device")
+    return Wording("survey", "too_large", most=MOST_BYTES / 1e6) if found.st_size > MOST_BYTES else None
 
 
-def _dialect(path: Path) -> str:
+def _dialect(path: Path) -> Wording:
     """Return the dialect of a CL file, by the first file of an archive.
 
     Raises ``InputError`` for an archive that has none, or cannot be unpacked.
     """
     with cl_sources(path)[0].open() as text:
-        return recognize_dialect(text.read(_HEAD)).dialect.title
+        return word_said(recognize_dialect(text.read(_HEAD)).dialect.title)
 
 
 def _name(path: Path, folder: Path) -> str:
@@ -136,5 +145,5 @@ def _name(path: Path, folder: Path) -> str:
     return path.relative_to(folder).as_posix().encode("utf-8", "replace").decode()
 
 
-def _unreadable(error: OSError) -> str:
-    return f"cannot be read: {error.strerror}"
+def _unreadable(error: OSError) -> Wording:
+    return Wording("survey", "unreadable", strerror=str(error.strerror))

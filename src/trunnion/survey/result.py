@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Final
 
 from trunnion.batch.worker_task import Outcome, Status
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.results import Figure, OptionalText
 from trunnion.survey.found_files import FileKind, FoundFile
 from trunnion.survey.trying import KEYS, SETTINGS, STEP, Step
@@ -88,6 +89,11 @@ _OTHER_CONTROL: Final = "NC113"
 _ORDER: Final = {each: rank for rank, each in enumerate(Became)}
 
 
+def _text_or_none(said: Wording) -> str | None:
+    """Return a text as data; null where nothing is said."""
+    return str(said) or None
+
+
 @dataclass(frozen=True, slots=True)
 class SurveyedMachine:
     """A machine of the survey.
@@ -132,16 +138,21 @@ class SurveyedFile:
 
     file    its name from the folder on
     kind    ``CL file``, ``program`` or ``other``
-    looks   dialect of a CL file; what another one looks like, or why it was not tried; null: it says too little
+    looks_said  dialect of a CL file; what another one looks like, or why it was not tried; null: it says too little
     became  on the machine where the least became of it
     tries   a CL file on each machine; a program on the machine that reads it best
     """
 
     file: str
     kind: FileKind
-    looks: OptionalText
+    looks_said: Annotated[Wording, Figure("looks", take=_text_or_none)]
     became: Became
     tries: tuple[Trying, ...] = ()
+
+    @property
+    def looks(self) -> str:
+        """What it looks like, in English."""
+        return str(self.looks_said)
 
     @property
     def passes(self) -> int:
@@ -159,11 +170,16 @@ class Rate:
     """
 
     kind: FileKind
-    looks: OptionalText
+    looks_said: Annotated[Wording, Figure("looks", take=_text_or_none)]
     control: str
     files: int
     passed: int
     became: Mapping[str, int]
+
+    @property
+    def looks(self) -> str:
+        """What these files look like, in English."""
+        return str(self.looks_said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,9 +197,14 @@ class Blocker:
     first: Problem
 
     @property
+    def cure_said(self) -> Wording | None:
+        """Where it is said how to correct the first one, if that does not say it itself."""
+        return None if self.first.cure else Wording("survey", "explained", code=self.code)
+
+    @property
     def cure(self) -> str:
         """How to correct the first one, or where that is said."""
-        return self.first.cure or f"trunnion explain {self.code} says more"
+        return self.first.cure or str(self.cure_said)
 
 
 @dataclass(frozen=True)
@@ -220,13 +241,13 @@ class Survey:
     @Figure(after="counts")
     def rates(self) -> tuple[Rate, ...]:
         """How files fare, by dialect or likeness, and control."""
-        groups: dict[tuple[FileKind, str, str], list[Became]] = {}
+        groups: dict[tuple[FileKind, Wording, str], list[Became]] = {}
         for file in self.files:
             for each in file.tries:
-                groups.setdefault((file.kind, file.looks, each.control), []).append(each.became)
+                groups.setdefault((file.kind, file.looks_said, each.control), []).append(each.became)
         return tuple(
             Rate(*key, len(found), sum(each.passed for each in found), {str(k): n for k, n in _counts(found).items()})
-            for key, found in sorted(groups.items())
+            for key, found in sorted(groups.items(), key=lambda group: tuple(map(str, group[0])))
         )
 
     @property
@@ -314,18 +335,18 @@ _BECAME: Final[Mapping[Status, Callable[[FileKind, Outcome], Became]]] = {
 def surveyed(file: FoundFile, tries: Sequence[Trying]) -> SurveyedFile:
     """Return what became of a file: of a CL file each try counts, of a program the best."""
     if file.caller:
-        return SurveyedFile(file.name, file.kind, f"a subprogram of {file.caller}", Became.CALLED)
+        return SurveyedFile(file.name, file.kind, Wording("survey", "subprogram", caller=file.caller), Became.CALLED)
     if not tries:
         is_other = file.is_tried and file.kind is FileKind.OTHER
         became = Became.NOT_OURS if is_other else Became.NOT_TRIED
-        return SurveyedFile(file.name, file.kind, file.looks, became)
+        return SurveyedFile(file.name, file.kind, file.looks_said, became)
     counted = tuple(tries) if file.kind is FileKind.CL else (min(tries, key=worth),)
     if not file.looks and _OTHER_CONTROL in counted[0].codes:
-        return SurveyedFile(file.name, FileKind.OTHER, "understood by no reader", Became.NOT_OURS)
+        return SurveyedFile(file.name, FileKind.OTHER, Wording("survey", "not_understood"), Became.NOT_OURS)
     if file.kind is FileKind.CL and all(map(_is_of_turning, counted)):
-        return SurveyedFile(file.name, FileKind.OTHER, "CL data of turning", Became.NOT_OURS)
+        return SurveyedFile(file.name, FileKind.OTHER, Wording("survey", "turning"), Became.NOT_OURS)
     return SurveyedFile(
-        file.name, file.kind, file.looks, max((t.became for t in counted), key=_ORDER.__getitem__), counted
+        file.name, file.kind, file.looks_said, max((t.became for t in counted), key=_ORDER.__getitem__), counted
     )
 
 

@@ -15,7 +15,7 @@ from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
 from trunnion.cl.statements import apt_motion, apt_refused, events, motion
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.frames import frame_from_vectors, relative_frame
 from trunnion.model.toolpath import Frame
 
@@ -174,7 +174,7 @@ def _ppfun(state: ReaderState, statement: Statement) -> None:
     """Read PPFUN/15,number,OFF, which switches a message of ICAM's post-processor off; others may be anything."""
     if len(statement.values) == 3 and statement.values[0] == 15 and statement.values[2] in ("ON", "OFF"):
         return
-    state.note_unknown(statement, "PPFUN is not known")
+    state.note_unknown(statement, phrase("not_known", statement="PPFUN"))
 
 
 def _mode(state: ReaderState, statement: Statement) -> None:

@@ -5,7 +5,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements import events, motion
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -19,7 +19,7 @@ def tlaxis(state: ReaderState, statement: Statement) -> None:
 def multax(state: ReaderState, statement: Statement) -> None:
     """Say whether points have tool axes. After OFF, a dialect may keep the last one or go back to (0, 0, 1)."""
     if statement.values not in ((), ("ON",), ("OFF",)):
-        state.note_unknown(statement, f"MULTAX/{statement.listed()} is not known", *statement.words())
+        state.note_unknown(statement, phrase("not_known", statement=f"MULTAX/{statement.listed()}"), *statement.words())
         return
     off = statement.values == ("OFF",)
     state.vectors = state.dialect.vectors or not off

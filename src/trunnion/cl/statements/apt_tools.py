@@ -7,7 +7,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.cl.statements import events
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.apt_cutter import stated_centre
 from trunnion.model.toolpath import SelectTool, Tool
 
@@ -141,7 +141,7 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
         state.builder.tool = replace(state.builder.tool, set_length=length)
         state.own(_Stated).length = state.row
     if unknown:
-        state.note_unknown(statement, f"LOADTL with {','.join(unknown)} is not known", *unknown)
+        state.note_unknown(statement, phrase("not_known_with", statement="LOADTL", words=",".join(unknown)), *unknown)
 
 
 def load(state: ReaderState, statement: Statement) -> None:

@@ -9,7 +9,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import FEED_UNITS, ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements.motion import refuse_in_circle
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import CycleOff, CycleOn
 
 #: Words that need a number, and take no more than one; STEP takes up to three.
@@ -207,7 +207,7 @@ def _couplet(state: ReaderState, statement: Statement, found: CycleParts, word: 
         found.couplets.append((meant, _one_number(word, given, _STEP_NUMBERS if meant == "STEP" else 1)))
         return
     if given or word != "OPTION":
-        state.note_unknown(statement, f"CYCLE with {word} is not known", word)
+        state.note_unknown(statement, phrase("not_known_with", statement="CYCLE", words=word), word)
     if given:
         found.couplets.append((word, given))
     else:

@@ -11,7 +11,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import FEED_UNITS, FILE_UNIT_FEEDS, MM_PER_FOOT, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.cl.statements.cutcom_points import CutcomPoints
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -90,13 +90,13 @@ def spindl(state: ReaderState, statement: Statement) -> None:
     if "OFF" in words:
         if statement.values != ("OFF",):
             rest = [word for word in statement.words() if word != "OFF"]
-            state.note_unknown(statement, f"SPINDL/{statement.listed()} is not known", *rest)
+            state.note_unknown(statement, phrase("not_known", statement=f"SPINDL/{statement.listed()}"), *rest)
         state.add(SpindleOff(state.operation_row, state.line))
         return
     if unknown := sorted(words - _SPINDLE_WORDS):
-        state.note_unknown(statement, f"SPINDL with {','.join(unknown)} is not known", *unknown)
+        state.note_unknown(statement, phrase("not_known_with", statement="SPINDL", words=",".join(unknown)), *unknown)
     if ranges := sorted(words & _GEAR_RANGES):
-        state.note_unknown(statement, f"a gear range has no words here: SPINDL with {','.join(ranges)}", *ranges)
+        state.note_unknown(statement, phrase("no_words_for_range", words=",".join(ranges)), *ranges)
     speed, diameter = _speed_and_diameter(statement)
     if unknown and speed is None and not words & _SPINDLE_WORDS:
         return
@@ -155,7 +155,7 @@ def load(state: ReaderState, statement: Statement) -> None:
     """Load or select a tool."""
     values = statement.values
     if values[:1] != ("TOOL",):
-        state.note_unknown(statement, f"{statement.major} without TOOL is not known", *statement.words())
+        state.note_unknown(statement, phrase("not_known_without_tool", statement=statement.major), *statement.words())
         return
     number = whole_number(statement.major, values[1:2])
     adjust = 0
@@ -165,7 +165,9 @@ def load(state: ReaderState, statement: Statement) -> None:
         values = values[:index] + values[index + 2 :]
     if rest := [value if isinstance(value, str) else f"{value:g}" for value in values[2:]]:
         words = [value for value in values[2:] if isinstance(value, str)]
-        state.note_unknown(statement, f"{statement.major}/TOOL with {','.join(rest)} is not known", *words)
+        state.note_unknown(
+            statement, phrase("not_known_with", statement=f"{statement.major}/TOOL", words=",".join(rest)), *words
+        )
     if statement.major == "SELECT":
         state.add(SelectTool(state.operation_row, state.line, number))
     else:
@@ -185,7 +187,7 @@ def coolnt(state: ReaderState, statement: Statement) -> None:
     known = isinstance(kind, str) and kind in _COOLANTS
     if rest or not known:
         words = [word for word in (rest if known else statement.values) if isinstance(word, str)]
-        state.note_unknown(statement, f"COOLNT/{statement.listed()} is not a known coolant", *words)
+        state.note_unknown(statement, phrase("no_known_coolant", statement=f"COOLNT/{statement.listed()}"), *words)
     if known:
         state.add(Coolant(state.operation_row, state.line, str(kind)))
 
@@ -201,7 +203,7 @@ def cutcom(state: ReaderState, statement: Statement) -> None:
     if contact := side in (["LEFT"], ["RIGHT"]) and _CONTACT in words:
         words.remove(_CONTACT)
     if len(side) != 1 or len(plane) > 1 or len(words) != len(side) + len(plane) or len(register) > 1:
-        state.note_unknown(statement, f"CUTCOM/{statement.listed()} is not known", *words)
+        state.note_unknown(statement, phrase("not_known", statement=f"CUTCOM/{statement.listed()}"), *words)
         return
     number = whole_number("CUTCOM", register) if register else 0
     if side == ["ON"]:  # as it was last
@@ -226,7 +228,7 @@ def delay(state: ReaderState, statement: Statement) -> None:
     """Dwell for a time or a number of revolutions."""
     words = statement.words()
     if words not in ([], ["REV"]):
-        state.note_unknown(statement, f"DELAY/{statement.listed()} is not known", *words)
+        state.note_unknown(statement, phrase("not_known", statement=f"DELAY/{statement.listed()}"), *words)
         return
     (amount,) = numbers("DELAY", statement.plain_numbers(), 1)
     if amount < 0:
@@ -260,7 +262,7 @@ def insert(state: ReaderState, statement: Statement) -> None:
 def opskip(state: ReaderState, statement: Statement) -> None:
     """Switch block skip."""
     if statement.values not in (("ON",), ("OFF",)):
-        state.note_unknown(statement, f"OPSKIP/{statement.listed()} is not known", *statement.words())
+        state.note_unknown(statement, phrase("not_known", statement=f"OPSKIP/{statement.listed()}"), *statement.words())
         return
     state.add(BlockSkip(state.operation_row, state.line, statement.values == ("ON",)))
 
@@ -275,4 +277,4 @@ def set_mode(state: ReaderState, statement: Statement) -> None:
     if words in _FULFILLED_MODES and not statement.plain_numbers():
         state.add(SetMode(state.operation_row, state.line, words))
     else:
-        state.note_unknown(statement, f"{statement.source.strip()} is not followed", *words[1:])
+        state.note_unknown(statement, phrase("not_followed", statement=statement.source.strip()), *words[1:])

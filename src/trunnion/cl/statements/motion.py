@@ -7,7 +7,7 @@ from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis, SplineSt
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole, numbers
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import GoHome
 
 #: Points no farther from each other, in units of the file, are the same: they are printed with three decimals or more.
@@ -33,7 +33,7 @@ class SplineState:
 def rapid(state: ReaderState, statement: Statement) -> None:
     """Make the next row a rapid."""
     if statement.values:
-        state.note_unknown(statement, f"RAPID/{statement.listed()} is not known", *statement.words())
+        state.note_unknown(statement, phrase("not_known", statement=f"RAPID/{statement.listed()}"), *statement.words())
     state.builder.rapids.append(state.operation_row)
 
 
@@ -60,7 +60,7 @@ def gohome(state: ReaderState, statement: Statement) -> None:
         state.add(GoHome(state.operation_row, state.line))
         return
     if not state.has_row:
-        state.note_unknown(statement, f"GOHOME/{statement.listed()} is not known", *statement.words())
+        state.note_unknown(statement, phrase("not_known", statement=f"GOHOME/{statement.listed()}"), *statement.words())
         return
     state.builder.rapids.append(state.operation_row)
     write_row(state, statement.numbers(3, 6))

@@ -215,7 +215,7 @@ def work_system(state: ReaderState, statement: Statement) -> None:
 def canned_text(state: ReaderState, statement: Statement) -> None:
     """Note a text of the post, which may switch something."""
     if any(values_of(state, statement, 10)):
-        state.note_unknown(statement, f"{statement.major} calls a text of Mastercam's post")
+        state.note_unknown(statement, phrase("calls_text_of_post", record=statement.major))
 
 
 def cycle(state: ReaderState, statement: Statement) -> None:

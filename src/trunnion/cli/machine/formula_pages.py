@@ -4,8 +4,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
+from trunnion.cli.columns import columns_of, padded
 from trunnion.formulas.notation import name_as_latex
 from trunnion.formulas.steps import Formula
+from trunnion.messages import ENGLISH
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,13 @@ Block: TypeAlias = Heading | Paragraph | Equations | Matrix | TableOf
 
 _IN_TEXT: Final = "  "
 
+#: What a document begins with in each language.
+_PREAMBLES: Final = {
+    "en": (r"\documentclass{article}", r"\usepackage[T1]{fontenc}"),
+    "de": (r"\documentclass{article}", r"\usepackage[T1]{fontenc}", r"\usepackage[ngerman]{babel}"),
+    "zh": (r"\documentclass{ctexart}",),
+}
+
 _LATEX_HEADS: Final = (r"\section*", r"\subsection*", r"\subsubsection*")
 
 _LATEX_CHARACTERS: Final = str.maketrans({
@@ -63,19 +72,15 @@ _LATEX_CHARACTERS: Final = str.maketrans({
 _MARKDOWN_CHARACTERS: Final = str.maketrans({each: f"\\{each}" for each in "\\`*_{}[]<>|#$"})
 
 
-def page_lines(blocks: Iterable[Block], notation: str) -> Iterator[str]:
+def page_lines(blocks: Iterable[Block], notation: str, language: str = ENGLISH) -> Iterator[str]:
     """Yield the lines of a page.
 
     notation  ``text``, ``markdown`` (formulas between $$) or ``latex`` (a whole document)
+    language  of its words, which LaTeX sets by: Chinese wants XeLaTeX or LuaLaTeX
     """
     write = _WRITERS[notation]
     if notation == "latex":
-        yield from (
-            r"\documentclass{article}",
-            r"\usepackage[T1]{fontenc}",
-            r"\usepackage{amsmath,textcomp}",
-            r"\begin{document}",
-        )
+        yield from (*_PREAMBLES[language], r"\usepackage{amsmath,textcomp}", r"\begin{document}")
     for k, block in enumerate(blocks):
         if k and notation != "latex":
             yield ""
@@ -88,7 +93,7 @@ def _as_text(block: Block) -> Iterator[str]:
     match block:
         case Heading(level, text):
             yield text
-            yield from [("=" if level == 1 else "-") * len(text)] if level < 3 else []
+            yield from [("=" if level == 1 else "-") * columns_of(text)] if level < 3 else []
         case Paragraph(lines):
             yield from lines
         case Equations(formulas):
@@ -102,9 +107,9 @@ def _as_text(block: Block) -> Iterator[str]:
 
 
 def _columns(rows: Sequence[Sequence[str]]) -> Iterator[str]:
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    widths = [max(map(columns_of, column)) for column in zip(*rows, strict=True)]
     for row in rows:
-        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
+        cells = (padded(cell, width) for cell, width in zip(row, widths, strict=True))
         yield (_IN_TEXT + "  ".join(cells)).rstrip()
 
 

@@ -8,7 +8,7 @@ from trunnion.cli.machine.place_text import placement_lines
 from trunnion.cli.printing import print_result, tell
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal, output_place
-from trunnion.cli.wording import line, part
+from trunnion.cli.wording import line, part, spoken
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import ToolpathLike, load_machine
 from trunnion.jobs.inputs.settings import as_texts
@@ -72,7 +72,7 @@ def run(given: Given) -> int:
     if given.plot is not None:
         from trunnion.jobs.place.plot import write_placing_plot
 
-        write_placing_plot(found, given.plot, inputs=given.read)
+        write_placing_plot(found, given.plot, inputs=given.read, words=spoken())
     if given.apply is not None and found.fits:
         settings = settings if length is None else {**settings, "tool_length": length}
         output = output_place(given.apply)

@@ -11,7 +11,7 @@ from trunnion.capability.reach import Reach, TiltReach
 from trunnion.cli.columns import padded
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.cli.wording import line, part, together
+from trunnion.cli.wording import line, part, spoken, together
 from trunnion.jobs.capability.reach_report import write_reach_plot
 from trunnion.jobs.capability.reaching import reach
 from trunnion.jobs.job import Given
@@ -36,7 +36,7 @@ def run(given: Given) -> int:
     found = reach(**given.arguments(), observer=terminal)
     terminal.problems(found.remarks)
     if given.plot is not None:
-        write_reach_plot(found, given.plot, given.read)
+        write_reach_plot(found, given.plot, given.read, spoken())
     show(given, lambda: found, reach_lines(found))
     missed = any(each.no_axis or each.no_travel for each in found.paths)
     return 1 if missed or (found.part is not None and len(found.part.missed)) else 0

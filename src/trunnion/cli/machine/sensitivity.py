@@ -43,13 +43,13 @@ def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     titles = tuple(line(f"column_{head}") for head in heads)
     yield from table([titles, *(_cells(each, found) for each in found.numbers)], width_of(sys.stdout), numbers)
     if found.idle:
-        yield line("without_effect", names=tuple(number.name for number in found.idle))
+        yield line("without_effect", names=tuple(number.said for number in found.idle))
 
 
 def _cells(each: NumberSensitivity, found: Sensitivity) -> tuple[str, ...]:
     extents = (_extent(part, found) for part in (each.zeroed, each.tip) if part is not None)
     axis = f"{each.axis_deg:.6f}" if each.axis_deg else "-"
-    return (each.number.name, amount_text(each), *chain.from_iterable(extents), axis)
+    return (in_words(each.number.said), amount_text(each), *chain.from_iterable(extents), axis)
 
 
 def _extent(extent: ErrorExtent, found: Sensitivity) -> tuple[str, str, str]:

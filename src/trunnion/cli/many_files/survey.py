@@ -4,15 +4,17 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import Final
 
+from trunnion.cli.columns import padded
 from trunnion.cli.many_files.counting_terminal import CountingTerminal
 from trunnion.cli.results import show
-from trunnion.cli.wording import in_command_words
+from trunnion.cli.wording import in_words, spoken
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
+from trunnion.messages import Wording, word_said
 from trunnion.survey.page import survey_page
 from trunnion.survey.result import Rate, Survey, SurveyedFile
 from trunnion.survey.taking import take_survey
-from trunnion.wording import counted, one_line
+from trunnion.wording import one_line
 
 #: Codes and files that are printed; page and data have all of them.
 _MOST_CODES: Final = 20
@@ -28,7 +30,7 @@ def run(given: Given) -> int:
     found = take_survey(**given.arguments(), written=written, observer=CountingTerminal())
     if given.report is not None:
         with atomic_file(given.report) as sink:
-            sink.write(survey_page(found, in_command_words))
+            sink.write(survey_page(found, spoken()))
     show(given, lambda: found, survey_lines(found))
     return 0
 
@@ -36,41 +38,55 @@ def run(given: Given) -> int:
 def survey_lines(found: Survey) -> Iterator[str]:
     """Yield a survey in lines: files, rates, what blocks most files."""
     for file in islice(found.files, _MOST_FILES):
-        yield f"{file.file:<{_FILE_WIDTH}}  {_said(file)}".rstrip()
+        yield f"{padded(file.file, _FILE_WIDTH)}  {_of_file(file)}".rstrip()
     if len(found.files) > _MOST_FILES:
-        yield f"and {len(found.files) - _MOST_FILES} more; --report FILE.html and --json FILE have all of them"
-    yield from ("", "By dialect and control: files that went through, of those tried")
+        yield _said("more_files", count=len(found.files) - _MOST_FILES)
+    yield from ("", _said("rates"))
     yield from map(_rate_line, found.rates)
     if found.blockers:
-        yield from ("", "Blocked by: files, and files with no other error; the first place and its cure")
+        yield from ("", _said("blockers"))
     for each in found.blockers[:_MOST_CODES]:
         first = each.first
         place = f"{first.file}:{first.line}" if first.line else first.file
-        message = in_command_words(f"{first.what}; {each.cure}")
+        told = in_words(first.wording.with_cure())
+        message = told if each.cure_said is None else _said("with_explanation", what=told, where=each.cure_said)
         yield f"{each.code:<12} {each.files:>5} {each.opens:>5}  {place}: {message}"
     if len(found.blockers) > _MOST_CODES:
-        yield f"and {counted(len(found.blockers) - _MOST_CODES, 'code')} more"
-    machines = ", ".join(f"{each.machine} ({each.control})" for each in found.machines if each.posts)
-    others = ", ".join(each.machine for each in found.machines if not each.posts)
-    also = f"; programs also on {others}" if others else ""
-    yield from ("", f"tried on {machines}{also}; at most {found.timeout:g} s each")
-    counts = ", ".join(f"{count} {became}" for became, count in found.counts.items())
-    yield f"{counted(len(found.files), 'file')}: {counts}" if found.files else "no files"
+        yield _said("more_codes", count=len(found.blockers) - _MOST_CODES)
+    machines = tuple(f"{each.machine} ({each.control})" for each in found.machines if each.posts)
+    others = tuple(each.machine for each in found.machines if not each.posts)
+    if others:
+        on_them = _said("tried_on_others", machines=machines, others=others, timeout=found.timeout)
+    else:
+        on_them = _said("tried_on", machines=machines, timeout=found.timeout)
+    yield from ("", on_them)
+    counts = tuple(f"{count} {in_words(word_said(became))}" for became, count in found.counts.items())
+    yield _said("counts", count=len(found.files), counts=counts) if found.files else _said("no_files")
 
 
-def _said(file: SurveyedFile) -> str:
+def _said(variant: str, /, **parameters: object) -> str:
+    """Return a text of the catalogue ``survey``."""
+    return in_words(Wording("survey", variant, **parameters))
+
+
+def _of_file(file: SurveyedFile) -> str:
     """Return what a file is and what became of it."""
+    became = in_words(word_said(file.became))
     if not file.tries:
-        return one_line(f"{file.looks}: {file.became}")
-    looks = f"{file.kind}, {file.looks}" if file.looks else str(file.kind)
-    machines = f" on {file.passes} of {len(file.tries)} machines" if len(file.tries) > 1 and file.passes else ""
-    is_in_part = 0 < file.passes < len(file.tries)
-    became = f"went through{machines}, else {file.became}" if is_in_part else f"{file.became}{machines}"
+        return one_line(f"{in_words(file.looks_said)}: {became}")
+    kind, count = in_words(word_said(file.kind)), len(file.tries)
+    looks = _said("kind_and_looks", kind=kind, looks=file.looks_said) if file.looks else kind
+    if 0 < file.passes < count:
+        became = _said("through_on_some", passed=file.passes, count=count, became=became)
+    elif count > 1 and file.passes:
+        became = _said("became_on", passed=file.passes, count=count, became=became)
     codes = dict.fromkeys(code for each in file.tries if not each.became.passed for code in each.codes)
     return one_line(f"{looks}: {became}{': ' if codes else ''}{', '.join(codes)}")
 
 
 def _rate_line(rate: Rate) -> str:
-    looks = rate.looks or "of no certain control"
-    became = ", ".join(f"{count} {name}" for name, count in rate.became.items())
-    return f"{rate.kind:<8} {looks:<40} {rate.control:<24} {rate.passed:>5} of {rate.files:<5} {became}"
+    looks = in_words(rate.looks_said) or _said("no_control")
+    became = ", ".join(f"{count} {in_words(word_said(name))}" for name, count in rate.became.items())
+    of = padded(_said("of", passed=rate.passed, count=rate.files), 14, right=True)
+    kind = padded(in_words(word_said(rate.kind)), 8)
+    return f"{kind} {padded(looks, 40)} {padded(rate.control, 24)} {of} {became}"

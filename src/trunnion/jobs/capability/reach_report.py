@@ -13,6 +13,8 @@ from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
 from trunnion.machines.reach import ReachedVolume
+from trunnion.messages import LIBRARY, Words
+from trunnion.reporting.page_words import in_language, label
 from trunnion.reporting.reach_picture import ReachPicture, TiltOfPicture, reach_picture
 from trunnion.reporting.text import clean
 
@@ -20,21 +22,26 @@ from trunnion.reporting.text import clean
 _DECIMALS: Final = 1
 
 
-def write_reach_plot(found: Reach, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
+def write_reach_plot(found: Reach, file: FilePath, inputs: Iterable[FilePath] = (), words: Words = LIBRARY) -> None:
     """Draw the sphere of tool axes, and the volume of tips over the tilt.
 
     Raises ``InputError`` when the name does not end in ``.svg``, the file cannot be written, or it is one of
     ``inputs``.
     """
-    with atomic_file(declared_output("reach", "plot", file), inputs=inputs) as sink:
+    with atomic_file(declared_output("reach", "plot", file), inputs=inputs) as sink, in_language(words):
         sink.write(reach_picture(_picture(found)).encode())
 
 
 def _picture(found: Reach) -> ReachPicture:
     machine = found.machine
-    length = "" if machine.tool_length is None else f", tool {machine.tool_length:g} mm"
+    share, length = 100.0 * found.sphere, machine.tool_length
+    title = (
+        label("reach_title", machine=machine.name, share=share)
+        if length is None
+        else label("reach_title_with_tool", machine=machine.name, length=length, share=share)
+    )
     return ReachPicture(
-        clean(f"{machine.name}{length}: {100.0 * found.sphere:.0f} % of all directions"),
+        clean(title),
         [
             TiltOfPicture(
                 each.tilt, each.branches, 0.0 if each.one_pose is None else each.one_pose[1],

@@ -18,6 +18,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
 from trunnion.messages import LIBRARY, Wording, Words, foreign, phrase
 from trunnion.model.run import Run
+from trunnion.reporting.page_words import in_language, label, told
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, SingleFloats
 from trunnion.reporting.sensitivity_page import ErrorCells, NumberRow, SensitivityContent, render_sensitivity_page
 from trunnion.reporting.text import clean
@@ -42,17 +43,14 @@ def write_sensitivity_report(
     ``inputs``.
     """
     with atomic_file(declared_output("sensitivity", "report", file), inputs=inputs) as sink:
-        sink.writelines(render_sensitivity_page(_content(found, words), _series(found)))
+        with in_language(words):
+            content, series = _content(found), _series(found)
+        sink.writelines(render_sensitivity_page(content, series, words))
 
 
 def amount_text(each: NumberSensitivity) -> str:
     """How far a number is off, in words."""
     return f"{each.amount:g}″" if each.number.is_angle else f"{each.amount:g} mm"
-
-
-def place_text(extent: ErrorExtent, run: Run) -> str:
-    """Return the same in English."""
-    return str(place_said(extent, run))
 
 
 def place_said(extent: ErrorExtent, run: Run) -> Wording:
@@ -68,30 +66,28 @@ def place_said(extent: ErrorExtent, run: Run) -> Wording:
     return block if place.file == run.files[0] else phrase("block_of_file", file=Path(place.file).name, block=block)
 
 
-def zero_text(pose: Mapping[str, float] | None) -> str:
-    """Where the zero was set, in words."""
-    return "not set" if pose is None else f"at {pose_text(pose)}"
-
-
 def pose_text(pose: Mapping[str, float]) -> str:
     """Return the values of axes."""
     return " ".join(f"{name}{value:g}" for name, value in pose.items())
 
 
-def _content(found: Sensitivity, words: Words) -> SensitivityContent:
+def _content(found: Sensitivity) -> SensitivityContent:
     run, machine = found.run, found.run.machine
     zero = machine.workpiece_zero
     length = machine.tool_length
     facts = [
-        ("Machine", clean(machine.name)),
-        ("Motions at feed", str(found.motions)),
-        ("Zero set with rotary axes", clean(zero_text(found.zero_at))),
-        ("Workpiece zero", "not known" if zero is None else " ".join(f"{part:g}" for part in zero) + " mm"),
-        ("Tool length", "not known" if length is None else f"{length:g} mm"),
+        (label("machine"), clean(machine.name)),
+        (label("feed_motions"), str(found.motions)),
+        (
+            label("zero_set_with"),
+            label("not_set") if found.zero_at is None else clean(label("set_at", pose=pose_text(found.zero_at))),
+        ),
+        (label("fact_zero"), label("not_known") if zero is None else " ".join(f"{part:g}" for part in zero) + " mm"),
+        (label("fact_length"), label("not_known") if length is None else f"{length:g} mm"),
     ]
     rows = [
         NumberRow(
-            clean(each.number.name),
+            clean(told(each.number.said)),
             amount_text(each),
             _cells(each.tip, run),
             None if each.zeroed is None else _cells(each.zeroed, run),
@@ -99,16 +95,14 @@ def _content(found: Sensitivity, words: Words) -> SensitivityContent:
         )
         for each in found.numbers
     ]
-    idle = ", ".join(number.name for number in found.idle)
-    notes = [
-        clean(f"{remark.wording.text('what', words)}; {remark.wording.text('cure', words)}") for remark in found.remarks
-    ]
-    notes += [clean(f"Without effect, so left out: {idle}.")] if idle else []
+    idle = tuple(number.said for number in found.idle)
+    notes = [clean(told(remark.wording.with_cure())) for remark in found.remarks]
+    notes += [clean(label("without_effect", names=idle))] if idle else []
     return SensitivityContent(clean(Path(run.files[0]).name), facts, rows, notes)
 
 
 def _cells(extent: ErrorExtent, run: Run) -> ErrorCells:
-    return ErrorCells(extent.largest, extent.rms, clean(place_text(extent, run)))
+    return ErrorCells(extent.largest, extent.rms, clean(told(place_said(extent, run))))
 
 
 def _series(found: Sensitivity) -> PlotSeries:
@@ -124,9 +118,10 @@ def _series(found: Sensitivity) -> PlotSeries:
     if np.any(run.file):
         lines["file"] = _whole(run.file, rows, 0)
     plots = [
-        Plot(clean(each.number.name), "µm", (Curve(f"error{k}", amount_text(each)),)) for k, each in enumerate(drawn)
+        Plot(clean(told(each.number.said)), "µm", (Curve(f"error{k}", amount_text(each)),))
+        for k, each in enumerate(drawn)
     ]
-    left = "" if found.zero_at is None else " with the zero set"
+    title = "tip_error_over" if found.zero_at is None else "tip_error_with_zero"
     return PlotSeries(
         seconds=np.concatenate(([0.0], np.ones(len(rows)))).astype(np.float32),
         values={f"error{k}": _micrometres(errors[:, k]) for k in range(len(drawn))},
@@ -139,7 +134,7 @@ def _series(found: Sensitivity) -> PlotSeries:
             if event.kind == "tool_change"
         ),
         timed=False,
-        title=f"Tip error{left} over the motions at feed, of the worst {len(drawn)} numbers",
+        title=label(title, count=len(drawn)),
     )
 
 

@@ -145,17 +145,22 @@ class OperationDescription:
 
 @dataclass(frozen=True, slots=True)
 class UnknownDescription:
-    """Statements alike that the reader does not know: why, how many, and the first one.
+    """Statements alike that the reader does not know: why (``what`` in English), how many, and the first one.
 
     acts  they may change the machine: ``post`` refuses them, unless a definition says what becomes of them
     """
 
     statement: str
-    what: str
+    said: Annotated[Wording, Figure("what", take=str)]
     acts: bool
     count: int
     file: str
     line: int
+
+    @property
+    def what(self) -> str:
+        """Why it is not known, in words."""
+        return str(self.said)
 
 
 @dataclass(frozen=True, slots=True)

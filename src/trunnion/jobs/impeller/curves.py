@@ -17,8 +17,9 @@ from trunnion.jobs.arguments import taken
 from trunnion.jobs.inputs.arguments import check_choice, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import declared_output
-from trunnion.messages import phrase
+from trunnion.messages import LIBRARY, Words, phrase
 from trunnion.reporting.curve_picture import curve_picture
+from trunnion.reporting.page_words import in_language
 
 EndLike: TypeAlias = str | Natural | Tangent
 
@@ -119,7 +120,9 @@ def fit_curve(points: PointTable | ArrayLike, **given: Unpack[CurveArguments]) -
     return fit(table, wanted, None if weights is None else _numbers("weights", weights, 1))
 
 
-def write_curve_picture(fits: Sequence[CurveFit], picture: FilePath, *, inputs: Iterable[FilePath] = ()) -> None:
+def write_curve_picture(
+    fits: Sequence[CurveFit], picture: FilePath, *, inputs: Iterable[FilePath] = (), words: Words = LIBRARY
+) -> None:
     """Draw curves with their curvature combs.
 
     Parameters
@@ -130,13 +133,15 @@ def write_curve_picture(fits: Sequence[CurveFit], picture: FilePath, *, inputs: 
         The file, ``.svg``. An older one is replaced when the new one is complete.
     inputs
         Files that are not written over.
+    words
+        The language of who reads it.
 
     Raises
     ------
     InputError
         When the name ends otherwise, the file cannot be written, or it is one of the inputs.
     """
-    with atomic_file(declared_output("curve", "picture", picture), inputs=inputs) as sink:
+    with atomic_file(declared_output("curve", "picture", picture), inputs=inputs) as sink, in_language(words):
         sink.write(curve_picture(fits).encode())
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from trunnion.controls.definition import Control
 from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.errors import Problem
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.output.holes.holes_under_tcp import check_holes_under_tcp
@@ -24,24 +24,24 @@ from trunnion.planning.holes.cycles import (
 
 def unsupported_cycle_reasons(
     control: Control, settings: Mapping[str, str]
-) -> Callable[[Cycle, SpindleState | None], str]:
+) -> Callable[[Cycle, SpindleState | None], Wording | None]:
     """Return a function that tells why a control does not have a cycle.
 
-    It returns an empty text if the control has the cycle, or if the CL file leaves something out that it needs.
+    It returns None if the control has the cycle, or if the CL file leaves something out that it needs.
     """
     known = {**control.settings, **{key: value for key, value in settings.items() if value}}
     formats = control.number_formats(three_axis=True)
 
-    def reason(cycle: Cycle, spindle: SpindleState | None) -> str:
+    def reason(cycle: Cycle, spindle: SpindleState | None) -> Wording | None:
         if not cycle.depth:
-            return "a hole that ends at its point: cycles of some controls leave a depth of 0 out, others stop"
+            return phrase("hole_ends_at_point")
         try:
             control.family.cycle_call(cycle, 0.0, spindle, known, formats)
         except UnsupportedCycleError as error:
-            return error.wording.what
+            return error.wording
         except HoleCycleError:
             pass
-        return ""
+        return None
 
     return reason
 

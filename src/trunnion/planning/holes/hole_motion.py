@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import CycleOff, CycleOn, Dwell, Event, Kind, Operation, SpindleOff, SpindleOn
 from trunnion.planning.holes.cycles import (
     Cycle,
@@ -32,10 +32,9 @@ from trunnion.planning.holes.pecks import SAME_HEIGHT, HoleMotions, hole_motions
 from trunnion.planning.holes.skipped_holes import LevelWays, level_ways, with_lifts
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.options import CycleObjection
-from trunnion.wording import counted
 
 #: The reason for holes as motion although the control has their cycles.
-REQUESTED: Final = "as requested"
+REQUESTED: Final = phrase("as_requested")
 
 #: Methods that motion can replace.
 CONVERTIBLE: Final = frozenset(
@@ -59,23 +58,23 @@ class HoleConditions:
 
     spindle            before the operation; None: it stands still
     from_home          (n,) bool, rows to which the tool comes from home
-    general_objection  why no cycle at all can be used in this operation; empty: cycles can
+    general_objection  why no cycle at all can be used in this operation; None: cycles can
     cycle_objection    why the control lacks a cycle
     prefers_motion     holes become motion even if cycles can be used
     """
 
     spindle: SpindleState | None
     from_home: Flags
-    general_objection: str
+    general_objection: Wording | None
     cycle_objection: CycleObjection
     prefers_motion: bool
 
-    def reason(self, cycle: Cycle, spindle: SpindleState | None) -> str:
-        """Why the holes of a cycle become motion; empty: they do not."""
+    def reason(self, cycle: Cycle, spindle: SpindleState | None) -> Wording | None:
+        """Why the holes of a cycle become motion; None: they do not."""
         if cycle.method not in CONVERTIBLE:
-            return ""
+            return None
         objection = self.general_objection or self.cycle_objection(cycle, spindle)
-        return objection or (REQUESTED if self.prefers_motion else "")
+        return objection or (REQUESTED if self.prefers_motion else None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,12 +84,12 @@ class ConvertedCycles:
     method: HoleMethod
     line: int
     holes: int
-    reason: str
+    reason: Wording
 
     @property
-    def description(self) -> str:
+    def description(self) -> Wording:
         """Such as ``CYCLE/DRILL expanded to rapids and lines for 2 holes``."""
-        return f"CYCLE/{self.method} expanded to rapids and lines for {counted(self.holes, 'hole')}"
+        return phrase("cycle_expanded", method=str(self.method), count=self.holes)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,14 +108,14 @@ class HolesAsMotion:
 class _Holes:
     """Rows ``first`` to ``end`` (exclusive): holes of one cycle with the spindle in one state.
 
-    reason  why they become motion; empty: they do not
+    reason  why they become motion; None: they do not
     """
 
     first: int
     end: int
     event: CycleOn
     cycle: Cycle
-    reason: str
+    reason: Wording | None
     spindle: SpindleState | None
 
     @property
@@ -300,9 +299,10 @@ def _without_cycles(operation: Operation, converted: Sequence[_Holes]) -> Operat
 
 def _summary(converted: Sequence[_Holes]) -> Iterator[ConvertedCycles]:
     """One entry for each method and reason."""
-    groups: dict[tuple[HoleMethod, str], list[_Holes]] = {}
+    groups: dict[tuple[HoleMethod, Wording], list[_Holes]] = {}
     for holes in converted:
-        groups.setdefault((holes.cycle.method, holes.reason), []).append(holes)
+        if holes.reason is not None:
+            groups.setdefault((holes.cycle.method, holes.reason), []).append(holes)
     for (method, reason), group in groups.items():
         count = sum(holes.end - holes.first for holes in group)
         yield ConvertedCycles(method, group[0].event.line, count, reason)

@@ -34,7 +34,6 @@ from trunnion.planning.linearization.slide_arcs import keep_slide_arcs
 from trunnion.planning.options import PlanOptions
 from trunnion.planning.request import PlanRequest
 from trunnion.planning.rotary_positions import displayed_positions
-from trunnion.wording import counted
 
 #: Pieces into which an even turn is cut: at first, and at most.
 _FIRST_PIECES: Final = 8
@@ -161,11 +160,8 @@ def _decisions(file: str, operation: Operation, copies: Ints) -> Iterable[Decisi
     most = int(np.argmax(added))
     if added[most]:
         line = int(operation.moves.line[most])
-        text = (
-            f"{counted(int(added.sum()), 'point')} inserted between CL points, most of them ({int(added[most])})"
-            f" before line {line}"
-        )
-        yield Decision(file, operation.name, line, most, DecisionTopic.POINTS, text)
+        said = Wording("decision", "points", count=int(added.sum()), most=int(added[most]), line=line)
+        yield Decision(file, operation.name, line, most, DecisionTopic.POINTS, said)
 
 
 def _bend_problems(file: str, operation: Operation, rows: Ints, options: PlanOptions) -> Iterable[Problem]:

@@ -27,9 +27,9 @@ _NAMED: Final = 20
 _TRIED: Final = 6
 
 _EFFECTS: Final = {
-    PoleStrategy.HOLD: "holds its angle",
-    PoleStrategy.SPREAD: "turns evenly",
-    PoleStrategy.LEAN: "keeps within its speed",
+    PoleStrategy.HOLD: "pole_hold",
+    PoleStrategy.SPREAD: "pole_spread",
+    PoleStrategy.LEAN: "pole_lean",
 }
 
 
@@ -94,9 +94,8 @@ def _fixed_rows(prepared: PreparedOperation) -> Flags:
 def _decision(prepared: PreparedOperation, region: PoleRegion) -> Decision:
     line, machine = prepared.operation.moves.line, prepared.request.machine
     name, effect = machine.axes[machine.rotary[0]].name, _EFFECTS[prepared.request.options.pole_strategy]
-    lines = f"lines {line[region.first]} to {line[region.end - 1]}"
-    text = f"axis {name} {effect} near the pole, {lines}; the tool axis leans by up to {region.lean:.4f} degrees"
-    return prepared.decision(region.first, DecisionTopic.POLE, text)
+    said = Wording("decision", effect, axis=name, first=line[region.first], last=line[region.end - 1], lean=region.lean)
+    return prepared.decision(region.first, DecisionTopic.POLE, said)
 
 
 def _problems(prepared: PreparedOperation, poses: PlannedPoses, leaned: LeanedMoves) -> list[Problem]:

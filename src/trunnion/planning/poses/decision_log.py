@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.machines import Machine, inverse
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.toolpath import Operation
 from trunnion.planning.poses.contact import NO_CONTACT, contact_of
@@ -13,7 +14,6 @@ from trunnion.planning.poses.limit_lookahead import LimitHit, continue_in_branch
 from trunnion.planning.poses.selection import choose_nearest_states, poses_of_states
 from trunnion.planning.poses.states import MAX_BEND, POLE_JUMP, REWIND_STEP, STATE_BITS, states_of
 from trunnion.planning.rotary_positions import is_endless, tool_axes
-from trunnion.wording import counted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,10 +45,10 @@ class ChosenPoses:
         """Return a pose (2,) as text, such as ``C 10.000 B 40.000``."""
         return describe_pose(self.machine, pose)
 
-    def decision(self, row: int, topic: DecisionTopic, text: str) -> Decision:
+    def decision(self, row: int, topic: DecisionTopic, said: Wording) -> Decision:
         """Return a decision about a row; -1: about the whole operation."""
         line = int(self.operation.moves.line[max(row, 0)])
-        return Decision(self.file, self.operation.name, line, row, topic, text)
+        return Decision(self.file, self.operation.name, line, row, topic, said)
 
 
 def describe_pose(machine: Machine, pose: Floats) -> str:
@@ -97,7 +97,7 @@ def _at_pole(chosen: ChosenPoses, rows: Ints) -> Flags:
     return inverse(chosen.machine, moves.tip[rows], moves.axis[rows]).pole
 
 
-def pose_decisions(chosen: ChosenPoses, changes: Ints, rewinds: dict[int, str]) -> list[Decision]:
+def pose_decisions(chosen: ChosenPoses, changes: Ints, rewinds: dict[int, Wording]) -> list[Decision]:
     """Return the log: start, changes, and a comparison with the nearest neighbour.
 
     changes  as in ``PlannedPoses``
@@ -107,27 +107,26 @@ def pose_decisions(chosen: ChosenPoses, changes: Ints, rewinds: dict[int, str]) 
     count, last, *rows = changes.tolist()
     log += [_change(chosen, row, rewinds) for row in rows[:count]]
     if count > len(rows):
-        text = f"and {count - len(rows)} further changes, the last here"
-        log.append(chosen.decision(last, DecisionTopic.MORE, text))
+        log.append(chosen.decision(last, DecisionTopic.MORE, Wording("decision", "more", count=count - len(rows))))
     return [*log, _comparison(chosen)]
 
 
 def _start(chosen: ChosenPoses) -> Decision:
     """Return the first pose, and why it is not the one nearest to home."""
     machine, moves = chosen.machine, chosen.operation.moves
-    text = f"starts at {chosen.describe(chosen.rotary[0])}"
+    start = chosen.describe(chosen.rotary[0])
     nearest = _nearest_neighbour(_rows(chosen, slice(0, 1)))
     pose = nearest.rotary[0]
     if np.abs(pose - chosen.rotary[0]).max() < 1e-6:
-        return chosen.decision(0, DecisionTopic.START, f"{text}, the pose nearest to home")
+        return chosen.decision(0, DecisionTopic.START, Wording("decision", "start_nearest", start=start))
     hit = chosen.limit_ahead(0, int(nearest.branch(0)), pose)
-    reason = "that would mean more rewinds or more travel later on"
+    reason = phrase("more_rewinds_or_travel")
     if any(machine.axes[c].preferred_sign for c in machine.rotary):
-        reason = "the definition prefers this side"
+        reason = phrase("definition_prefers_side")
     if hit is not None:
-        reason = f"from there {hit.describe(machine, moves)}"
-    text = f"{text}; nearest to home is {chosen.describe(pose)}, but {reason}"
-    return chosen.decision(0, DecisionTopic.START, text)
+        reason = phrase("from_there", limit=hit.said(machine, moves))
+    said = Wording("decision", "start", start=start, nearest=chosen.describe(pose), reason=reason)
+    return chosen.decision(0, DecisionTopic.START, said)
 
 
 def _rows(chosen: ChosenPoses, rows: slice) -> ChosenPoses:
@@ -143,35 +142,38 @@ def _nearest_neighbour(chosen: ChosenPoses) -> ChosenPoses:
     return replace(chosen, rotary=poses_of_states(machine, moves, state, keep).rotary, state=state)
 
 
-def _change(chosen: ChosenPoses, row: int, rewinds: dict[int, str]) -> Decision:
+def _change(chosen: ChosenPoses, row: int, rewinds: dict[int, Wording]) -> Decision:
     if row in rewinds:
-        return chosen.decision(row, DecisionTopic.REWIND, f"rewinds in the cut: {rewinds[row]}")
+        return chosen.decision(row, DecisionTopic.REWIND, Wording("decision", "rewind", reason=rewinds[row]))
     machine, moves, rotary = chosen.machine, chosen.operation.moves, chosen.rotary
     before, after = int(chosen.branch(row - 1)), int(chosen.branch(row))
     is_idle = contact_of(moves, slice(row, row + 1))[0] == NO_CONTACT
-    turn = f"{chosen.describe(rotary[row - 1])} to {chosen.describe(rotary[row])}"
+    turn = {"before": chosen.describe(rotary[row - 1]), "after": chosen.describe(rotary[row])}
     swing = np.abs(rotary_steps(machine, rotary[row - 1 : row + 1])[1]).max()
     if not is_idle or (swing <= POLE_JUMP and before != after):
-        what = "swings round at the pole" if swing > POLE_JUMP else "goes through the pole"
-        return chosen.decision(row, DecisionTopic.POLE, f"{what}, {turn}")
+        what = "swings_at_pole" if swing > POLE_JUMP else "through_pole"
+        return chosen.decision(row, DecisionTopic.POLE, Wording("decision", what, **turn))
     unchanged = continue_in_branch(machine, moves, slice(row, row + 1), before, rotary[row - 1])[0]
     hit = chosen.limit_ahead(row, before, rotary[row - 1])
     if np.abs(rotary_steps(machine, np.vstack((rotary[row], unchanged)))[1]).max() < 1e-6:
-        reason = "new tool axis"
+        reason = phrase("new_tool_axis")
     elif hit is None:
-        reason = "the preferred side, or less travel later on"
+        reason = phrase("preferred_side_or_less_travel")
     else:
-        reason = f"otherwise {hit.describe(machine, moves)}"
-    return chosen.decision(row, DecisionTopic.CHANGE, f"repositions clear of the part, {turn}: {reason}")
+        reason = phrase("otherwise", limit=hit.said(machine, moves))
+    return chosen.decision(row, DecisionTopic.CHANGE, Wording("decision", "repositions", reason=reason, **turn))
 
 
 def _comparison(chosen: ChosenPoses) -> Decision:
     """Return what the nearest neighbour would have done."""
     nearest = _nearest_neighbour(chosen)
     count = int((chosen.state & REWIND_STEP != 0).sum())
-    text = (
-        f"{counted(count, 'rewind')} and {rotary_travel(chosen.machine, chosen.rotary):.0f} degrees of rotary travel;"
-        f" from point to point the nearest pose would have had {counted(len(rewind_rows(nearest)), 'rewind')}"
-        f" and {rotary_travel(chosen.machine, nearest.rotary):.0f} degrees"
+    said = Wording(
+        "decision",
+        "comparison",
+        count=count,
+        travel=rotary_travel(chosen.machine, chosen.rotary),
+        count_nearest=len(rewind_rows(nearest)),
+        travel_nearest=rotary_travel(chosen.machine, nearest.rotary),
     )
-    return chosen.decision(-1, DecisionTopic.NEAREST, text)
+    return chosen.decision(-1, DecisionTopic.NEAREST, said)

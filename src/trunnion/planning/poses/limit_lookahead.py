@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, inverse, slide_positions
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Moves
 from trunnion.planning.axis_limits import limit_violation_text, limits_of, outside_limits
 from trunnion.planning.poses.contact import NO_CONTACT, contact_of
@@ -26,9 +27,10 @@ class LimitHit:
     column: int
     value: float
 
-    def describe(self, machine: Machine, moves: Moves) -> str:
+    def said(self, machine: Machine, moves: Moves) -> Wording:
         """Axis, value, limit and line, as the end of a sentence."""
-        return f"{limit_violation_text(machine, self.column, self.value)} in line {int(moves.line[self.row])}"
+        violation = limit_violation_text(machine, self.column, self.value)
+        return phrase("limit_in_line", violation=violation, line=int(moves.line[self.row]))
 
 
 def degrees_out_of_reach(machine: Machine, axis: Floats) -> float:

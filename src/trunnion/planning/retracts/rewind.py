@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, slide_positions
+from trunnion.messages import Wording, foreign, phrase
 from trunnion.model.splines import Splines
 from trunnion.model.toolpath import CutterComp, Event, Kind, Moves, Operation, Phase, RewindMessage
 from trunnion.planning.axis_limits import limits_of, outside_limits
@@ -47,6 +48,10 @@ class _Row(NamedTuple):
     turned: bool
 
 
+#: Of a rewind of which nobody has said why.
+_NO_REASON: Final = foreign("")
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Rewind:
     """One rewind.
@@ -65,7 +70,7 @@ class Rewind:
     after: Floats
     retract_distance: float
     at_rapid: bool
-    reason: str = ""
+    reason: Wording = _NO_REASON
     limit_hit: LimitHit | None = None
 
     @property
@@ -122,10 +127,10 @@ def find_rewinds(
     for row in np.flatnonzero(poses.outcome == REWIND).tolist():
         before, after = int(chosen.branch(row - 1)), int(chosen.branch(row))
         hit = chosen.limit_ahead(row, before, poses.rotary[row - 1])
-        reason = "the path asks for it" if hit is None else f"otherwise {hit.describe(machine, moves)}"
+        reason = phrase("path_asks") if hit is None else phrase("otherwise", limit=hit.said(machine, moves))
         rewind = replace(_rewind_at(machine, moves, row, after, poses.rotary, clearance), at_rapid=at_rapid)
-        turn = f"{chosen.describe(rewind.before)} to {chosen.describe(rewind.after)}, {reason}"
-        rewinds.append(replace(rewind, reason=turn, limit_hit=hit))
+        turn = {"before": chosen.describe(rewind.before), "after": chosen.describe(rewind.after)}
+        rewinds.append(replace(rewind, reason=phrase("turn_and_reason", reason=reason, **turn), limit_hit=hit))
     return tuple(rewinds)
 
 

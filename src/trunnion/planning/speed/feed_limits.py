@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import kinematic_parameters
+from trunnion.messages import Wording, phrase
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Decision, DecisionTopic, PoleStrategy
 from trunnion.model.toolpath import Operation
@@ -66,14 +67,14 @@ def _feed_decisions(prepared: PreparedOperation, rows: Ints, feed: Floats) -> It
     moves = prepared.operation.moves
     for stretch in stretches[:_NAMED]:
         least = stretch[np.argmin(feed[stretch])]
-        text = (
-            f"feed lowered from {moves.feed[least]:g} to {feed[least]:.2f} and more, lines {moves.line[stretch[0]]} to"
-            f" {moves.line[stretch[-1]]}, so that the rotary axes can follow"
-        )
-        yield prepared.decision(int(stretch[0]), DecisionTopic.FEED, text)
+        said = Wording(
+            "decision", "feed_lowered", before=moves.feed[least], after=feed[least], first=moves.line[stretch[0]],
+            last=moves.line[stretch[-1]],
+        )  # fmt: skip
+        yield prepared.decision(int(stretch[0]), DecisionTopic.FEED, said)
     if len(stretches) > _NAMED:
-        text = f"feed lowered in {len(stretches) - _NAMED} further places, the last here"
-        yield prepared.decision(int(stretches[-1][0]), DecisionTopic.FEED, text)
+        said = Wording("decision", "feeds_lowered", count=len(stretches) - _NAMED)
+        yield prepared.decision(int(stretches[-1][0]), DecisionTopic.FEED, said)
 
 
 def _speed_decisions(prepared: PreparedOperation, poses: PlannedPoses, off_part: OffPartTurns) -> Iterator[Decision]:
@@ -90,18 +91,15 @@ def _speed_decisions(prepared: PreparedOperation, poses: PlannedPoses, off_part:
         return
     axis = machine.axes[machine.rotary[worst.axis]]
     off = float(degrees_off_pole(kinematic_parameters(machine), operation.moves.axis[worst.row : worst.row + 1])[0])
-    effect = "feed=fastest lowers the feed there" if options.fastest_feed else "the control slows down there"
-    cure = "" if options.fastest_feed else "setting lower_feed=yes"
-    if options.pole_strategy is PoleStrategy.OFF:
-        cure = (
-            "setting pole=lean helps" if options.fastest_feed else "setting pole=lean, or setting lower_feed=yes, helps"
-        )
-        if options.explain and not options.lower_feed:
-            cure = str(sufficient_setting(prepared, poses, _LEAST_LEAN))
-    rows = f"{worst.count} rows are" if worst.count > 1 else "1 row is"
-    yield prepared.decision(
-        worst.row,
-        DecisionTopic.SPEED,
-        f"axis {axis.name} would need {100.0 * worst.share:.0f} % of its rapid speed, {axis.rapid:g} degrees/min,"
-        f" {off:.3f} degrees off the pole; {rows} too fast, and {': '.join(filter(None, (effect, cure)))}",
-    )
+    effect = phrase("feed_fastest_lowers" if options.fastest_feed else "control_slows_down")
+    if options.pole_strategy is not PoleStrategy.OFF:
+        cure: Wording | str = "" if options.fastest_feed else phrase("set_lower_feed")
+    elif options.explain and not options.lower_feed:
+        cure = sufficient_setting(prepared, poses, _LEAST_LEAN)
+    else:
+        cure = phrase("pole_lean_helps" if options.fastest_feed else "pole_lean_or_lower_feed_helps")
+    said = Wording(
+        "decision", "too_fast", axis=axis.name, share=100.0 * worst.share, rapid=axis.rapid, off=off,
+        count=worst.count, effect=phrase("effect_and_cure", effect=effect, cure=cure) if cure else effect,
+    )  # fmt: skip
+    yield prepared.decision(worst.row, DecisionTopic.SPEED, said)

@@ -44,3 +44,22 @@ def test_a_mode_for_the_shank_or_another_plane_fails(
         file.write_text("\n".join([*lines[:at], wrong, *lines[at + 1 :]]) + "\n", encoding="utf-8")
         assert main(["verify", str(file), "--cl", str(CL), "--machine", "yl569"]) != 0, wrong
     capfd.readouterr()
+
+
+@pytest.mark.parametrize("kind", ["DEEP", "BRKCHP"])
+@pytest.mark.parametrize("step", ["10,3,2", "10,4,1", "5,1,0.5", "10,3,3", "10,6,4"])
+def test_pecks_that_no_cycle_drills_are_made_as_motion(
+    kind: str, step: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cl = tmp_path / "pecks.cls"
+    cl.write_text(
+        "TOOL PATH/ONE,TOOL,D10\nTLDATA/MILL,10,0,75,0,0\nINTOL/0.01\nOUTTOL/0.01\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\n"
+        f"RAPID\nGOTO/0,0,60,0,0,1\nCYCLE/DRILL,{kind},STEP,{step},RAPTO,3,FEDTO,-40,RTRCTO,20,MMPM,100\n"
+        "GOTO/16,8,0\nCYCLE/OFF\nRAPID\nGOTO/16,8,60\nEND-OF-PATH\n",
+        encoding="utf-8",
+    )
+    program = tmp_path / "pecks.mpf"
+    assert main(["post", str(cl), "--machine", "yl569", "--output", str(program)]) == 0
+    by_cycle = step in ("10,3,3", "10,6,4")
+    assert ("CYCLE83(" in program.read_text(encoding="utf-8")) == by_cycle
+    assert ("no peck of CYCLE83 is shorter than its DAM" in capsys.readouterr().err) != by_cycle

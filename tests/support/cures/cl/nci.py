@@ -1,4 +1,4 @@
-"""Cures of messages about Mastercam's NCI, each by the lines that go out and come in."""
+"""Cures of messages about Mastercam's NCI, by lines that go out and come in, and about files that are no CL data."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -34,6 +34,17 @@ def _with_cutcom(text: str, settings: Mapping[str, str], folder: Path) -> Outcom
     return Outcome(tuple(found.remarks), True)
 
 
+def _binary(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Read a text under the name of PowerMill's data."""
+    file = folder / "part.cut"
+    file.write_bytes(text.encode())
+    try:
+        found = read_cl(file)
+    except TrunnionError as error:
+        return Outcome(tuple(error.problems), False)
+    return Outcome(tuple(found.remarks), True)
+
+
 def _other(message: str, code: str, wrong: str, right: str) -> Cure:
     """Values of a record, and others."""
     return _nci(message, code, f"- {wrong}", f"+ {right}")
@@ -59,6 +70,8 @@ _STATED: Final = _nci(
 )  # fmt: skip
 
 CURES: Final = (
+    Cure("CL115", "form", read, "ISO-10303-21;\nHEADER;\n", (("ISO-10303-21;\nHEADER;\n", _HEAD + _FOOT),)),
+    Cure("CL115", "system", _binary, "\x00\x01CL", (("\x00\x01CL", _HEAD + _FOOT),)),
     _nci("CL165 no_code", "- 0 5 0 -2 -1 0", "1", "0 20 0 -2 -1 0", "- 1"),
     _other("CL165 values", "1", "0 20 0 -2 -1", "0 20 0 -2 -1 0"),
     _other("CL165 no_number", "1", "0 20 O -2 -1 0", "0 20 0 -2 -1 0"),

@@ -14,6 +14,7 @@ from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine
+from trunnion.messages import foreign, phrase
 from trunnion.model.clamping_notices import PLACED_NOTICES
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.run import NO_OFFSET, Run
@@ -29,12 +30,13 @@ from trunnion.model.toolpath import (
     Stop,
     Tool,
 )
-from trunnion.output.compensation_entries import entries_at_control, entries_of
+from trunnion.output.compensation_entries import CompensationEntry, entries_at_control, entries_of
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
 from trunnion.reporting.content import collect_content
 from trunnion.reporting.html_text import format_number
+from trunnion.reporting.page_words import on_sheet, page_words, word
 from trunnion.reporting.path_drawing import DrawnBody, path_drawing
 from trunnion.reporting.remarks import remark_groups
 from trunnion.reporting.setup_sheet import (
@@ -50,13 +52,16 @@ from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage
 from trunnion.simulation.tools.profile import Role, Section
 from trunnion.verification import Verification
-from trunnion.wording import counted, one_line
+from trunnion.wording import one_line
 
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.simulate.result import SimulationResult
 
 #: Coolants whose words are of the builder of a machine, as people call them.
 _OTHER_COOLANTS: Final = {"THRU": "through the tool", "AIR": "air", "TAP": "for tapping"}
+
+#: Kinds of tools, as the words of CL files have them.
+_KINDS: Final = {"MILL": "mill", "TCUTTER": "T-cutter", "BARREL": "barrel cutter", "DRILL": "drill"}
 
 #: Warnings of a post that a sheet repeats.
 _MOST_WARNINGS = 20
@@ -70,7 +75,10 @@ def setup_sheet(
     files: Sequence[SheetFile],
     bodies: Sequence[DrawnBody] = (),
 ) -> SetupSheet:
-    """Return the sheet of a program that was posted and proven; ``bodies`` are drawn with its path."""
+    """Return the sheet of a program that was posted and proven, in the language of the page that is made.
+
+    ``bodies`` are drawn with its path.
+    """
     run, machine = verification.run, program.machine
     content = collect_content(replace(verification, program=Path(verification.program).name), program.control.name)
     shown = tuple(displayed_extent(*each) for each in zip(machine.axes, content.axes, strict=True))
@@ -104,11 +112,11 @@ def _untimed(machine: Machine) -> str:
     """Return what times leave out because the definition does not state it."""
     left_out = (
         ("rapids", any(axis.rapid is None for axis in machine.axes)),
-        ("speeding up and slowing down", any(axis.acceleration is None for axis in machine.axes)),
-        ("tool changes", machine.facts.tool_change_s is None),
+        ("speeding_up", any(axis.acceleration is None for axis in machine.axes)),
+        ("tool_changes", machine.facts.tool_change_s is None),
     )
-    names = [what for what, is_left_out in left_out if is_left_out]
-    return f"{', '.join(names)}: the machine's definition states none" if names else ""
+    names = tuple(on_sheet(what) for what, is_left_out in left_out if is_left_out)
+    return on_sheet("left_out", names=names) if names else ""
 
 
 def _offsets(run: Run) -> tuple[str, ...]:
@@ -116,11 +124,13 @@ def _offsets(run: Run) -> tuple[str, ...]:
     return tuple(clean(run.work_offset_name(value)) for value in values if value not in (0, NO_OFFSET))
 
 
-def _zeros_to_set(offsets: Sequence[str]) -> str:
-    """Return the work offsets of a program as the beginning of a sentence, with its verb."""
-    if len(offsets) > 1:
-        return f"work offsets {', '.join(offsets[:-1])} and {offsets[-1]} are"
-    return f"work offset {offsets[0]} is" if offsets else "the machine's zero is"
+def _zeros_to_set(offsets: Sequence[str], is_placed: bool) -> str:
+    """Return what to check of the work offsets of a program."""
+    if not offsets:
+        return on_sheet("set_machine_placed" if is_placed else "set_machine_zero")
+    if len(offsets) == 1:
+        return on_sheet("set_offset_placed" if is_placed else "set_offset", name=offsets[0])
+    return on_sheet("set_offsets_placed" if is_placed else "set_offsets", names=tuple(offsets[:-1]), last=offsets[-1])
 
 
 def _check_of_zeros(run: Run, machine: Machine) -> str:
@@ -129,16 +139,16 @@ def _check_of_zeros(run: Run, machine: Machine) -> str:
     unknown = [int(value) for value in values if machine.zeros.get(int(value), machine.workpiece_zero) is None]
     unknown = [value for value in unknown if value not in (0, NO_OFFSET)] if machine.zeros else unknown
     if machine.workpiece_zero is None and not machine.zeros:
-        return "Check the travel: nobody said where the workpiece zero is, and it is only proven to fit somewhere."
-    text = "Check that the workpiece zero is where the sheet says: the limits of the linear axes were proven for it"
-    names = ", ".join(clean(run.work_offset_name(value)) for value in unknown)
-    return f"{text}, and not for {names}, whose zero nobody said." if names else f"{text}."
+        return on_sheet("check_travel")
+    names = tuple(clean(run.work_offset_name(value)) for value in unknown)
+    return on_sheet("check_zero_of_some", names=names) if names else on_sheet("check_zero")
 
 
 def _system(program: Program, job: PostJob) -> str:
     if job.options.absolute_frame:
-        return "the CAM's absolute coordinate system"
-    return clean(f"the coordinate system of {program.motions[0].operation.name or 'the first operation'}")
+        return on_sheet("absolute_system")
+    name = program.motions[0].operation.name
+    return clean(on_sheet("system_of", name=name)) if name else on_sheet("system_of_first")
 
 
 def _operations(
@@ -152,7 +162,7 @@ def _operations(
             number=number,
             name=clean(own.name),
             method="" if _is_of_holes(motions) else clean(program.method_of(motions[0].operation)),
-            mode=", ".join(dict.fromkeys(motion.mode.value for motion in motions)),
+            mode=", ".join(dict.fromkeys(word(motion.mode.value) for motion in motions)),
             tool=clean(call),
             cl_file=clean(Path(own.cl_file).name),
             seconds=usage.seconds,
@@ -167,8 +177,23 @@ def _entries(program: Program, motions: Sequence[Motion], call: str) -> Iterator
     """Yield what the operator enters for radius compensation."""
     for each in entries_of(program, motions, call):
         is_radius = each.contour or each.holds == "radius"
-        larger = "" if is_radius else ", by which the tool is larger than its size here (smaller: negative)"
-        yield f"radius compensation: the path is that of the {each.path}, so enter {each.value} {each.where}{larger}"
+        path = word("contour" if each.contour else "tool's centre")
+        entry = "enter_radius" if is_radius else "enter_difference"
+        yield on_sheet(entry, path=path, value=_entered(each), where=_place_of_entry(each))
+
+
+def _entered(each: CompensationEntry) -> str:
+    """Return what is entered."""
+    what, size = word(each.size_name), each.size
+    if each.contour or each.holds == "radius":
+        return on_sheet("entered_whole", what=what)
+    return on_sheet("entered_less", what=what, size=f"{size:.10g}") if size else on_sheet("entered_less_cam", what=what)
+
+
+def _place_of_entry(each: CompensationEntry) -> str:
+    """Return where it is entered, and when twice that is."""
+    place = on_sheet("in_register", number=each.register) if each.register else on_sheet("in_table")
+    return on_sheet("twice_if", place=place, condition=each.doubled_if) if each.doubled_if else place
 
 
 def _notes(motions: Sequence[Motion]) -> Iterator[str]:
@@ -179,26 +204,27 @@ def _notes(motions: Sequence[Motion]) -> Iterator[str]:
             case SpindleOn():
                 rpm, sense = event.rpm, event.sense
             case BlockSkip() if event.on:
-                yield "blocks that the operator may skip (/)"
+                yield on_sheet("may_skip")
             case Stop():
-                yield "optional stop (M1)" if event.optional else "stop (M0)"
+                yield on_sheet("optional_stop") if event.optional else on_sheet("stop")
             case CycleOn() if event.mode[:1] == ("TAP",):
                 values = dict(event.values)
                 per_minute = values.get("MMPM", (0.0,))[0] / rpm if rpm else 0.0
                 if pitch := values.get("MMPR", (per_minute,))[0]:
-                    yield f"pitch {format_number(pitch)} mm{', left hand' if sense is Sense.CCLW else ''}"
+                    hand = "left_hand_pitch" if sense is Sense.CCLW else "pitch"
+                    yield on_sheet(hand, pitch=format_number(pitch))
 
 
 def _with_asked_coolant(cuts: CutRanges, motions: Sequence[Motion], codes: Mapping[str, int]) -> CutRanges:
     """Return ranges with the coolants that the CL file asks for, and that have words of the builder of the machine."""
     asked = {event.kind for motion in motions for event in motion.operation.events if isinstance(event, Coolant)}
-    seen = cuts.coolant.split(", ")
+    seen = cuts.coolant.split(", ") if cuts.coolant else []
     others = [
-        f"{said} ({word}, M{codes[word]})" if word in codes else f"{said} ({word})"
-        for word, said in _OTHER_COOLANTS.items()
-        if word in asked and said not in seen
+        f"{word(said)} ({name}, M{codes[name]})" if name in codes else f"{word(said)} ({name})"
+        for name, said in _OTHER_COOLANTS.items()
+        if name in asked and said not in seen
     ]
-    return replace(cuts, coolant=", ".join(filter(None, (cuts.coolant, *others))))
+    return replace(cuts, coolant=", ".join((*map(word, seen), *others)))
 
 
 def _with_bodies(
@@ -281,68 +307,60 @@ def _kind(tool: Tool, operations: Sequence[Operation]) -> str:
     if tool.kind == "DRILL" and modes - {("DRILL",)}:
         return ""
     if tool.kind == "MILL" and tool.diameter > 0.0 and abs(2.0 * tool.corner_radius - tool.diameter) < 1e-6:
-        return "ball mill"
-    words = {"MILL": "mill", "TCUTTER": "T-cutter", "BARREL": "barrel cutter", "DRILL": "drill"}
-    angle = f", tip {format_number(tool.tip_angle)}°" if tool.kind == "DRILL" and tool.tip_angle else ""
-    return words.get(tool.kind, "") + angle
+        return word("ball mill")
+    if tool.kind == "DRILL" and tool.tip_angle:
+        return on_sheet("drill_with_tip", angle=format_number(tool.tip_angle))
+    return word(_KINDS.get(tool.kind, ""))
 
 
 def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rotary: Sequence[str]) -> Iterator[str]:
     """Yield what stands at the beginning of the program, and where it can be entered."""
     first = operations[0] if operations else None
     if first is not None:
-        yield f"The first tool is T{first.tool}."
+        yield on_sheet("first_tool", tool=first.tool)
     if len(run) and run.machine_frame[0]:
-        yield "The program begins with a motion in machine coordinates, from wherever the axes stand."
+        yield on_sheet("begins_at_machine")
     elif len(run):
-        yield "The program begins with a motion in workpiece coordinates: the axes must stand where that is safe."
+        yield on_sheet("begins_at_workpiece")
     cuts = np.flatnonzero(run.kind != Kind.RAPID)
     if len(cuts):
         joints = run.positions(cuts[:1]).joints[0]
         axes = list(zip(rotary, (run.machine.primary, run.machine.secondary), strict=True))
         shown = {k: float(run.machine.axes[k].displayed(joints[k : k + 1], 3)[0]) for _, k in axes}
         turned = ", ".join(f"{name} {shown[k] + 0.0:.3f}°" for name, k in axes)
-        yield f"The rotary axes stand at {turned} where the first cut ends."
+        yield on_sheet("axes_at_first_cut", turned=turned)
     if program.effective_setting("restart") == "on":
-        yield "Every operation calls its tool and its speed: the program can be entered where an operation begins."
+        yield on_sheet("enter_anywhere")
     else:
-        yield "The program is for a start at its beginning: what an operation does not say again, the one before said."
+        yield on_sheet("start_at_beginning")
 
 
 def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> Iterator[str]:
     """Yield what the proof cannot see."""
-    zeros = _zeros_to_set(_offsets(run))
-    is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
-    turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
-    yield f"Check that {zeros} set to the zero of the program, {turned}."
+    yield _zeros_to_set(_offsets(run), any(notice.startswith(PLACED_NOTICES) for notice in job.notices))
     for notice in job.notices:
         if notice.startswith(PLACED_NOTICES):
             yield f"{notice}."
     single = list(setup_notices(job, result.toolpaths)) if job.setups or job.settings.get("delta_length") else []
     for notice in dict.fromkeys(single):
-        yield f"Check that this is so: {notice}."
+        yield on_sheet("check_notice", notice=notice)
     yield _check_of_zeros(run, program.machine)
     if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions):
-        yield "Measure zero and tool length before each part: without TCP the program holds for these alone."
+        yield on_sheet("measure_without_tcp")
     if entries_at_control(program):
-        yield (
-            "Check each tool: the right one in its pocket, length measured and entered, edge sharp; the radius"
-            " measured, and for radius compensation entered as the operation says."
-        )
+        yield on_sheet("check_compensated_tools")
     else:
-        yield "Check each tool: the right one in its pocket, length and radius measured and entered, edge sharp."
-    yield "Check that the part is clamped, that the blank has its size, and that everything that turns has room."
+        yield on_sheet("check_tools")
+    yield on_sheet("check_clamping")
     if result.simulation is None:
-        yield "Look for collisions of tool, holder and head with part, fixtures and table (no simulation)."
+        yield on_sheet("no_simulation")
     else:
-        found = len(result.simulation.findings)
-        knew = "knew the stock, tools and fixtures that it was given, and no more"
-        yield f"Check what else there is. The simulation ({counted(found, 'finding')}) {knew}."
-        if result.simulation.not_checked:
-            yield f"Look for {result.simulation.collisions_said}."
-        if result.simulation.cuts_not_checked:
-            yield f"Measure {result.simulation.cuts_said}."
-    yield "Check that axis directions, rotary centres and pivot lengths of the machine are those of its definition."
+        yield on_sheet("simulation_knew", count=len(result.simulation.findings))
+        if (collisions := result.simulation.collisions_said) is not None:
+            yield on_sheet("look_for", what=collisions)
+        if (cuts := result.simulation.cuts_said) is not None:
+            yield on_sheet("measure", what=cuts)
+    yield on_sheet("check_machine")
     inserted = [
         event.text.strip()
         for motion in program.motions
@@ -351,13 +369,14 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     ]
     if inserted:
         texts = "; ".join(dict.fromkeys(inserted))
-        yield f"Check the texts that the CL file inserts, whose effect beyond the path is not proven: {texts[:300]}"
+        yield on_sheet("check_inserts", texts=texts[:300])
     warnings = remark_groups(problem for problem in result.problems if problem.severity is Severity.WARNING)
     for remark in warnings[:_MOST_WARNINGS]:
-        yield f"Warning: {remark.text}" + (f" (and {remark.count - 1} more like it)" if remark.count > 1 else "")
+        more = phrase("more_like_it", count=remark.count - 1) if remark.count > 1 else foreign("")
+        yield on_sheet("warning", text=remark.said("what", page_words()), more=more)
     if len(warnings) > _MOST_WARNINGS:
-        yield f"and {len(warnings) - _MOST_WARNINGS} warnings more, which the post has printed"
+        yield on_sheet("more_warnings", count=len(warnings) - _MOST_WARNINGS)
     for problem in result.problems:
         if problem.severity is Severity.ERROR:
-            yield f"OVERRULED: {problem.what}"
-    yield "Run the first part block by block or with low override, with a hand on feed hold."
+            yield on_sheet("overruled", what=problem.wording)
+    yield on_sheet("first_part")

@@ -92,6 +92,7 @@ class PostPapers:
         simulated.
         """
         from trunnion.jobs.post.papers.setup_sheets import setup_sheet
+        from trunnion.reporting.page_words import in_language
         from trunnion.reporting.path_drawing import DrawnBody
         from trunnion.reporting.setup_sheet_page import sheet_json, sheet_page
 
@@ -102,8 +103,10 @@ class PostPapers:
             found = simulated_bodies(self.job.simulation)
             bodies = [DrawnBody(kind, mesh.vertices, mesh.faces) for kind, mesh in found]
         files = _written_files(self.target)
-        sheet = setup_sheet(self.program, self.job, self.result, verification, files, bodies)
-        return sheet_json(sheet) if suffix == ".json" else sheet_page(sheet)
+        is_data = suffix == ".json"
+        with in_language(LIBRARY if is_data else self.words):
+            sheet = setup_sheet(self.program, self.job, self.result, verification, files, bodies)
+            return sheet_json(sheet) if is_data else sheet_page(sheet)
 
 
 def post_papers(

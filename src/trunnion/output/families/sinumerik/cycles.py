@@ -8,11 +8,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from trunnion.controls.words import NumberFormat
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Sense
 from trunnion.output.shared.spindle import cycle_dwell_seconds, thread
-from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
+from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
+from trunnion.planning.holes.pecks import peck_depths
 
 #: Tool axis of CYCLE83 and CYCLE84: the third axis of the plane G17.
 _THIRD_AXIS: Final = "3"
@@ -131,6 +134,8 @@ def _peck(of: _Input) -> CycleArguments:
     degression = of.number(decrement)
     if decrement > least >= peck - decrement:  # no peck falls below an amount; a factor goes to the least at once
         degression = of.number(-math.floor(1000.0 * least / peck) / 1000.0)
+    elif any(each < decrement - 1e-9 for each in np.diff(peck_depths(of.cycle), prepend=0.0)[:-1].tolist()):
+        raise UnsupportedCycleError(Wording("CTL350", "decreasing_peck_depths_dam"))
     return "CYCLE83", [
         "", "", of.number(min(peck, of.cycle.depth)), degression, "0", "0", "1", "1" if full else "0",
         _THIRD_AXIS, of.number(least), "0" if full else of.number(_CHIP_BREAK), of.dwell or "0", "0",
