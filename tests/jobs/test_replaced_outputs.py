@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.jobs.test_guard import code_of, ending_of, fill_folder, line_with
+from tests.support.command_lines import code_of, ending_of, fill_folder, line_with
 from tests.support.locations import YL569
 from trunnion.cli import main
 from trunnion.jobs.job import Job
