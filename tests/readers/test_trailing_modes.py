@@ -33,12 +33,13 @@ IN_DOUBT = [
     ("dmu65", "M118 X1", "M118"), ("dmu65", "M136", "M137"), ("dmu65", "M116", "M117"), ("dmu65", "M89", "M99"),
     ("dmu65", "M120 LA10", "M120"),
     ("hs664rt", "G91", "G90"), ("hs664rt", "G18", "G17"), ("hs664rt", "G42 D1", "G40"),
+    ("hs664rt", "G55 O2", "G55 O1"), ("yl569", "G55", "G54"), ("yl569", "G505", "G54"), ("yl569", "G505", "G500"),
 ]  # fmt: skip
 
 #: What the control sets back by itself at the end.
 SET_BACK = [
     *(("xyzac_trt", word) for word in ("G91", "G18", "G95", "G93", "G41 D1", "M49", "G55")),
-    *(("yl569", word) for word in ("G700", "G70", "G91", "G19", "G95", "G41", "G55", "MCALL CYCLE81(10,0,2,-5)")),
+    *(("yl569", word) for word in ("G700", "G70", "G91", "G19", "G95", "G41", "G500", "MCALL CYCLE81(10,0,2,-5)")),
 ]
 
 
@@ -200,7 +201,7 @@ def test_a_shift_that_only_machine_positions_follow_is_refused(
 
 @pytest.mark.parametrize(("machine", "word"), [
     (machine, word) for machine, word, _ in (*KEPT, *IN_DOUBT)
-    if word.split()[0] not in ("G91", "G66", "M89") and machine != "hs664rt"
+    if word.split()[0] not in ("G91", "G66", "M89") and machine in HOMES
 ])  # fmt: skip
 def test_a_mode_that_only_machine_positions_follow_is_told(tmp_path: Path, machine: str, word: str) -> None:
     home = HOMES[machine][0]

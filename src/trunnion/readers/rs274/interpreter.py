@@ -255,6 +255,7 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _report_unused_words(self, block: Block) -> None:
         for letter in block.unused():
+            block.used.add(letter)
             self._note(Wording("NC213", "unused_word", word=letter), Severity.ERROR)
 
     # Motion

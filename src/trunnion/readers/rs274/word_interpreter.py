@@ -11,6 +11,7 @@ from trunnion.messages import Wording
 from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.start_modes import MOTION
+from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.word_values import fault_of_value
@@ -94,8 +95,12 @@ class WordInterpreter(Rs274Interpreter[A]):
             if word.when is When.AFTER_MOTION:
                 self._execute_word(word, block)
         self._close_block(block)
-        for word in late:
-            self._execute_word(word, block)
+        try:
+            for word in late:
+                self._execute_word(word, block)
+        except ProgramEnd:
+            self._report_unused_words(block)
+            raise
 
     def _judge_within_compensation(self, codes: Sequence[Word], block: Block) -> None:
         """Report words that the control does not take while radius compensation is on, unless their block ends it."""

@@ -116,6 +116,7 @@ CURES: Final = (
     _line("NC320", "", "G2 X10. Y10. F100.", "G2 X10. Y10. R8. F100.", on="matsuura_mx330"),
     _line("NC133", "", "GOTOF NOWHERE", "GOTOF NOWHERE\nNOWHERE:"),
     _line("NC142", "", "IF 1==2", "IF 1==2\nENDIF"),
+    _line("NC142", "skip_of_part", "IF 1==2\n/ENDIF", "IF 1==2\nENDIF"),
     _line("NC218", "", "G4", "G4 F1"),
     _said("NC161", "", _SINUMERIK + "G0 X0\n", ("M30\nG0 X0\n", "M30\n")),
     _said("NC161", "another_program", _SINUMERIK.replace("G1 Z5", "M30\nG1 Z5"), ("M30\nG1 Z5", "G1 Z5")),

@@ -15,7 +15,7 @@ SUFFIXES: Final = (".NC", ".CNC", ".TAP", ".PRG", ".TXT", "")
 #: How deep loops may nest; the control itself allows 3 levels.
 MAX_NESTING: Final = 64
 
-_START: Final = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?"
+_START: Final = rb"^[ \t]*(?:(/[0-9]?)[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?"
 _O_NUMBER = re.compile(rb"^[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9])", re.IGNORECASE | re.MULTILINE)
 #: Where a control numbers programs so: alone in its block, for tape marks are written with the same sign.
 _PERCENT_NUMBER = re.compile(rb"^[ \t]*%[ \t]*([0-9]{1,8})(?=[ \t]*(?:[\r\n(;]|$))", re.MULTILINE)
@@ -110,19 +110,27 @@ class FanucText(SourceText):
 
     def _match_loops(self) -> dict[int, int]:
         partners: dict[int, int] = {}
-        open_: list[tuple[int, int]] = []
+        open_: list[tuple[int, int, bytes]] = []
         for match in _LOOP.finditer(self.whole_bytes()):
-            line = self.line_of(match.start(1))
-            number = int(match.group(2))
-            if match.group(1).upper() == b"DO":
-                open_.append((number, line))
+            line = self.line_of(match.start(2))
+            number, skip = int(match.group(3)), _skip_level(match.group(1))
+            if match.group(2).upper() == b"DO":
+                open_.append((number, line, skip))
                 if len(open_) > MAX_NESTING:
                     raise self.problem(line, Wording("NC141", "loops_too_deep", most=MAX_NESTING))
             elif not open_ or open_[-1][0] != number:
                 raise self.problem(line, Wording("NC142", "end_without_do", number=number))
             else:
-                begin = open_.pop()[1]
+                _, begin, skip_of_begin = open_.pop()
+                if skip != skip_of_begin:
+                    word, beginning = f"END{number}", f"DO{number}"
+                    raise self.problem(line, Wording("NC142", "skip_of_part", word=word, beginning=beginning))
                 partners[begin], partners[line] = line, begin
         if open_:
             raise self.problem(open_[-1][1], Wording("NC142", "never_ends", word=f"DO{open_[-1][0]}"))
         return partners
+
+
+def _skip_level(sign: bytes | None) -> bytes:
+    """Return a skip sign with its level; empty: there is none."""
+    return b"/1" if sign == b"/" else sign or b""

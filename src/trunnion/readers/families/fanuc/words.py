@@ -20,9 +20,9 @@ TABLE: Final = WordTable(
     Word("G4", "dwell", act="dwell", letters="PXU", when=_BEHIND, moves=False),
     Word("G5", effect=_NONE, letters="P", values={"P": one_of(0, 10000)}, moves=False),
     Word(
-        "G5.1", "AI contour control; `Q2` and `Q3`, which smooth the path: an error, or declared", effect=_NONE,
-        act="contour_control", letters="QRXYZABC",
-        values={"Q": whole(0, 3), "R": whole(1, 10)}, moves=False,
+        "G5.1", "AI contour control; axes are chosen by 0, as `X0`; `Q2` and `Q3`, which smooth the path: an error, or "
+        "declared", effect=_NONE, act="contour_control", letters="QRXYZABC",
+        values={"Q": whole(0, 3), "R": whole(1, 10), **dict.fromkeys("XYZABC", one_of(0))}, moves=False,
     ),
     Word("G5.3", "what it chooses is not known", effect=_ERROR, letters="P", moves=False),
     Word("G6.1", "a smooth curve is not simulated", effect=_ERROR, letters="XYZPR", moves=False),

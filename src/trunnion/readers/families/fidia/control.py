@@ -19,7 +19,7 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.start_modes import check_start_modes, with_tcp_off
 from trunnion.readers.families.fidia.cycles import ABOVE
-from trunnion.readers.families.fidia.words import TABLE
+from trunnion.readers.families.fidia.words import OFFSET_BASE, TABLE
 from trunnion.readers.program.forms import read_form
 from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
@@ -73,11 +73,12 @@ class FidiaControl(Rs274Control):
 
     relative_centres = False
 
-    doubtful_modes = frozenset({"units", "distances", "plane", "compensation"})
+    doubtful_modes = frozenset({"units", "distances", "plane", "compensation", "offset"})
     reset_by = "no source says what the end of a program sets back"
 
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
+        self.usual_modes["offset"] = OFFSET_BASE + 1
         self.start_modes = _start_modes_of(machine)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
         self.settings = settings_of(machine)

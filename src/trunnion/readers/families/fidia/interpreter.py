@@ -110,7 +110,9 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
         control, number = self.control, block.take("O")
         if number is None or number != int(number) or not 1 <= number <= 99:
             raise BlockError(Wording("NC210", "g55_needs_o_1_99"))
-        control.set_offset(words.OFFSET_BASE + int(number), f"G55 O{number:g}")
+        offset, name = words.OFFSET_BASE + int(number), f"G55 O{number:g}"
+        control.set_mode("offset", name, control.modal.work_offset.current, offset)
+        control.set_offset(offset, name)
         control.set_length(True)
         control.preconditions.meet("G55")
 

@@ -66,8 +66,8 @@ _SYSTEM: Final = 18
 #: Functions of tables: open, write, read.
 _OPEN, _WRITE, _READ = 26, 27, 28
 
-#: Functions that give the values of parameters to the PLC.
-_TO_PLC: Final = frozenset({19, 29})
+#: Functions that give the values of parameters to others: printers, the PLC, calling programs, messages.
+_GIVES_VALUES: Final = frozenset({14, 15, 17, 19, 20, 25, 29, 37, 38})
 
 
 def execute(text: str, parameters: Parameters, note: Note) -> str | None:
@@ -89,7 +89,7 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     if number in FN_NOT_SIMULATED:
         if number == _WRITE:
             _check_written(rest, parameters)
-        elif number in _TO_PLC:
+        elif number in _GIVES_VALUES:
             _check_values(rest, parameters)
         foreign = number == _OPEN and not _OWN_TABLE.fullmatch(rest)
         severity = Severity.ERROR if foreign or number in FN_SYSTEM_DATA else Severity.WARNING

@@ -15,7 +15,7 @@ SUFFIXES: Final = (".NGC", ".NC", "")
 MAX_NESTING: Final = 64
 
 _O_WORD = re.compile(
-    rb"^[ \t]*(?:/[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?O[ \t]*(<[^<>\n]{1,100}>|[0-9]{1,9})[ \t]*"
+    rb"^[ \t]*(?:(/)[ \t]*)?(?:N[ \t]*[0-9]+[ \t]*)?O[ \t]*(<[^<>\n]{1,100}>|[0-9]{1,9})[ \t]*"
     rb"(SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE)(?![A-Z0-9_])",
     re.IGNORECASE | re.MULTILINE,
 )
@@ -30,10 +30,12 @@ class Structure:
     word         keyword that begins it
     begin, end   first and last line
     branches     lines of ELSEIF and ELSE, and of the end
+    skipped      a slash stands before the first line
     """
 
     word: str
     begin: int
+    skipped: bool
     end: int = 0
     branches: list[int] = field(default_factory=list)
 
@@ -66,7 +68,7 @@ class LinuxcncText(SourceText):
     def next_o_word(self, line: int) -> int | None:
         """Return the first line from one on that has an O word; None if there is none."""
         match = self.search(_O_WORD, line)
-        return None if match is None else self.line_of(match.start(1))
+        return None if match is None else self.line_of(match.start(2))
 
     def structure(self, line: int) -> Structure:
         """Return the structure that the O word of a line belongs to."""
@@ -85,9 +87,9 @@ class LinuxcncText(SourceText):
         by_line: dict[int, Structure] = {}
         open_: list[tuple[str, Structure]] = []
         for match in _O_WORD.finditer(self.whole_bytes()):
-            label = label_of(match.group(1).decode("latin-1"))
-            word = match.group(2).decode().upper()
-            line = self.line_of(match.start(1))
+            label, skipped = label_of(match.group(2).decode("latin-1")), match.group(1) is not None
+            word = match.group(3).decode().upper()
+            line = self.line_of(match.start(2))
             top = open_[-1] if open_ and open_[-1][0] == label else None
             if word in ("BREAK", "CONTINUE"):
                 inside = [kept for name, kept in open_ if name == label and kept.word in _LOOPS]
@@ -97,6 +99,7 @@ class LinuxcncText(SourceText):
             elif word in ("ELSEIF", "ELSE"):
                 if top is None or top[1].word != "IF":
                     raise self.problem(line, Wording("NC142", "without_if", word=word))
+                self._check_skip(top[1], word, line, skipped=skipped)
                 top[1].branches.append(line)
                 by_line[line] = top[1]
             elif word.startswith("END") or (word == "WHILE" and top is not None and top[1].word == "DO"):
@@ -104,11 +107,12 @@ class LinuxcncText(SourceText):
                 if top is None or top[1].word != opening:
                     raise self.problem(line, Wording("NC142", "without_beginning", word=word))
                 structure = open_.pop()[1]
+                self._check_skip(structure, word, line, skipped=skipped)
                 structure.end = line
                 structure.branches.append(line)
                 by_line[line] = structure
             else:
-                structure = Structure(word, line)
+                structure = Structure(word, line, skipped)
                 if word == "SUB" and (other := subprograms.setdefault(label, structure)) is not structure:
                     raise self.problem(line, Wording("NC163", "doubled_subprogram", label=label[:60], line=other.begin))
                 by_line[line] = structure
@@ -119,3 +123,8 @@ class LinuxcncText(SourceText):
             structure = open_[-1][1]
             raise self.problem(structure.begin, Wording("NC142", "never_ends", word=structure.word))
         return subprograms, by_line
+
+    def _check_skip(self, structure: Structure, word: str, line: int, *, skipped: bool) -> None:
+        """Refuse a part of a structure that block skip takes out without its beginning, or the other way round."""
+        if skipped is not structure.skipped:
+            raise self.problem(line, Wording("NC142", "skip_of_part", word=word, beginning=structure.word))

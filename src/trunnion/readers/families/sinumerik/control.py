@@ -53,6 +53,8 @@ class SinumerikControl(VirtualControl):
 
     compensation_style = CIRCLES
     no_offset = NO_OFFSET
+    doubtful_modes = frozenset({"offset"})
+    reset_by = "whether the end of a program ends it depends on machine data 20150 and 20152"
     knows_units = True
     start_modes = START_MODES
 

@@ -278,6 +278,8 @@ class SinumerikInterpreter(WordInterpreter):
             return True
         has_motion = block.axes or block.vector or (block.params and control.motion > LINEAR) or "ANG" in block.params
         if not has_motion or G_NO_MOTION.intersection(block.g):
+            for word in sorted(block.params):
+                self._note(Wording("NC213", "unused_word", word=word), Severity.ERROR)
             return False
         self._refuse_unused(block)
         if block.vector and not control.tip_programmed:

@@ -14,7 +14,7 @@ _START = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[0-9]+[ \t]*)?"
 _LABEL = re.compile(_START + rb"([A-Z_][A-Z_][A-Z0-9_]*)[ \t]*:(?!=)", re.IGNORECASE | re.MULTILINE)
 _NUMBER = re.compile(rb"^[ \t]*(?:/[0-9]?[ \t]*)?N([0-9]{1,15})", re.IGNORECASE | re.MULTILINE)
 _STRUCTURE = re.compile(
-    _START + rb"(?:[A-Z_][A-Z_][A-Z0-9_]*[ \t]*:[ \t]*)?"
+    rb"^[ \t]*(?:(/[0-9]?)[ \t]*)?(?:N[0-9]+[ \t]*)?(?:[A-Z_][A-Z_][A-Z0-9_]*[ \t]*:[ \t]*)?"
     rb"(IF|ELSE|ENDIF|FOR|ENDFOR|WHILE|ENDWHILE|LOOP|ENDLOOP|REPEAT|UNTIL)(?![A-Z0-9_])([^\n;]*)",
     re.IGNORECASE | re.MULTILINE,
 )
@@ -113,32 +113,38 @@ class SinumerikText(SourceText):
 
     def _match_structures(self) -> dict[int, tuple[int, int]]:
         partners: dict[int, tuple[int, int]] = {}
-        open_: list[tuple[str, int, int]] = []
+        open_: list[tuple[str, int, int, bytes]] = []
         for match in _STRUCTURE.finditer(self.whole_bytes()):
-            word = match.group(1).decode().upper()
-            rest = match.group(2)
-            line = self.line_of(match.start(1))
+            word, rest, skip = match.group(2).decode().upper(), match.group(3), match.group(1) or b""
+            line = self.line_of(match.start(2))
             if (word == "IF" and _JUMPS.search(rest)) or (word == "REPEAT" and rest.strip()):
                 continue
             if word == "ELSE":
                 if not open_ or open_[-1][0] != "IF" or open_[-1][2]:
                     raise self.problem(line, Wording("NC142", "without_if", word="ELSE"))
-                open_[-1] = ("IF", open_[-1][1], line)
+                self._check_skip(open_[-1], word, line, skip)
+                open_[-1] = ("IF", open_[-1][1], line, skip)
             elif word in _ENDS:
                 if not open_ or open_[-1][0] != _ENDS[word]:
                     raise self.problem(line, Wording("NC142", "without_word", word=word, beginning=_ENDS[word]))
-                _, begin, middle = open_.pop()
+                self._check_skip(open_[-1], word, line, skip)
+                _, begin, middle, _ = open_.pop()
                 partners[begin] = (middle, line)
                 partners[line] = (0, begin)
                 if middle:
                     partners[middle] = (0, line)
             else:
-                open_.append((word, line, 0))
+                open_.append((word, line, 0, skip))
                 if len(open_) > MAX_NESTING:
                     raise self.problem(line, Wording("NC141", "structures_too_deep", most=MAX_NESTING))
         if open_:
             raise self.problem(open_[-1][1], Wording("NC142", "never_ends", word=open_[-1][0]))
         return partners
+
+    def _check_skip(self, opened: tuple[str, int, int, bytes], word: str, line: int, skip: bytes) -> None:
+        """Refuse a part of a structure that block skip takes out without its beginning, or the other way round."""
+        if skip.removesuffix(b"0") != opened[3].removesuffix(b"0"):
+            raise self.problem(line, Wording("NC142", "skip_of_part", word=word, beginning=opened[0]))
 
 
 def _choose_line(lines: list[int], here: int, *, forward: bool, backward: bool) -> int | None:

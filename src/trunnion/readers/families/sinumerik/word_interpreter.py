@@ -75,6 +75,9 @@ class WordInterpreter(CallInterpreter):
             if code in G_SURFACE:
                 self._note(Wording("NC220", "g_constant_surface_speed_not", code=code), Severity.ERROR)
         elif code in G_OFFSETS:
+            # With no offset any program may end, as with the first one.
+            after = control.usual("offset") if code == control.no_offset else code
+            control.set_mode("offset", f"G{code}", control.modal.work_offset.current, after)
             control.set_offset(code, f"G{code}")
             control.regain_offset(code)
         elif code in G_NOT_SIMULATED:
@@ -160,6 +163,7 @@ class WordInterpreter(CallInterpreter):
             self._check_behind_return(self._stack[-1])
             self._leave_program()  # M2 and M30 of a program that another one has called end only itself
         elif code in PROGRAM_ENDS:
+            control.report_trailing_modes()
             control.add_event("end", f"M{code}")
             raise ProgramEnd
         elif code in M_GEARS:
