@@ -89,6 +89,12 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     return None
 
 
+def waiting_function(text: str) -> int | None:
+    """Return the number behind FN if the program stops or waits there; None: it does not."""
+    match = _NUMBER.match(text)
+    return int(match[1]) if match is not None and int(match[1]) in FN_WAITS else None
+
+
 def assign(name: str, text: str, parameters: Parameters) -> None:
     """Set a parameter by a formula; raises errors as ``execute`` does."""
     try:
