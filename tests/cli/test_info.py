@@ -173,6 +173,7 @@ def test_the_plot_is_no_file_that_is_read(clsf: Path, capsys: pytest.CaptureFixt
     assert "although it is read" in capsys.readouterr().err
     assert main(["info", str(clsf), "--plot", str(clsf.with_suffix(".png"))]) == 2
     assert "let its name end in .html" in capsys.readouterr().err
+    page.unlink()
     assert main(["info", str(clsf), "--plot", str(page)]) == 0
     assert "<canvas" in page.read_text(encoding="utf-8")
 

@@ -9,7 +9,14 @@ from trunnion.errors import InputError
 from trunnion.model.run import Run
 
 #: Machines by what a variable of theirs is called.
-MACHINES = {"#500": "matsuura_mx330", "#150": "haas_umc750", "#100": "linuxcnc_5axis", "R55": "yl569", "Q55": "dmu65"}
+MACHINES = {
+    "#500": "matsuura_mx330",
+    "#150": "haas_umc750",
+    "#100": "linuxcnc_5axis",
+    "#<_edge>": "linuxcnc_5axis",
+    "R55": "yl569",
+    "Q55": "dmu65",
+}
 
 BEGIN = {"dmu65": "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S100\n"}
 END = {"dmu65": "9 M30\n10 END PGM A MM\n"}
@@ -58,6 +65,9 @@ def test_a_definition_may_declare_it_and_that_is_told_once(name: str, tmp_path: 
         ("matsuura_mx330", "O1\n#1=#101\nM30"),
         ("linuxcnc_5axis", "o1 if [#31 GT 1]\nG0 X1.\no1 endif\nM2"),
         ("linuxcnc_5axis", "o1 repeat [#5]\nG0 X1.\no1 endrepeat\nM2"),
+        ("linuxcnc_5axis", "o1 if [EXISTS[#<_edge>]]\nG0 X1.\no1 endif\nM2"),
+        ("linuxcnc_5axis", "G0 X[5*EXISTS[#<_edge>]]\nM2"),
+        ("linuxcnc_5axis", "#<a>=[EXISTS[#31]]\nM2"),
         ("yl569", "IF R1==1 GOTOF OUT\nG0 X1\nOUT:\nM30"),
         ("yl569", "WHILE R1<2\nG0 X1\nENDWHILE\nM30"),
         ("yl569", "X=$P_TOOLL[1]\nM30"),
@@ -71,6 +81,23 @@ def test_neither_a_jump_nor_a_loop_may_depend_on_it(machine: str, lines: str, tm
 def test_what_the_program_sets_or_empties_is_known_and_so_are_arguments_left_out(tmp_path: Path) -> None:
     assert read(tmp_path, "matsuura_mx330", "O1\n#500=#0\nIF [#500 EQ #0] THEN #500=1.\nG0 X#500\nM30").errors == ()
     assert read(tmp_path, "linuxcnc_5axis", "o1 sub\nG0 X#2\no1 endsub\no1 call [3]\nM2").errors == ()
+
+
+@pytest.mark.parametrize(
+    ("lines", "definition", "x"),
+    [
+        ("G0 X[5*EXISTS[#<edge>]]\nM2", "", 0.0),
+        ("#<_edge>=7\nG0 X[5*EXISTS[#<_edge>]]\nM2", "", 5.0),
+        ("G0 X[5*EXISTS[#<_Edge>]]\nM2", '[control.reading.variables]\n"#<_edge>" = 1\n', 5.0),
+        ("G0 X[5*EXISTS[#<_metric>]]\nM2", "", 5.0),
+    ],
+)
+def test_exists_of_what_is_local_set_declared_or_the_controls_own_is_known(
+    lines: str, definition: str, x: float, tmp_path: Path
+) -> None:
+    run = read(tmp_path, "linuxcnc_5axis", f"G21 G90\n{lines}", definition)
+    assert run.errors == ()
+    assert run.tip[-1, 0] == x
 
 
 def test_system_variables_may_be_declared_with_their_index(tmp_path: Path) -> None:

@@ -138,6 +138,10 @@ def _carry_out(given: "Given") -> int:
         from trunnion.jobs.guard import check_names  # imports much that a command may want in another order
 
         check_names(given)
+    if any(not each.kind.told for each in written if isinstance(each.kind, FileOut)):
+        from trunnion.jobs.replaced_outputs import check_replaced
+
+        check_replaced(given)
     module, _, name = given.job.run.partition(":")
     run: Callable[[Given], int] = getattr(import_module(module), name)
     if not given.typed:

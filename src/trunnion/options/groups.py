@@ -299,7 +299,7 @@ SHEET: Final = Option(
 OUTPUT: Final = Option(
     "output",
     "--output",
-    FileOut("FILE|-|FOLDER", stdout=True, folder=True),
+    FileOut("FILE|-|FOLDER", stdout=True, folder=True, told=True),
     "program, stdout, or a folder: one program per CL file",
     key="output",
 )

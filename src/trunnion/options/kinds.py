@@ -249,6 +249,7 @@ class FileOut:
     form     what is written, where others know its endings: ``mesh``; empty: ``endings`` says it
     stdout   whether ``-`` is stdout
     folder   whether it may be a folder, which takes files of other names
+    told     whether the command finds out itself what it may replace; ``jobs.replaced_outputs`` does otherwise
     """
 
     metavar: str = "FILE"
@@ -257,6 +258,7 @@ class FileOut:
     form: str = ""
     stdout: bool = False
     folder: bool = False
+    told: bool = False
 
     def parse(self, text: str) -> Any:
         """Its name."""

@@ -29,7 +29,7 @@ _BATCH: Final = job(
     ),
     Option(
         "summary", "--summary",
-        FileOut("FILE", (".sqlite", ".parquet"), phrase("summary_is_table")),
+        FileOut("FILE", (".sqlite", ".parquet"), phrase("summary_is_table"), told=True),
         "a table of all files with their figures: .sqlite or .parquet",
     ),
     _WORKERS,

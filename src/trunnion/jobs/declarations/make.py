@@ -64,7 +64,7 @@ _POST: Final = job(
         "watch", "--watch", Switch(), "post again whenever a file that is read changes", own=True, either="beside"
     ),
     Option(
-        "suggest", "--suggest", FileOut("PROJECT", (".toml",), phrase("project_is_toml")),
+        "suggest", "--suggest", FileOut("PROJECT", (".toml",), phrase("project_is_toml"), told=True),
         "write a project (.toml) to fill in: what was given, and the settings that the messages ask for",
         own=True, either="beside",
     ),
@@ -190,7 +190,7 @@ _PLACE: Final = job(
         "the margin over the table and over the turns", own=True,
     ),
     Option(
-        "apply", "--apply", FileOut("FILE|-", stdout=True),
+        "apply", "--apply", FileOut("FILE|-", stdout=True, told=True),
         "post the CL files with the best place, and prove it; the head of the program says how the part is turned, and"
         " where its zero is", own=True,
     ),

@@ -153,7 +153,7 @@ _RECORD: Final = job(
     "record", "record what a machine, or a twin, shows by OPC UA",
     Option("address", "", Text("ADDRESS"), "of the machine's OPC UA server: opc.tcp://HOST:PORT/…"),
     Option(
-        "output", "--output", FileOut("FILE", (".csv", ".parquet"), phrase("recording_is_table")),
+        "output", "--output", FileOut("FILE", (".csv", ".parquet"), phrase("recording_is_table"), told=True),
         "recording (.csv or .parquet); never written over", required=True,
     ),
     Option("seconds", "--seconds", seconds(1e9, "N"), "how long; without it until Ctrl-C"),

@@ -74,6 +74,8 @@ CURES: Final = (
     script("FIL250 of_somebody_else", _FOREIGN, _OUT, f"{_OUT} --set edited=keep"),
     script("FIL250 of_somebody_else", _FOREIGN, _OUT, f"{_OUT} --set edited=replace"),
     script("FIL250 of_somebody_else", _FOREIGN, _OUT, f"{_POST} --output other.mpf"),
+    script("FIL250 no_such_output", f"{_OUT} --listing two.cls", "--listing two.cls", "--listing two.lst"),
+    script("FIL250 no_such_output", f"write a.html ours\n{_OUT} --report a.html", "write a.html ours\n", ""),
     script("FIL250 definition_exists", "write mill.toml 'x = 5'\ntrunnion new mill.toml --like yl569", "new mill.toml",
            "new mine.toml"),
     script("FIL260 other_ending", "trunnion verify part.mpf --machine yl569 --report a.txt", "a.txt", "a.html"),

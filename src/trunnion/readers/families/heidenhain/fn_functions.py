@@ -19,6 +19,16 @@ from trunnion.readers.families.heidenhain.parameters import (
 )
 from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED, FN_SYSTEM_DATA, FN_WAITS
 
+#: A parameter in the words of a function.
+_PARAMETER: Final = re.compile(r"Q[LR]?[0-9]{1,4}")
+
+#: What is written to a table, from which parameters on, and what is read.
+_TABLE_WRITE: Final = re.compile(r'TABWRITE[ \t]*([^/"]*)/[ \t]*"([^"]+)"[ \t]*=[ \t]*(Q[LR]?[0-9]{1,4})[ \t]*')
+_TABLE_READ: Final = re.compile(r'TABREAD[ \t]*(Q[LR]?[0-9]{1,4})[ \t]*=([^/"]*)/[ \t]*"([^"]+)"[ \t]*')
+
+#: Ends of the names of tables that programs define; the control's own (tools, presets, datums) have others.
+_OWN_TABLE: Final = re.compile(r'TABOPEN[ \t]*"?[^"]*?(?:\.TAB|[\\/:][^.\\/:"]*)"?[ \t]*', re.IGNORECASE)
+
 #: The left side of an assignment to a parameter.
 ASSIGNED: Final = re.compile(r"(Q[LR]?[0-9]{1,4})[ \t]*=[ \t]*")
 
@@ -53,6 +63,12 @@ _CONDITIONS: Final[dict[int, tuple[str, Callable[[float, float], bool]]]] = {
 #: Reads system data, which only the control knows.
 _SYSTEM: Final = 18
 
+#: Functions of tables: open, write, read.
+_OPEN, _WRITE, _READ = 26, 27, 28
+
+#: Functions that give the values of parameters to the PLC.
+_TO_PLC: Final = frozenset({19, 29})
+
 
 def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     """Execute a function; returns the label to jump to, as written, or None.
@@ -67,8 +83,16 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     number, rest = int(match[1]), text[match.end() :]
     if number in _CONDITIONS:
         return _jump(number, rest, parameters)
+    if number == _READ:
+        _read_table(rest, parameters, note)
+        return None
     if number in FN_NOT_SIMULATED:
-        severity = Severity.ERROR if number in FN_SYSTEM_DATA else Severity.WARNING
+        if number == _WRITE:
+            _check_written(rest, parameters)
+        elif number in _TO_PLC:
+            _check_values(rest, parameters)
+        foreign = number == _OPEN and not _OWN_TABLE.fullmatch(rest)
+        severity = Severity.ERROR if foreign or number in FN_SYSTEM_DATA else Severity.WARNING
         of_warning = "NC226" if number in FN_WAITS else "NC221"
         code = "NC220" if severity is Severity.ERROR else of_warning
         note(Wording(code, "fn_known_not_simulated", number=number, does=FN_NOT_SIMULATED[number]), severity)
@@ -87,6 +111,40 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
         parameters.forget(name)
         raise
     return None
+
+
+def _check_values(text: str, parameters: Parameters) -> None:
+    """Check that each parameter in words has a value; texts in quotes are none."""
+    for name in _PARAMETER.findall(re.sub(r'"[^"]*"', "", text)):
+        formula(name, parameters)
+
+
+def _check_written(rest: str, parameters: Parameters) -> None:
+    """Check that what is written to a table has values: one parameter for each column, in order of their numbers."""
+    match = _TABLE_WRITE.fullmatch(rest)
+    if match is None:
+        raise KlartextError(Wording("NC220", "fn_not_simulated", number=_WRITE))
+    _check_values(match[1], parameters)
+    for name in _of_columns(match[3], match[2]):
+        formula(name, parameters)
+
+
+def _read_table(rest: str, parameters: Parameters, note: Note) -> None:
+    """Read a table, which only the control has: one parameter for each column, in order of their numbers."""
+    match = _TABLE_READ.fullmatch(rest)
+    if match is None:
+        raise KlartextError(Wording("NC220", "fn_not_simulated", number=_READ))
+    for name in _of_columns(match[1], match[3]):
+        parameters.forget(name)
+        note(Wording("NC222", "tabread_only_control", name=name), Severity.WARNING)
+    _check_values(match[2], parameters)
+
+
+def _of_columns(first: str, columns: str) -> list[str]:
+    """Return the parameters of the columns of a table, of which the first is given."""
+    kind = first.rstrip("0123456789")
+    number = int(first[len(kind) :])
+    return [f"{kind}{number + k}" for k in range(len(columns.split(",")))]
 
 
 def assign(name: str, text: str, parameters: Parameters) -> None:

@@ -43,6 +43,8 @@ _PLAIN_START = re.compile(rb"[ \t]*(?:[0-9]+[ \t]*)?(?:;|[Ll][Nn]?[ \t])")
 _PREFIX_LENGTH: Final = 32
 
 _CYCLE_DEFINITION = re.compile(r"CYCLE?[ \t]*DEF(?![A-Z])")
+#: Further lines of an older cycle, which are skipped with its title or not at all.
+_LATER_LINE = re.compile(r"CYCLE?[ \t]*DEF[ \t]*[0-9]{1,3}\.(?!0(?![0-9]))[0-9]")
 _CYCLE = re.compile(r"[ \t]*(DEF|CALL)(?![A-Z])")
 _CORNER = re.compile(r"[ \t]*FORM[ \t]+0\.([12])(?![0-9])[ \t]*[XYZ]?(?=[ \t])")
 _COORDINATE = re.compile(r"(I?)([XYZ])[ \t]*([+-]?[ \t]*(?:[0-9]{1,9}[.,]?[0-9]{0,9}|[.,][0-9]{1,9}))")
@@ -64,6 +66,8 @@ class HeidenhainInterpreter(PathInterpreter):
         self._block_length = 0
         self._block_start = 0, -1
         self._skips_block = False
+        # Whether the last block began with a slash.
+        self._has_skip_sign = False
         # The first corner of the stock (BLK FORM 0.1).
         self._stock_corner: dict[str, float] = {}
         # The last block that was split into words: of which program, and its number.
@@ -128,9 +132,15 @@ class HeidenhainInterpreter(PathInterpreter):
         if not self._block_parts:
             self._block_start, self._block_length = (line, parts.number), 0
             self._skips_block = parts.block_skip and self._options.skips(1)
+        continued = bool(self._block_parts)
+        within_cycle = not continued and _LATER_LINE.match(parts.statement) is not None
+        if (continued and parts.block_skip) or (within_cycle and parts.block_skip is not self._has_skip_sign):
+            self._note(Wording("NC210", "skip_within_block"), Severity.ERROR)
         if parts.block_skip and not self._skips_block:
             self.control.add_event("block_skip", 1.0)
         if parts.statement:
+            if not continued:
+                self._has_skip_sign = parts.block_skip
             self._block_parts.append(parts.statement)
             self._block_length += len(parts.statement)
         elif parts.continues and not self._block_parts:

@@ -257,6 +257,6 @@ FN_WAITS: Final = frozenset({14, 20})
 FN_NOT_SIMULATED: Final = {
     14: "stops the program with an error message", 15: "prints", 16: "prints to a file", 17: "writes system data",
     19: "speaks to the PLC", 20: "waits for the PLC", 25: "sets a preset", 26: "opens a table",
-    27: "writes to a table", 28: "reads a table", 29: "speaks to the PLC", 37: "exports parameters",
+    27: "writes to a table", 29: "speaks to the PLC", 37: "exports parameters",
     38: "sends a message",
 }  # fmt: skip

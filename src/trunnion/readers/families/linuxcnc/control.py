@@ -48,8 +48,8 @@ _START_MODES: Final = {
     END_OF_CYCLES: "G99",
 }  # fmt: skip
 
-#: Parameters that keep their values from one program to the next.
-PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000)")
+#: Parameters that keep their values from one program to the next; names in small letters.
+PARAMETER: Final = re.compile(r"#([1-9][0-9]{0,2}|[1-4][0-9]{3}|5000|<_[a-z0-9_]+>)")
 
 
 def _start_modes_of(machine: Machine) -> Mapping[str, str]:

@@ -54,8 +54,8 @@ ARITHMETIC: Final = Arithmetic(
 class Parameters:
     """The parameters of a running program: numbered, named local, named global (with an underscore), and system ones.
 
-    Numbered ones keep what earlier programs have written, but for the arguments of a subprogram: what neither the
-    program nor the definition sets is not known.
+    Numbered and global ones keep what earlier programs have written, but for the arguments of a subprogram: what
+    neither the program nor the definition sets is not known.
 
     system_value   returns a parameter that the control sets, None for one that is not simulated
     declared       the values that the definition declares
@@ -75,21 +75,34 @@ class Parameters:
         if found is not None:
             return found
         if isinstance(key, str):
-            raise BlockError(Wording("NC223", "parameter_without_value", key=key))
+            if not key.startswith("_"):
+                raise BlockError(Wording("NC223", "parameter_without_value", key=key))
+            return self._declared_value(f"#<{key.lower()}>")
         if not 1 <= key <= MAX_NUMBER:
             raise BlockError(Wording("NC215", "number_out_of_range", key=key, most=MAX_NUMBER))
         if key > 5000:
             raise BlockError(Wording("NC222", "only_control_knows", key=key))
         if self._kept and key <= LOCAL_COUNT:
             return 0.0
-        declared = self._declared.get(f"#{key}")
-        if declared is None:
-            raise BlockError(Wording("NC223", "no_value_in_program", name=f"#{key}"))
-        return declared
+        return self._declared_value(f"#{key}")
 
     def is_set(self, key: int | str) -> bool:
-        """Whether a parameter exists (EXISTS)."""
-        return self._find(key) is not None
+        """Whether a parameter exists (EXISTS).
+
+        Only of local names does the program alone decide. Others outlive programs: BlockError where neither the
+        program nor the definition gives one a value.
+        """
+        if isinstance(key, str) and not key.startswith("_"):
+            return self._find(key) is not None
+        self.value(key)
+        return True
+
+    def _declared_value(self, name: str) -> float:
+        """Return what the definition declares of what outlives programs; BlockError if it declares nothing."""
+        declared = self._declared.get(name)
+        if declared is None:
+            raise BlockError(Wording("NC223", "no_value_in_program", name=name))
+        return declared
 
     def _find(self, key: int | str) -> float | None:
         if isinstance(key, int):

@@ -1,0 +1,110 @@
+"""No output of any command replaces a file that no output of its kind has written."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.support.command_lines import code_of, ending_of, fill_folder, line_with
+from tests.support.locations import YL569
+from trunnion.cli import main
+from trunnion.jobs.job import Job
+from trunnion.jobs.registry import JOBS
+from trunnion.jobs.replaced_outputs import beginning, told
+from trunnion.options.kinds import FileOut
+from trunnion.options.option import Option, outputs
+
+#: A program, CL data, a definition and a tool library as people write them.
+OTHERS = (
+    "N10 G0 X0 ; edited\nN20 M30\n",
+    "UNITS / MM\nFINI\n",
+    'extends = "yl569"\n',
+    '{"data": [{"type": "ball end mill"}]}',
+    '{"schema": {"version": 2}, "tools": []}',
+    "<html><body>our page</body></html>\n",
+)
+
+
+def own_outputs() -> list[tuple[Job, Option]]:
+    """Outputs of all commands whose commands do not find out themselves what they may replace."""
+    return [(job, option) for job in JOBS.values() for option in outputs(job.options) if not told(option)]
+
+
+@pytest.mark.parametrize(("job", "option"), own_outputs(), ids=lambda each: each.name)
+def test_an_output_replaces_no_file_of_others(
+    job: Job, option: Option, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill_folder(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert isinstance(option.kind, FileOut)
+    for ending in option.kind.endings or (ending_of(option),):
+        if option.name != "output" or ending != ".out":
+            assert beginning(option, ending) is not None, "say how its files begin, or that its command tells them"
+        target = Path(f"theirs{ending}")
+        for other in OTHERS:
+            target.write_text(other, encoding="utf-8")
+            assert code_of(line_with(job, {option.name: str(target)})) == 2
+            assert target.read_text(encoding="utf-8") == other
+            assert "FIL250" in capsys.readouterr().err
+
+
+POST = "post part.cls --machine yl569 --output"
+
+#: Commands whose outputs are written twice, the second time over the first.
+TWICE = (
+    f"{POST} a.mpf --report r.html --sheet s.html --listing l.txt --manifest m.json --json j.json",
+    f"{POST} a.mpf --report r.json --sheet s.json",
+    "verify part.mpf --machine yl569 --report v.html --json v.json",
+    "info part.cls --json i.json --plot i.html",
+    "sensitivity part.mpf --machine yl569 --report se.html --json se.json",
+    "reach part.cls --machine yl569 --step 30 --plot re.svg --json re.json",
+    "machines --json ma.json",
+    "controls --json co.json",
+    "kinematics yl569 --json k.json",
+    "explain FIL250 --json e.json",
+    "check yl569 --json ch.json",
+    "diff part.mpf part.mpf --machine yl569 --json d.json",
+    "convert part.mpf --machine yl569 --to-cl --output c.cls --json c.json",
+    "view part.mpf --machine yl569 --output view.html",
+    "twin part.mpf --machine yl569 --device-xml t.xml",
+    "fit part.cls --machines yl569 --json f.json",
+    "new n1.toml --like yl569 --json n.json",
+)
+
+
+@pytest.mark.parametrize("words", TWICE)
+def test_a_command_writes_its_own_file_again(
+    words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(YL569 / "2_hub_rough.cls", "part.cls")
+    shutil.copy(YL569 / "2_hub_rough.expected.mpf", "part.mpf")
+    first = main(words.split())
+    before = sorted(Path().iterdir())
+    capsys.readouterr()
+    assert main(words.replace("n1.toml", "n2.toml").split()) == first
+    assert "FIL250" not in capsys.readouterr().err
+    assert len(before) > 2
+
+
+def test_a_manifest_is_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(YL569 / "2_hub_rough.cls", "part.cls")
+    main([*POST.split(), "a.mpf", "--manifest", "m.json"])
+    manifest = Path("m.json").read_bytes()
+    assert main(["info", "part.cls", "--json", "m.json"]) == 2
+    assert Path("m.json").read_bytes() == manifest
+
+
+@pytest.mark.parametrize("ending", [".stl", ".ply", ".3mf", ".glb", ".png"])
+def test_a_mesh_is_written_again(ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from trunnion.simulation.meshes.primitives import box_mesh
+    from trunnion.simulation.meshes.writing import save_mesh
+
+    save = JOBS["simulate"].option("save_stock")
+    assert save is not None
+    save_mesh(box_mesh(np.zeros(3), np.ones(3)), tmp_path / f"stock{ending}")
+    begins = beginning(save, ending)
+    assert begins is not None
+    assert begins.match((tmp_path / f"stock{ending}").read_bytes()[:1000])
