@@ -115,3 +115,20 @@ def test_a_declaration_that_fits_no_variable_is_refused(machine: str, key: str, 
     with pytest.raises(InputError) as refused:
         read(tmp_path, machine, "G0 X1.", f'[control.reading.variables]\n"{key}" = {value}\n')
     assert [problem.code for problem in refused.value.problems] == ["NC190"]
+
+
+@pytest.mark.parametrize(
+    ("machine", "length", "key", "known"),
+    [
+        ("matsuura_mx330", "G43 H1 Z50.", 5043, False),
+        ("haas_umc750", "G43 H1 Z50.", 5043, False),
+        ("haas_umc750", "G43 H1 Z50.", 5041, True),
+        ("haas_umc750", "G43 H1 Z50.", 5003, True),
+        ("haas_umc750", "G49 Z50.", 5043, True),
+    ],
+)
+def test_a_position_that_counts_the_tool_length_is_known_with_the_length(
+    machine: str, length: str, key: int, known: bool, tmp_path: Path
+) -> None:
+    run = read(tmp_path, machine, f"%\nO00001\nG21 G90 G54\nT1 M6\nG0 X1. Y1.\n{length}\nG0 X#{key}\nM30\n%")
+    assert [error.code for error in run.errors] == ([] if known else ["NC222"])

@@ -17,6 +17,7 @@ from tests.support.locations import TESTS
 from trunnion.jobs.twin.serving import twin_program
 from trunnion.twin.mtconnect.adapter import MTConnectAdapter
 from trunnion.twin.mtconnect.device import device_xml
+from trunnion.twin.mtconnect.observations import UNAVAILABLE, shown_number
 from trunnion.twin.mtconnect.shdr import shdr_line, shown_text
 
 #: What ``isspace`` of C takes for one.
@@ -117,3 +118,10 @@ def test_no_name_and_no_text_of_a_program_tells_values_of_its_own(tmp_path: Path
     assert ("estop", "TRIGGERED") not in values
     assert ("main_program", "a|X_actual|999|estop|TRIGGERED b.mpf") in values
     assert ("block", "N80 G1 X20 F500 ; note|X_actual|999|estop|TRIGGERED") in values
+
+
+def test_numbers_have_no_more_digits_than_are_known() -> None:
+    assert shown_number(500.00000000000006) == "500.0"
+    assert shown_number(-0.0) == "0.0"
+    assert shown_number(123.456789) == "123.456789"
+    assert shown_number(float("nan")) == UNAVAILABLE

@@ -8,7 +8,7 @@ from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
 from trunnion.twin.mtconnect.buffer import Observation, ObservationBuffer
-from trunnion.twin.mtconnect.observations import UNAVAILABLE, stamp_text
+from trunnion.twin.mtconnect.observations import UNAVAILABLE, shown_number, stamp_text
 from trunnion.twin.mtconnect.request_errors import RequestError
 from trunnion.twin.mtconnect.shdr import shown_text
 
@@ -123,7 +123,7 @@ def _written(item: _Item, observation: Observation) -> str:
     if isinstance(value, str):
         shown = shown_text(value)
         if item.factor != 1.0 and shown != UNAVAILABLE:
-            shown = repr(float(shown) * item.factor)
+            shown = shown_number(float(shown) * item.factor)
         return f"<{item.element}{item.attributes}{place}>{escape(shown)}</{item.element}>"
     level, code, severity, qualifier, text = value
     told = _attributes({"nativeCode": code, "nativeSeverity": severity, "qualifier": qualifier})

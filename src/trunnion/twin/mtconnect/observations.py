@@ -112,21 +112,21 @@ def _values_at(program: TwinProgram, snapshots: Snapshots, k: int) -> dict[str, 
         "line": str(block.line),
         "block_number": block.number or UNAVAILABLE,
         "tool": block.tool or UNAVAILABLE,
-        "feed": _number(float(snapshots.feed[k])),
-        "tip": " ".join(map(_number, snapshots.tip[k].tolist())),
-        "S_actual": _number(abs(rpm)),
-        "S_commanded": _number(abs(float(snapshots.told_rpm[k]))),
+        "feed": shown_number(float(snapshots.feed[k])),
+        "tip": " ".join(map(shown_number, snapshots.tip[k].tolist())),
+        "S_actual": shown_number(abs(rpm)),
+        "S_commanded": shown_number(abs(float(snapshots.told_rpm[k]))),
         "S_direction": "CLOCKWISE" if rpm > 0.0 else "COUNTER_CLOCKWISE" if rpm < 0.0 else UNAVAILABLE,
     }
     if UNAVAILABLE in values["tip"]:
         values["tip"] = UNAVAILABLE
     for column, axis in enumerate(machine.axes):
         shown = displayed(machine, column, snapshots.joints[k : k + 1, column])
-        values[f"{axis.name}_actual"] = _number(float(shown[0]))
+        values[f"{axis.name}_actual"] = shown_number(float(shown[0]))
         values[f"{axis.name}_state"] = "TRAVEL" if snapshots.moving[k, column] else "STOPPED"
     return values
 
 
-def _number(value: float) -> str:
-    """Return a number from which the same one is read; what is not known is unavailable."""
-    return repr(value + 0.0) if math.isfinite(value) else UNAVAILABLE
+def shown_number(value: float) -> str:
+    """Return a number to a millionth of what any machine measures, 500.0 and not 500.00000000000006."""
+    return repr(float(f"{value:.12g}") + 0.0) if math.isfinite(value) else UNAVAILABLE

@@ -12,6 +12,7 @@ from trunnion.model.run import EventValue, Run, RunEvent
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.event_words import event_word
 from trunnion.verification.expected.states import all_coolants, coolant_states
+from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
 
 #: Coolant words of the CL file as they show in a run; the others are M words of the machine builder, whose meaning only
@@ -138,11 +139,27 @@ def check_coolant(context: ComparedContext) -> Check:
     for _, name, event in words.changes:
         if not unread and None not in anywhere and name not in asked | anywhere | {"off"}:
             places.append(context.place_of_event(event, 0.0, Wording("coolant", "never_asked", kind=event_word(name))))
+    told = {place.nc_line for place in places}
+    places += (place for place in _changes_in_holes(context, words) if place.nc_line not in told)
     places.sort(key=lambda place: place.nc_line)
     good = Wording("coolant", "good", kinds=tuple(map(event_word, sorted(asked)))) if asked else None
     found = check_from_places("coolant", places, good)
     missing = () if places else tuple(phrase("coolant_unread", kind=kind) for kind in sorted(unread))
     return replace(found, missing=missing)
+
+
+def _changes_in_holes(context: ComparedContext, words: _CoolantWords) -> Iterator[Place]:
+    """Yield the first word in each hole that takes away its coolant before the tool has left it.
+
+    No CL point lies between the depth and the way out, where chips need the coolant most.
+    """
+    for hole in match_holes(context.run, context.expected) if words.changes else ():
+        first, last = hole.first + 1, hole.end - 1
+        on = words.at(first)
+        changed = [(row, state) for row, state in words.between(first, last) if state != on]
+        if on != "off" and changed:
+            said = Wording("coolant", "changes_in_hole", has=event_word(on))
+            yield context.place(changed[0][0], 0.0, said)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

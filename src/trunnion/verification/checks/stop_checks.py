@@ -28,6 +28,10 @@ _KINDS: Final = ("dwell", "stop", "optional_stop")
 _TOLERANCE: Final = 1.01e-3
 
 
+#: The M word that changes the workpiece, unless a definition declares another meaning.
+_CHANGES_PART: Final = "M60"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _FoundStop:
     """A dwell or stop of the program, and its place among the events of the run."""
@@ -66,7 +70,7 @@ def check_stops(context: ComparedContext) -> Check:
     for stop in _stops_outside_holes(context):
         found[context.matching.nc.count_before(stop.event.before_row)].append(stop)
     restarts = RestatedModes(context.run)
-    places: list[Place] = [*_changes_in_holes(context)]
+    places: list[Place] = [*_changes_in_holes(context), *_unknown_words_at_work(context)]
     own: list[_FoundStop] = []
     for pair in sorted(expected.keys() | found.keys()):
         places += _compare(context, restarts, pair, expected[pair], found[pair])
@@ -153,15 +157,37 @@ def _changes_in_holes(context: ComparedContext) -> Iterator[Place]:
             yield context.place_of_event(event, 0.0, Wording("stops", "change_in_hole"))
 
 
-def _in_holes(context: ComparedContext, events: Sequence[RunEvent]) -> Flags:
-    """Which events happen while the tool is in a hole, (k,)."""
+def _unknown_words_at_work(context: ComparedContext) -> Iterator[Place]:
+    """Yield words of which nobody knows what they do, while the tool is in a hole; M60 within operations too.
+
+    ISO 6983-1 has M60 for a change of the workpiece, and no cut goes on behind one. What the definition declares is
+    known, and what an INSERT asks for is meant.
+    """
+    run, matching = context.run, context.matching
+    unknown = {str(each.wording.parameter("word")) for each in run.diagnostics if each.code == "NC225"}
+    events = [each for each in run.events if each.kind in ("m", "h") and _builders_word(each) in unknown]
+    inside = _in_holes(context, events, behind=1).tolist()
+    for event, in_hole in zip(events, inside, strict=True):
+        pair, word = matching.nc.count_before(event.before_row), _builders_word(event)
+        changes_part = word == _CHANGES_PART and _is_within_operation(context, pair)
+        if (in_hole or changes_part) and not _follows_insert(context, min(pair, len(matching.cl) - 1)):
+            variant = "changes_part" if changes_part else "unknown_in_hole"
+            yield context.place_of_event(event, 0.0, Wording("stops", variant, word=word))
+
+
+def _builders_word(event: RunEvent) -> str:
+    return f"{event.kind.upper()}{event.value:g}" if isinstance(event.value, float) else ""
+
+
+def _in_holes(context: ComparedContext, events: Sequence[RunEvent], behind: int = 0) -> Flags:
+    """Which events happen while the tool is in a hole, (k,); ``behind`` 1: but for those before it drills."""
     holes = match_holes(context.run, context.expected) if events else []
     if not holes:
         return np.zeros(len(events), np.bool_)
     first, end = np.array([hole.first for hole in holes]), np.array([hole.end for hole in holes])
-    rows = np.array([event.before_row for event in events])
+    rows = np.array([event.before_row for event in events]) - behind
     hole = np.searchsorted(first, rows) - 1  # the last one that begins before the row
-    return np.asarray((hole >= 0) & (rows < end[hole]))
+    return np.asarray((hole >= 0) & (rows + behind < end[hole]))
 
 
 def _compare(

@@ -83,6 +83,9 @@ class FanucInterpreter(CycleInterpreter):
         axes = {0: "X", 1: "Y", 2: "Z", **{3 + k: name for k, name in enumerate(control.rotary_names)}}
         if 5001 <= key <= 5005 or 5041 <= key <= 5045:
             axis = (key - 1) % 20
+            with_length = control.tcp or (axis == 2 and control.length_active)
+            if key > 5040 and axis < 3 and with_length and not control.machine.tool_length:
+                return None  # the present position counts the tool length, which nothing states
             if axis < 3:
                 return float(control.programmed_position[axis]) / control.length_unit
             control.resolve_rows()
