@@ -229,9 +229,6 @@ class FanucInterpreter(CycleInterpreter):
         elif (written := f"{word.text} Q{block.words['Q'].value:g}") in words.SMOOTHING:
             self._note(Wording("NC224", "smooths_path", word=written), Severity.ERROR)
 
-    def _unasked(self, word: Word, block: Block) -> None:
-        self.control.add_event("unasked", word.text)
-
     def _exact_stop(self, word: Word, block: Block) -> None:
         self.control.add_exact_stop(word.sets)
 
