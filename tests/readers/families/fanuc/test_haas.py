@@ -19,6 +19,16 @@ def test_a_dwell_with_a_point_is_in_seconds(words: str, seconds: float, tmp_path
     assert [event.value for event in run.events if event.kind == "dwell"] == [pytest.approx(seconds)]
 
 
+@pytest.mark.parametrize("machine", ["haas_umc750", "matsuura_mx330"])
+def test_an_end_of_scaling_and_h0_on_the_way_home_change_no_path(machine: str, tmp_path: Path) -> None:
+    """G50 ends G51, which is an error of its own; H0 names no length, and home counts in the machine's frame."""
+    plain = read(tmp_path, "G1 X5. F100.\nG91 G28 Z0.", machine)
+    said = read(tmp_path, "G50\nG1 X5. F100.\nG91 G28 Z0. H0", machine)
+    assert said.errors == plain.errors == ()
+    assert said.joints.tolist() == plain.joints.tolist()
+    assert any("scaling" in error.text for error in read(tmp_path, "G51 X0. Y0. P2.", machine).errors)
+
+
 @pytest.mark.parametrize(
     ("lines", "what"),
     [
