@@ -223,6 +223,16 @@ def test_z_without_the_length_that_home_has_taken_off_is_an_error(lines: str, tm
     assert errors(tmp_path, f"G49\nG28 G91 Z0.\nG90 G0 X5.\n{lines}") == [], "no length was there"
 
 
+@pytest.mark.parametrize("block", ["H0", "X6. H0", "G28 G91 Z0. H0\nG90"])
+def test_z_without_the_length_that_h0_has_taken_off_is_an_error(block: str, tmp_path: Path) -> None:
+    """The number of a length holds until another one, and no register 0 has a length."""
+    (error,) = errors(tmp_path, f"{block}\nG0 X5.\nG1 Z-1. F100.")
+    assert error.startswith("Z without the tool length, which ")
+    assert errors(tmp_path, f"{block}\nG0 X5.\nG43 H5 G0 Z60.\nG1 Z-1. F100.") == []
+    assert errors(tmp_path, f"G49 {block}\nG0 X5.\nG1 Z-1. F100.") == [], "no length was there"
+    assert slides(tmp_path, f"{block}\nG0 X5. Z50.")[-1] == pytest.approx(-450.0)
+
+
 def test_home_under_tcp_is_an_error(tmp_path: Path) -> None:
     assert any("G28 with TCP on" in error for error in errors(tmp_path, "G234 H5 Z60.\nG28 G91 Z0."))
 
