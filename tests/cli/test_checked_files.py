@@ -26,6 +26,18 @@ def test_a_file_is_said_to_be_what_it_is(file: str, said: str, capfd: pytest.Cap
     assert said in capfd.readouterr().out
 
 
+def test_a_tool_table_is_checked_without_its_unit(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "tool.tbl"
+    table.write_text("T1 P1 Z10 D6 ;ok\nT2 P2 Z20 D8\n", encoding="utf-8")
+    assert main(["check", str(table)]) == 0
+    out, err = capfd.readouterr()
+    assert "a tool library: 2 tools" in out
+    assert "does not say its unit" in err
+    assert "SIM175" in err
+    table.write_text("T1 P1 D6 D7\n", encoding="utf-8")
+    assert main(["check", str(table)]) == 2
+
+
 def test_a_mistake_is_that_of_its_own_kind(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     tools = tmp_path / "tools.toml"
     tools.write_text('[[tool]]\nnumber = 1\nkind = "flat"\ndiametre_mm = 10\nlength_mm = 60\n', encoding="utf-8")

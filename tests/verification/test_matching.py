@@ -102,3 +102,18 @@ def test_where_rotary_axes_turn_and_the_tool_hardly_moves_the_right_block_is_tak
     done = post(machine(name), toolpath(operation_of(replace(moves, kind=kind))), PlanOptions(tcp=False))
     assert not any(problem.severity.value == "error" for problem in done.plan.problems)
     assert failures(done.found) == []
+
+
+@pytest.mark.parametrize("repeats", [1, 2])
+@pytest.mark.parametrize("name", ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt"])
+def test_a_whole_circle_is_not_the_repeated_point_before_it(name: str, repeats: int, folder: Path) -> None:
+    """The circle ends where it starts, and the CL file has its start twice; another point prints as the one before."""
+    circle = "CIRCLE/{},0,0,0,0,1,{},0.06,0.5,10.0,0.0\nGOTO/0,0,0\n"
+    path = (
+        "RAPID\nGOTO/0,0,20,0,0,1\nFEDRAT/MMPM,800\nGOTO/0,0,0\n"
+        + circle.format(4, "4")
+        + "GOTO/0,0,0\n" * repeats
+        + circle.format(6, "6")
+        + "GOTO/5,0,0\nGOTO/5.00001,0,0\nRAPID\nGOTO/5,0,20\n"
+    )
+    assert failed(START + path + FOOT, name, folder) == []

@@ -12,7 +12,7 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.cli.wording import part
 from trunnion.definitions import LocatedValue, load_table, own_keys
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, Severity
 from trunnion.machines.loading import machine_library
 from trunnion.messages import Wording
 from trunnion.results import to_data
@@ -60,10 +60,15 @@ def _has_key(content: LocatedValue, key: str) -> bool:
 def _tools(path: Path) -> _Checked:
     from trunnion.simulation.tools.library import read_tools
 
-    found = read_tools(path)
+    is_table = path.suffix.lower() == ".tbl"
+    # Whatever the unit is, the lines of a table are right or wrong.
+    found = read_tools(path, "mm" if is_table else "")
+    unknown = Problem(str(path), 0, Wording("SIM175", "unit_not_known"), Severity.WARNING)
+    remarks = (unknown,) if is_table else ()
+    count = len(found.tools) + len(found.diameters)
     if found.unusable:
-        return part("checked_tools_some", count=len(found.tools), unusable=len(found.unusable)), ()
-    return part("checked_tools", count=len(found.tools)), ()
+        return part("checked_tools_some", count=count, unusable=len(found.unusable)), remarks
+    return part("checked_tools", count=count), remarks
 
 
 def _impeller(path: Path) -> _Checked:

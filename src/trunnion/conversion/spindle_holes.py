@@ -15,14 +15,11 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.conversion.program_events import ProgramEvent
-from trunnion.conversion.unsupported import Warnings
+from trunnion.conversion.unsupported import ON_AXIS, Warnings
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.spindle_work import SpindleHole, SpindleTask
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, Kind, Sense, SpindleOff, SpindleOn
-
-#: A tool within this distance of the axis of a hole, mm, is on it; heights within it are the same.
-_ON_AXIS = 1e-5
 
 _REFUSED = {
     SpindleTask.LIFT: "stops the spindle at an angle and moves the tool off the wall",
@@ -155,7 +152,7 @@ def _made(run: Run, rows: Ints, hole: SpindleHole, events: Sequence[ProgramEvent
     height = offset @ axis
     aside = float(np.linalg.norm(offset[motions >= lines[0]] - height[motions >= lines[0], None] * axis, axis=1).max())
     depth = -float(height.min())
-    if aside > _ON_AXIS or not depth > work.clearance:
+    if aside > ON_AXIS or not depth > work.clearance:
         warn.refuse(hole.line, Wording("CNV176", "cycle_does_not"), hole.file)
         return None
     rpm, sense = _spindle(run, int(lines[0]))
@@ -218,4 +215,4 @@ def _leads_level(run: Run, rows: Ints, row: int) -> bool:
         return False
     step, axis = run.tip[row] - run.tip[row - 1], run.axis[row]
     same_axis = float(np.abs(axis - run.axis[row - 1]).max()) < 1e-9
-    return same_axis and abs(float(step @ axis)) < _ON_AXIS and row in rows and row - 1 in rows
+    return same_axis and abs(float(step @ axis)) < ON_AXIS and row in rows and row - 1 in rows

@@ -138,7 +138,7 @@ STATES: Final = (
         loss=Wording("CNV150", "stock_not_carried"),
     ),
     State("limits of the axes off", "G23", _REPORTED),
-    State("override of the feed", "M49, M50 P0", _REPORTED),
+    State("override of the feed", "M49, M50 P0", _REPORTED, kinds=("unasked",)),
     State("output of the machine", "M67", _REPORTED),
     State("unit", "G20, G70, INCH", _PATH, columns=("inches",)),
     State(

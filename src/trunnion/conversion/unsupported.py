@@ -27,6 +27,8 @@ _WITHOUT_RADIUS = ("cycle 208:", "G41.2:", "G42.2:")
 _SAME_ANGLE = 1e-4
 #: Machine positions within this, mm, are the same.
 _SAME_POSITION = 1e-3
+#: A tool within this distance of the axis of a hole, mm, is on it; heights within it are the same.
+ON_AXIS = 1e-5
 #: The tool axis turns if one of its components changes by more than this.
 _TURNS = 1e-9
 
@@ -194,11 +196,39 @@ def warn_of_splines(run: Run, warn: Warnings) -> None:
 
 
 def warn_of_cycles(run: Run, warn: Warnings) -> None:
-    """Warn of drilling cycles, of which only their motion is carried over; those of threads and bores stay cycles."""
+    """Warn of drilling cycles, of which only their motion is carried over; those of threads and bores stay cycles.
+
+    The motion has the pecks of the program's control, which may divide the last ones otherwise than a CL file asks.
+    """
     rows = [event.before_row for event in run.events if event.kind == "hole" and event.before_row < len(run)]
-    if rows:
-        wording = Wording("CNV163", "cycles_become_motion", count=len(rows), first=block_name_of(run, rows[0]))
-        _warn_at_rows(run, np.array(rows), wording, warn)
+    if not rows:
+        return
+    ends = [*rows[1:], len(run)]
+    pecked = sum(_is_pecked(run, first, end) for first, end in zip(rows, ends, strict=True))
+    said: dict[str, object] = {"count": len(rows), "first": block_name_of(run, rows[0])}
+    if pecked:
+        wording = Wording("CNV163", "pecks_become_motion", **said, pecked=pecked)
+    else:
+        wording = Wording("CNV163", "cycles_become_motion", **said)
+    _warn_at_rows(run, np.array(rows), wording, warn)
+
+
+def _is_pecked(run: Run, first: int, end: int) -> bool:
+    """Whether the tool cuts deeper more than once in the hole that begins with row ``first``; ``end``: the next one.
+
+    A hole ends where its block ends, or the tool leaves its axis.
+    """
+    deepest, strokes = np.inf, 0
+    for row in range(first, end):
+        offset = run.tip[row] - run.tip[first]
+        height = float(offset @ run.axis[first])
+        if float(np.linalg.norm(offset - height * run.axis[first])) > ON_AXIS or run.line[row] != run.line[first]:
+            break
+        if run.kind[row] == Kind.LINEAR and height < deepest - ON_AXIS:
+            deepest, strokes = height, strokes + 1
+        if strokes > 1:
+            return True
+    return False
 
 
 def _warn_at_rows(run: Run, rows: Ints, wording: Wording, warn: Warnings) -> None:

@@ -184,8 +184,8 @@ def _demands(proof: Table) -> tuple[str, ...]:
 
 
 def _home_at(proof: Table, axes: Sequence[Axis]) -> dict[str, tuple[str, ...]]:
-    """Return which linear axes must be at home where; what the definition is silent about needs all of them."""
-    linear = tuple(axis.name for axis in axes if not axis.is_rotary)
+    """Return which axes must be at home where; what the definition is silent about needs all linear ones."""
+    known = tuple(axis.name for axis in axes)
     found = {}
     for place in HOME_PLACES:
         key = f"home_at_{place}"
@@ -193,9 +193,9 @@ def _home_at(proof: Table, axes: Sequence[Axis]) -> dict[str, tuple[str, ...]]:
         if names is None:
             continue
         for name in names:
-            if name not in linear:
-                proof.add_problem(key, Wording("DEF330", "no_linear_axis", name=name, known=linear))
-        found[place] = tuple(name for name in linear if name in names)
+            if name not in known:
+                proof.add_problem(key, Wording("DEF330", "no_axis_at_home", name=name, known=known))
+        found[place] = tuple(name for name in known if name in names)
     return found
 
 

@@ -207,7 +207,7 @@ class Machine:
     assumed             values that it marks as assumptions, with their places
     inherited           measured values that it has from another machine, which it extends, with their places
     demands             what a proof must stand on: names of ``loading.DEMANDS``
-    home_at             linear axes that must be at home before a ``tool_change`` and the ``end``; silent: all
+    home_at             axes that must be at home before a ``tool_change`` and the ``end``; silent: all linear ones
     """
 
     key: str

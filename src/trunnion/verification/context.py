@@ -61,6 +61,7 @@ class ExpectedValues:
     left_out               numbers of the OPSKIP of the CL files whose points are left out, counted through all of them
     stop_between           an optional stop stands between operations
     has_settings           names of the settings that the control has: only those can be told again
+    texts                  lines of the definition's templates: what words the control's programs have anyhow
     demands                what the proof must stand on besides what the machine's definition demands
     """
 
@@ -95,6 +96,7 @@ class ExpectedValues:
     operation_clearance: float = math.inf
     in_turn: bool = False
     has_settings: frozenset[str] = frozenset()
+    texts: tuple[str, ...] = ()
     demands: tuple[str, ...] = ()
 
     def repeated(self, fault: Wording, name: str, value: object, **others: object) -> Wording:

@@ -226,6 +226,29 @@ def test_a_first_leg_under_tcp_may_go_across_and_then_along_z(base: str, program
 
 
 @pytest.mark.third
+@pytest.mark.parametrize(("base", "path"), [(base, path) for base in MACHINES for path in ("two_holes", "tcp")])
+def test_halves_of_a_first_leg_under_tcp_may_state_their_height(base: str, path: str, programs: _Programs) -> None:
+    lines = programs.post(base, path, _IN_TURN, ("mode", "tcp"))
+    whole = re.compile(r"(?P<words>(?:G0?[01] .*?|L )?)(?P<x>X\S+) (?P<y>Y\S+) (?P<z>Z\S+)(?P<rest>.*)$")
+    home = next(k for k, line in enumerate(lines) if _HOME.search(_plain(line)))
+    leg, found = next(
+        (k, match)
+        for k in range(home, len(lines))
+        if (match := whole.match(_plain(lines[k]))) and not re.search("SUPA|G53|M91", lines[k])
+    )
+    again = re.sub("G43.4 H1 ", "", found["words"])
+    for one, other in ("xy", "yx"):
+        first = f"{found['words']}{found[one]} {found['z']}{found['rest']}"
+        second = f"{again}{found[other]} {found['z']}{found['rest']}"
+        split = [*lines[:leg], first, second, *lines[leg + 1 :]]
+        # The tool of the tilted path leans along Y: how high it is nobody knows before Y is stated.
+        assert programs.failing(split, base, path, _IN_TURN) == ({"order"} if path == "tcp" and one == "x" else set())
+        for k in (leg, leg + 1):
+            low = [line.replace(found["z"], "Z-3.") if at == k else line for at, line in enumerate(split)]
+            assert programs.failing(low, base, path, _IN_TURN)
+
+
+@pytest.mark.third
 @pytest.mark.parametrize("base", MACHINES)
 def test_a_first_leg_before_several_holes_is_proven(base: str, programs: _Programs) -> None:
     lines = programs.post(base, "two_holes", _IN_TURN, ("mode", "tcp"))

@@ -84,8 +84,8 @@ def test_at_the_end_more_may_be_asked_for_than_at_a_tool_change(tmp_path: Path) 
         trunnion.post(_source(tmp_path), machine=machine)
 
 
-@pytest.mark.parametrize("value", ['["Q"]', '["A"]', '"Z"'])
-def test_only_linear_axes_can_be_named(value: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("value", ['["Q"]', '["U"]', '"Z"'])
+def test_only_axes_of_the_machine_can_be_named(value: str, tmp_path: Path) -> None:
     with pytest.raises(trunnion.InputError, match="home_at_end"):
         trunnion.post(_source(tmp_path), machine=_machine(tmp_path, "yl569", f"[proof]\nhome_at_end = {value}\n"))
 

@@ -32,12 +32,12 @@ class _Warnings(Observer):
 
 
 def proof(base: Base, program: Path) -> Told:
-    """Whether the proof against the CL file fails, or names what nobody asked for in a hole."""
+    """Whether the proof against the CL file fails, or names what nobody asked for."""
     try:
         found = trunnion.verify(program, machine=base.machine, cl=base.cl, **base.stated)
     except trunnion.TrunnionError as refused:
         return Told(True, type(refused).__name__)
-    unasked = [check.key for check in found.checks if check.key == "holes" and check.missing]
+    unasked = [check.key for check in found.checks if check.key in ("holes", "words") and check.missing]
     failed = [check.key for check in found.checks if not check.passed]
     return Told(bool(failed or unasked), ", ".join(failed or unasked))
 

@@ -68,6 +68,7 @@ def expected_values(
         rigid_tap=m_code(settings.get("rigid_tap", "")),
         blocks_in_compensation=control.blocks_in_compensation if control else 1,
         stops_in_compensation=control.stops_in_compensation if control else False,
+        texts=tuple(line for each in control.templates.values() for line in each.pattern_lines()) if control else (),
         axis_tolerance=control.axis_tolerance if control else AxisTolerance(),
     )
 

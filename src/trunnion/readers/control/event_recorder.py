@@ -80,8 +80,10 @@ class EventRecorder:
         if seconds > _LONG_DWELL and math.isfinite(seconds):
             self.note_wait(Wording("NC226", "long_dwell", duration=format_duration(seconds)))
 
-    def note_wait(self, wait: Wording) -> None:
-        """Note once for each block that the machine waits, or stops, there."""
+    def note_wait(self, wait: Wording, word: str = "") -> None:
+        """Note once for each block that the machine waits, or stops, there; ``word``: one that no CL file asks for."""
+        if word:
+            self.add_event("unasked", word)
         place = self.modal.file.current, self.line
         if place not in self._told_waits:
             self._told_waits.add(place)

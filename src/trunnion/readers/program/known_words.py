@@ -24,6 +24,7 @@ EFFECTS: Final = (
     "no effect", "comes back", "comes back home", "stop", "optional stop", "tool change", "spindle clockwise",
     "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant through", "coolant off",
     "tcp on", "tcp off", "waits", "door opens", "door closes", "clamp opens", "clamp closes",
+    "brake on", "brake off",
 )  # fmt: skip
 
 #: Other names of effects.
@@ -42,11 +43,17 @@ _BEFORE_MOTION: Final = (
 
 #: Effects that are not events of their own: the word itself says what happens.
 _SILENT: Final = frozenset(
-    {"no effect", "comes back", HOME, WAITS, "door opens", "door closes", "clamp opens", "clamp closes"}
-)
+    {
+        "no effect", "comes back", HOME, WAITS, "door opens", "door closes", "clamp opens", "clamp closes",
+        "brake on", "brake off",
+    }
+)  # fmt: skip
+
+#: Effects that no path shows and no CL file asks for: programs are told of them.
+_ALTERING: Final = frozenset({"door opens", "clamp opens", "brake on", "brake off"})
 
 #: Kinds of effects of which one excludes another.
-_ONE_MODE: Final = ("spindle", "tcp", "door", "clamp")
+_ONE_MODE: Final = ("spindle", "tcp", "door", "clamp", "brake")
 
 #: So many letters and points are shown of a key.
 _MOST_LETTERS: Final = 40
@@ -303,10 +310,13 @@ class KnownWords:
                 control.note_wait(
                     Wording("NC226", "waits_as_declared", word=word.word, means=word.means)
                     if word.means
-                    else Wording("NC226", "waits", word=word.word)
+                    else Wording("NC226", "waits", word=word.word),
+                    word.word,
                 )
             case _ if effect == HOME:
                 control.go_home()
+            case _ if effect in _ALTERING:
+                control.add_event("unasked", word.word)
             case _ if kind == "spindle":
                 control.add_event("spindle", value)
             case _ if kind == "coolant":

@@ -282,6 +282,9 @@ class WordInterpreter(Rs274Interpreter[A]):
         else:
             self.control.add_event("dwell", seconds)
 
+    def _unasked(self, word: Word, block: Block) -> None:
+        self.control.add_event("unasked", word.text)
+
     def _tcp(self, word: Word, block: Block) -> None:
         self.control.set_tcp(word.sets)
 

@@ -78,8 +78,38 @@ def check_home(context: Context) -> Check:
     Between two operations of the CL files every program that retracts at all does so.
     """
     check = _with_rotary_end(context, _check_motions(context))
-    unretracted = list(without_retract(context))
-    return check_from_places("home", [*check.places, *unretracted], None) if unretracted else check
+    others = [*_turned_from_home(context), *without_retract(context)]
+    return check_from_places("home", [*check.places, *others], None) if others else check
+
+
+def _turned_from_home(context: Context) -> Iterator[Place]:
+    """Yield the last motion before each tool change and end at which rotary axes are not at home that the definition
+    names for it.
+    """
+    run, machine = context.run, context.run.machine
+    variants = {"tool_change": "changes_turned", "end": "ends_turned"}
+    for event in run.events:
+        names = machine.home_at.get(event.kind, ())
+        columns = [column for column in machine.rotary if machine.names[column] in names]
+        if not columns or not 0 < event.before_row <= len(run):
+            continue
+        row = event.before_row - 1
+        if away := _rotary_off_home(run, row, columns):
+            axes = tuple(machine.axes[column].name for column in away)
+            yield context.place(row, 0.0, Wording("home", variants[event.kind], line=event.line, axes=axes))
+
+
+def _rotary_off_home(run: Run, row: int, columns: Iterable[int]) -> dict[int, float]:
+    """Return where those of some rotary axes stand that are not at home, degrees; endless ones have whole turns."""
+    rows = np.array([row])
+    joints, allowed = run.positions(rows).joints[0], home_tolerance(run, rows)[0]
+    found = dict[int, float]()
+    for column in columns:
+        off = float(joints[column] - run.machine.home[column])
+        off -= 360.0 * round(off / 360.0) if run.machine.axes[column].endless else 0.0
+        if abs(off) > max(float(allowed[column]), _ROTARY_HOME):
+            found[column] = float(joints[column])
+    return found
 
 
 def _with_rotary_end(context: Context, check: Check) -> Check:
@@ -89,14 +119,8 @@ def _with_rotary_end(context: Context, check: Check) -> Check:
     run, machine = context.run, context.run.machine
     if check.places or check.answer is None or not len(run):
         return check
-    rows = np.array([len(run) - 1])
-    joints, allowed = run.positions(rows).joints[0], home_tolerance(run, rows)[0]
-    left = list[str]()
-    for k in machine.rotary:
-        axis, off = machine.axes[k], float(joints[k] - machine.home[k])
-        off -= 360.0 * round(off / 360.0) if axis.endless else 0.0
-        if abs(off) > max(float(allowed[k]), _ROTARY_HOME):
-            left.append(f"{axis.name}{joints[k]:g}")
+    off = _rotary_off_home(run, len(run) - 1, machine.rotary)
+    left = [f"{machine.axes[column].name}{at:g}" for column, at in off.items()]
     if not left:
         return check
     return replace(check, answer=Wording("home", "rotary_end", home=check.answer, axes=tuple(left)))

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
-from trunnion.model.run import RowPositions, Run
+from trunnion.model.run import ProgrammedWord, RowPositions, Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.rotary_moves_at_part import rows_away
 from trunnion.verification.context import ComparedContext, Context
@@ -34,6 +34,8 @@ _LEAST_CLEARANCE = 1.0
 
 #: Motions between two operations at most, without those that repeat a position: up, across.
 _MOST_ROWS = 2
+
+_ACROSS = int(ProgrammedWord.X | ProgrammedWord.Y)
 
 
 def passage_rows(context: ComparedContext) -> set[int]:
@@ -82,12 +84,18 @@ def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]
         if not 0 < len(legs) <= _MOST_ROWS:
             continue
         way = _Way(context, legs[0], down)
-        if len(legs) == 1 and _comes_from_home(run, legs[0], across):
-            # Whatever the settings: above all points the leg is harmless. A plane has first legs of its own.
+        if (len(legs) == 1 or _are_halves(run, legs)) and _comes_from_home(run, legs[0], across):
+            # Whatever the settings: above all points a leg is harmless. A plane has first legs of its own.
             if run.state.follows_at(np.array(legs))[0] and way.comes_down_from(context.highest_point(way.axis)):
                 yield unbroken.tolist(), math.inf
         elif _begins_operation(context, arrives) and (height := way.height) is not None:
             yield unbroken.tolist(), height - context.highest_point(way.axis)
+
+
+def _are_halves(run: Run, legs: Sequence[int]) -> bool:
+    """Whether two rows go across, one in X and the other in Y, whatever height they state."""
+    across = sorted(int(run.programmed[row]) & _ACROSS for row in legs)
+    return across == sorted((int(ProgrammedWord.X), int(ProgrammedWord.Y)))
 
 
 def _comes_from_home(run: Run, row: int, across: Container[int]) -> bool:
@@ -167,8 +175,8 @@ class _Way:
         self._is_free = at_rapid and not turned and not (words and moved) and not run.state.machine_frame.at(rows).any()
 
     def comes_down_from(self, height: float) -> bool:
-        """Whether the last row goes straight down from a height or above."""
-        return self._is_free and self._goes_down() and self._heights[-2] >= height - self._near
+        """Whether the last row goes straight down, and all before it end at a height or above."""
+        return self._is_free and self._goes_down() and bool(self._heights[1:-1].min() >= height - self._near)
 
     @property
     def height(self) -> float | None:

@@ -12,6 +12,7 @@ from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, misplaced_lean_positions
 from trunnion.verification.deviations.nominal_values import (
+    LONGER,
     depends_on_length,
     depends_on_zero,
     moved_tips,
@@ -54,28 +55,38 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
         places += [positioned] if positioned is not None else []
     on_arcs = [place for segments in matching.arc_segments for place in _tips_off_arc(context, segments)]
     nominal = Faults()
-    missing = _depends_on_values(context, nominal)
+    missing, most = _depends_on_values(context, nominal)
     count = deviations.count + len(on_arcs) + nominal.count
     places += [*on_arcs, *nominal.places]
     check = _measured("tip", context, deviations, places, count)
+    if nominal.count:
+        # What was measured is of the run with the length as it is; the fault is that of the longer tool.
+        longer = Wording(
+            "tip", "longer_off", measured=check.answer, longer=LONGER, off=most * LONGER, rows=nominal.count
+        )
+        check = replace(check, answer=longer)
     return replace(check, missing=missing)
 
 
-def _depends_on_values(context: ComparedContext, found: Faults) -> tuple[Wording, ...]:
-    """Take the points at which the tip moves with the tool length; returns what points stand on and nobody has stated.
+def _depends_on_values(context: ComparedContext, found: Faults) -> tuple[tuple[Wording, ...], float]:
+    """Take the points at which the tip moves with the tool length.
+
+    Returns what points stand on and nobody has stated, and how far the tip moves at most for each millimetre of length.
 
     Only where positions are those of the linear axes: elsewhere the control knows the length.
     """
     run = context.run
     if run.state.xyz_is_tip.values.all():
-        return ()
+        return (), 0.0
     on_length = on_zero = False
+    most = 0.0
     for nc, cl in context.matching.pair_chunks():
         rows = with_linear_positions(run, nc)
         if not len(rows):
             continue
         on_length, on_zero = on_length or depends_on_length(run, rows), on_zero or depends_on_zero(run, rows)
         moved = moved_tips(run, rows)
+        most = max([most, *(tip.share for tip in moved)])
         points = cl[np.searchsorted(nc, [tip.row for tip in moved])].tolist()
         found.add_rows(
             len(moved),
@@ -84,7 +95,7 @@ def _depends_on_values(context: ComparedContext, found: Faults) -> tuple[Wording
                 for tip, point in zip(moved, points, strict=True)
             ),
         )
-    return (*((phrase("no_zero"),) if on_zero else ()), *((phrase("no_tool_length"),) if on_length else ()))
+    return (*((phrase("no_zero"),) if on_zero else ()), *((phrase("no_tool_length"),) if on_length else ())), most
 
 
 def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:

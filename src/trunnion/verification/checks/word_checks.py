@@ -1,13 +1,16 @@
 """Words of a program that the reader does not know or cannot act upon."""
 
+import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity, first_of_kinds
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.run import Diagnostic, Run
+from trunnion.verification.block_names import block_name, block_name_of
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, Faults
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.results import Check, Place
@@ -17,12 +20,43 @@ _OF_MACHINE: Final = "NC225"
 
 _MOST_NAMED: Final = 10
 
+#: What a word is looked for by in templates and texts: its name without values, axes and arguments.
+_NAME: Final = re.compile(r"[#A-Z]+ ?[0-9.]*")
+
 #: What a call states for nothing is no word of the program.
 _OF_CALL: Final = "NC228"
 
 
 def check_words(context: Context) -> Check:
-    """Every word is known; texts that the CL file inserts (INSERT) may have any."""
+    """Every word is known; texts that the CL file inserts (INSERT) may have any.
+
+    With a CL file it is not checked where words change how the machine runs, and nobody asked for them.
+    """
+    check = _known_words(context)
+    if not isinstance(context, ComparedContext):
+        return check
+    values = tuple(_unasked_words(context))
+    return replace(check, missing=(phrase("unasked_values", values=values),)) if values else check
+
+
+def _unasked_words(context: ComparedContext) -> Iterator[Wording]:
+    """Yield words that neither the CL files nor the definition's templates ask for, each where it stands first."""
+    run, texts = context.run, "\n".join((*context.settings.texts, *context.expected.insert_texts))
+    seen = set[str]()
+    for event in run.events:
+        value = str(event.value)
+        if event.kind != "unasked" or value in seen:
+            continue
+        seen.add(value)
+        name = _NAME.match(value)
+        if name is None or re.search(rf"(?<![A-Z0-9_]){re.escape(name[0])}(?![A-Z0-9_])", texts) is None:
+            row = min(event.before_row, len(run) - 1)
+            same = row >= 0 and run.lines[row] == event.line and run.state.file[row] == event.file
+            block = block_name_of(run, row) if same else block_name(-1, event.line)
+            yield phrase("unasked_value", value=value, block=block)
+
+
+def _known_words(context: Context) -> Check:
     diagnostics = [each for each in context.run.diagnostics if each.code != _OF_CALL]
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR]
     if isinstance(context, ComparedContext):

@@ -22,7 +22,7 @@ from trunnion.model.run_columns import BY_PARAMETER
 from trunnion.model.unknown_setups import stated_rows
 
 #: How much longer the tool is taken to be, mm.
-_LONGER: Final = 100.0
+LONGER: Final = 100.0
 
 #: The tip stands if it moves by less than this, mm; rotary axes at less are at zero, degrees.
 _STILL: Final = 1e-6
@@ -86,14 +86,14 @@ def _along(machine: Machine) -> int:
 def _moved(run: Run, rows: Ints, axes: Ints) -> Floats:
     """How far the tip moves for each millimetre of length, (k,)."""
     machine = run.machine
-    longer = replace(machine, tool_length=(machine.tool_length or 0.0) + _LONGER)
+    longer = replace(machine, tool_length=(machine.tool_length or 0.0) + LONGER)
     joints = run.positions(rows).joints
     shifted = joints.copy()
     counts: Flags = axes >= 0
     columns = np.array([machine.column(name) for name in _NAMES])[axes % BY_PARAMETER]
-    shifted[np.flatnonzero(counts), columns[counts]] += _LONGER
+    shifted[np.flatnonzero(counts), columns[counts]] += LONGER
     away = forward(longer, shifted)[0] - forward(machine, joints)[0]
-    return np.asarray(np.linalg.norm(away, axis=1) / _LONGER)
+    return np.asarray(np.linalg.norm(away, axis=1) / LONGER)
 
 
 def _said(axis: int, along: str) -> Wording:

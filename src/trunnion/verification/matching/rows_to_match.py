@@ -76,14 +76,15 @@ def _plane_changes_at_points(run: Run, expected: ExpectedPath) -> Ints:
 
 
 def repeats_of_another_kind(run: Run, expected: ExpectedPath, nc: Ints, cl: Ints) -> Flags:
-    """Which pairs join a motion and a CL point that repeats the one before it, but at rapid or at feed otherwise.
+    """Which pairs join a motion and a CL point that repeats the one before it, but is of another kind.
 
-    Such a point makes no block: the motion is another, as one that only turns the rotary axes at the pole.
+    Such a point makes no block: the motion is another, as one that only turns the rotary axes at the pole, or the
+    whole circle that follows.
 
     nc, cl  (k,): rows of the run and CL rows
     """
     kind, wanted = run.kind[nc], expected.kind(cl)
-    found = (kind != wanted) & (kind != Kind.ARC) & (wanted != Kind.ARC)
+    found = (kind != wanted) & (wanted != Kind.ARC)
     if found.any():
         found[found] = repeats_exactly(expected, cl[found])
     return np.asarray(found)

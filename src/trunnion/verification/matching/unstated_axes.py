@@ -41,10 +41,22 @@ def unstated_axes(run: Run, matching: Matching, passages: Collection[int]) -> It
             missing &= 0 if bool(names_no_axis(run.programmed[row : row + 1])[0]) else ~words
             if not missing:
                 break
-            if words & int(POSITION_WORDS) and (row in matching.nc or row in passages):
-                yield row, tuple(name for name, bit in _AXES.items() if missing & bit)
+            if not words & int(POSITION_WORDS):
+                continue
+            needed = missing if row in matching.nc or row in passages else 0
+            if needed and row not in matching.nc and row + 1 < end:
+                # The other half of a leg states the axis right away; until then only the height matters.
+                needed &= _along_tool(run, row) | ~int(run.programmed[row + 1])
+            if needed:
+                yield row, tuple(name for name, bit in _AXES.items() if needed & bit)
                 missing = 0
                 break
+
+
+def _along_tool(run: Run, row: int) -> int:
+    """Return the axes on which the height along the tool depends: of an upright one Z alone."""
+    axis = np.abs(run.positions(np.array([row])).axis[0])
+    return sum(bit for part, bit in zip(axis.tolist(), _AXES.values(), strict=True) if part > _STILL)
 
 
 def _behind_ways_home(run: Run) -> Iterator[tuple[int, int, int]]:

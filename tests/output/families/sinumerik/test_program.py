@@ -144,6 +144,7 @@ def test_other_planes_are_used_only_where_the_tools_length_stays_in_z(
     code, _, err = post.all(text, machine=str(own))
     assert code
     assert "the tip is elsewhere with a longer tool" in err
+    assert "with a tool 100 mm longer the tip is up to 141.421356 mm elsewhere, at 1 point" in err
     own.write_text(planes + "[control.reading]\nlength_along_z = true\n", encoding="utf-8")
     assert motion(post(text, machine=str(own)))[2] == block
     with_tool = post(text, "--set", "zero=0,0,0", "--set", "tool_length=80", machine=str(own))

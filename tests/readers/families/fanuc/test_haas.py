@@ -19,6 +19,16 @@ def test_a_dwell_with_a_point_is_in_seconds(words: str, seconds: float, tmp_path
     assert [event.value for event in run.events if event.kind == "dwell"] == [pytest.approx(seconds)]
 
 
+@pytest.mark.parametrize("machine", ["haas_umc750", "matsuura_mx330"])
+def test_an_end_of_scaling_and_h0_on_the_way_home_change_no_path(machine: str, tmp_path: Path) -> None:
+    """G50 ends G51, which is an error of its own; H0 names no length, and home counts in the machine's frame."""
+    plain = read(tmp_path, "G1 X5. F100.\nG91 G28 Z0.", machine)
+    said = read(tmp_path, "G50\nG1 X5. F100.\nG91 G28 Z0. H0", machine)
+    assert said.errors == plain.errors == ()
+    assert said.joints.tolist() == plain.joints.tolist()
+    assert any("scaling" in error.text for error in read(tmp_path, "G51 X0. Y0. P2.", machine).errors)
+
+
 @pytest.mark.parametrize(
     ("lines", "what"),
     [
@@ -211,6 +221,16 @@ def test_z_without_the_length_that_home_has_taken_off_is_an_error(lines: str, tm
     for cure in ("G43 H5 G0 Z60.", "G234 H5 Z60.", "G49"):
         assert errors(tmp_path, f"G28 G91 Z0.\nG90 G0 X5.\n{cure}\n{lines}") == []
     assert errors(tmp_path, f"G49\nG28 G91 Z0.\nG90 G0 X5.\n{lines}") == [], "no length was there"
+
+
+@pytest.mark.parametrize("block", ["H0", "X6. H0", "G28 G91 Z0. H0\nG90"])
+def test_z_without_the_length_that_h0_has_taken_off_is_an_error(block: str, tmp_path: Path) -> None:
+    """The number of a length holds until another one, and no register 0 has a length."""
+    (error,) = errors(tmp_path, f"{block}\nG0 X5.\nG1 Z-1. F100.")
+    assert error.startswith("Z without the tool length, which ")
+    assert errors(tmp_path, f"{block}\nG0 X5.\nG43 H5 G0 Z60.\nG1 Z-1. F100.") == []
+    assert errors(tmp_path, f"G49 {block}\nG0 X5.\nG1 Z-1. F100.") == [], "no length was there"
+    assert slides(tmp_path, f"{block}\nG0 X5. Z50.")[-1] == pytest.approx(-450.0)
 
 
 def test_home_under_tcp_is_an_error(tmp_path: Path) -> None:

@@ -40,6 +40,7 @@ RAPID
 GOTO/9,0,80
 END-OF-PATH
 """
+_PECKED: Final = _HOLES.replace("CYCLE/DRILL", "CYCLE/DRILL,DEEP").replace("MMPM,150", "MMPM,150,STEP,3")
 _TIP: Final = {"positions": "tip"}
 
 
@@ -87,5 +88,6 @@ CURES: Final = (
     Cure("CNV145", "no_length_under_tcp", _of_linuxcnc, _UNDER_TCP, (("M428", "G43 H1\nM428"),)),
     Cure("CNV145", "no_length_under_tcp", _of_linuxcnc, _UNDER_TCP, (_TIP,)),
     Cure("CNV163", "cycles_become_motion", _posted_and_converted, _HOLES, (), cured_by=post("dmu65")),
+    Cure("CNV163", "pecks_become_motion", _posted_and_converted, _PECKED, (), cured_by=post("dmu65")),
     Cure("CNV146", "registers_not_said", _converted, _REGISTER, ({"registers": "D21=tool"},)),
 )

@@ -158,7 +158,7 @@ CURES: Final = (
     _lines("DEF330 given_numbers_without", "[control.block_numbers]\nevery = 5", "", "dmu65"),
     _lines("DEF330 no_two_lengths", "[facts]\ntable_size_mm = [0, 5]", "[facts]\ntable_size_mm = [5, 5]"),
     _lines("DEF330 no_extension", '[control]\nextension = "mpf"', '[control]\nextension = ".mpf"'),
-    _lines("DEF330 no_linear_axis", '[proof]\nhome_at_end = ["Q"]', '[proof]\nhome_at_end = ["Z"]'),
+    _lines("DEF330 no_axis_at_home", '[proof]\nhome_at_end = ["Q"]', '[proof]\nhome_at_end = ["Z"]'),
     _lines("DEF330 no_start_mode", '[control.reading]\nstart_modes = ["Q"]',
            '[control.reading]\nstart_modes = ["G17"]'),
     _lines("DEF330 no_basis", '[proof]\nrequire = ["luck"]', '[proof]\nrequire = ["zero"]'),

@@ -9,7 +9,7 @@ from unittest.mock import patch
 import trunnion
 from tests.support.cures.cure import Cure, Outcome, Trial
 from tests.support.cures.projects.simulated import CL, project_written
-from tests.support.cures.reading import ended, limited
+from tests.support.cures.reading import ended
 from tests.support.cures.scripts import script
 from tests.support.projects import operation
 from trunnion.errors import TrunnionError
@@ -24,6 +24,12 @@ _WHOLE: Final = (
 _HIGH: Final = "GOTO/-20,0,0\nGOTO/70,0,0\n"
 _LOW: Final = "GOTO/-20,0,-5\nGOTO/70,0,-5\n"
 _BACK: Final = "GOTO/70,0,20\nGOTO/70,15,20\nGOTO/70,15,-5\nGOTO/-20,15,-5\nGOTO/-20,15,20\n"
+# Twelve holes in the part, far enough from each other along the path to be findings of their own.
+_PLUNGES: Final = "".join(
+    f"GOTO/{x},{y},5\nGOTO/{x},{y},-3\nGOTO/{x},{y},5\n" + f"GOTO/{x},-60,5\nGOTO/{x},60,5\n" * 3
+    for x in (6, 19, 32, 45)
+    for y in (-14, 0, 14)
+)
 _DIVIDED: Final = 'machine = "yl569"\ncl = ["a.cls", "b.cls"]\noutput = "out.mpf"\ndivide = "operations"\n'
 _ON: Final = "CUTCOM/LEFT\n"
 
@@ -44,7 +50,7 @@ def _seen(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Post a project that warns, and simulate what was written; all findings are there then."""
     _post(text, settings, folder)
     found = trunnion.simulate(folder / "part.toml")
-    return Outcome((), len(found.findings) > 1)
+    return Outcome((), len(found.findings) > 10)
 
 
 def _without_places(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
@@ -135,8 +141,8 @@ CURES: Final = (
     Cure(
         "PRJ210",
         "more_findings",
-        limited(_post, checks, "_MOST_TOLD", 1),
-        f"{CL.replace(_LOW, _LOW + _BACK)}#END\n{_WHOLE}",
+        _post,
+        f"{CL.replace(_LOW, _HIGH + _PLUNGES)}#END\n{_WHOLE}",
         (('"refuse"', '"warn"'),),
         cured_by=_seen,
     ),

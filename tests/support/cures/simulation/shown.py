@@ -97,6 +97,12 @@ CURES: Final = (
         cured_by=_cut(_BLOCK),
     ),
     script("SIM147 radius_not_known", _CONTOUR, "--turn", "--tool 5=flat:10,length=60 --turn"),
+    script(
+        "SIM175 unit_not_known",
+        "write tool.tbl 'T3 P3 D10'\ntrunnion check tool.tbl",
+        "check tool.tbl",
+        "verify part.mpf --machine yl569 --tool-library tool.tbl --unit mm",
+    ),
     script("SIM310 length_of_tool_unknown", _AMONG, "--turn", "--tool-length 60 --turn"),
     Cure("PAG112", "no_cl_file_as_others", _viewed("part.cls", "one.ngc"), "", (), cured_by=_VIEW_CL),
     Cure(

@@ -68,7 +68,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
     def _set_system_value(self, key: int, value: Value) -> bool:
         """Stop at a message of #3006, and report an alarm of #3000; the blocks behind it are read all the same."""
         if key == words.MESSAGE_VARIABLE:
-            self.control.note_wait(Wording("NC226", "stops_with_message", key=key))
+            self.control.note_wait(Wording("NC226", "stops_with_message", key=key), f"#{key}")
             self.control.add_event("stop")
         elif key == words.ALARM_VARIABLE:
             number = "" if value is None else f" {value:g}"

@@ -32,7 +32,8 @@ class FanucControl(Rs274Control):
     local     the shift of G52, (3,) mm
     rotation  G68 as one map
     vectors   G43.5: words I J K of lines are vectors
-    length_ended_at  line of the G28 that has taken the tool length off, 0 if a G word has set it since
+    length_ended_at  line of the G28 or H0 that has taken the tool length off, 0 if a G word has set it since
+    length_ended_by  the word that did
     plane_of_pose  the tilted plane is that of the rotary position
     """
 
@@ -63,7 +64,7 @@ class FanucControl(Rs274Control):
         self._rotated_in_space = False
         self.vectors = False
         self.plane_of_pose = False
-        self.length_ended_at = 0
+        self.length_ended_at, self.length_ended_by = 0, ""
         self.count_in(settings.unit)
         # The first block with a number without a point of which nobody says how it counts, and how many there are.
         self._first_whole: Diagnostic | None = None
@@ -194,6 +195,13 @@ class FanucControl(Rs274Control):
             self.preconditions.meet("G53.1")
         else:
             self.preconditions.require("G53.1", Wording("NC351", "plane_before_turn"))
+
+    def end_length(self, word: str) -> None:
+        """Take the tool length off by a word that is no G word of lengths."""
+        if self.length_active:
+            self.length_ended_at, self.length_ended_by = self.line, word
+        self.set_mode("length", word, self.length_active, False)
+        self.set_length(False)
 
     def _report_length(self, word: str) -> None:
         """Report a word that switches a plane inside a tool length: the length must be switched inside the plane."""

@@ -184,7 +184,8 @@ class CycleInterpreter(OffsetInterpreter):
     def _check_cut(self, axes: Collection[str], *, of_machine: bool) -> None:
         """Report a cut that a thread has left without a spindle, or that a new plane has left without a position."""
         if self.control.length_ended_at and "Z" in axes and not of_machine:
-            self._note(Wording("NC361", "length_taken_off", line=self.control.length_ended_at), Severity.ERROR)
+            word, line = self.control.length_ended_by, self.control.length_ended_at
+            self._note(Wording("NC361", "length_taken_off", word=word, line=line), Severity.ERROR)
             self.control.length_ended_at = 0
         if self._not_stated and not of_machine:
             if self.motion_code != 0:

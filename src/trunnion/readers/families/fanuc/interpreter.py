@@ -201,9 +201,10 @@ class FanucInterpreter(CycleInterpreter):
     def _before_motion(self, codes: Sequence[Word], block: Block) -> None:
         """Take the numbers of the tool's length and of its radius."""
         modal, row = self.control.modal, self.control.row
-        number = block.take("H")
-        if number is not None and 0 <= number < 1e6:
+        if (number := block.take("H")) is not None and 0 <= number < 1e6:
             self._length_number = int(number)
+            if number == 0.0 and self.control.length_active:
+                self.control.end_length("H0")
         # The control keeps H after G49, but no length is in force.
         modal.edge.set(row, self._length_number if self.control.length_active else -1)
         radius = block.take("D")

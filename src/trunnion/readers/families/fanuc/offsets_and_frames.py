@@ -175,10 +175,7 @@ class OffsetInterpreter(CallInterpreter):
         if control.tcp:
             self._note(Wording("NC341", "g28_tcp_whether_ends_tcp"), Severity.ERROR)
             return
-        if control.length_active:
-            control.length_ended_at = control.line
-        control.set_mode("length", "G28", control.length_active, False)
-        control.set_length(False)
+        control.end_length("G28")
         control.modal.edge.set(control.row, -1)
 
     def _target(self, axes: dict[str, AxisWord]) -> Floats:

@@ -103,7 +103,7 @@ TABLE: Final = WordTable(
     Word("G60", "positioning from one side, past its end and back, is not simulated", effect=_ERROR),
     Word("G61", "event `exact_stop`: `on`", effect=_NONE, act="exact_stop", sets="on", group="exact stop"),
     Word("G62", "another feed at inside corners is not simulated", effect=_ERROR, group="exact stop"),
-    Word("G63", effect=_NONE, group="exact stop"),
+    Word("G63", effect=_NONE, act="unasked", group="exact stop"),
     Word("G64", "event `exact_stop`: `off`", effect=_NONE, act="exact_stop", sets="off", group="exact stop"),
     Word("G65", "calls a macro", letters="PL", when=_BEHIND, moves=False, numbered=True, calls=True),
     Word(

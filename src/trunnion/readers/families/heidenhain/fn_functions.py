@@ -113,6 +113,12 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     return None
 
 
+def waiting_function(text: str) -> int | None:
+    """Return the number behind FN if the program stops or waits there; None: it does not."""
+    match = _NUMBER.match(text)
+    return int(match[1]) if match is not None and int(match[1]) in FN_WAITS else None
+
+
 def _check_values(text: str, parameters: Parameters) -> None:
     """Check that each parameter in words has a value; texts in quotes are none."""
     for name in _PARAMETER.findall(re.sub(r'"[^"]*"', "", text)):

@@ -13,6 +13,7 @@ from trunnion.readers.families.heidenhain.parameters import KlartextError, Param
 from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, Block, value_of
 from trunnion.readers.families.heidenhain.words import (
     M_AFTER_MOTION,
+    M_ALTERING,
     M_ARGUMENTS,
     M_AT_ENDS,
     M_AT_ENDS_OFF,
@@ -97,6 +98,8 @@ class MFunctions:
         )
         if code in M_UNSEEN_MODES:
             control.say_mode(M_UNSEEN_MODES[code], said)
+            if code in M_ALTERING:
+                control.add_event("unasked", said)
         elif code in M_UNSEEN_ONCE:
             control.say_once(said)
         for kind, value in M_EVENTS.get(code, ()):

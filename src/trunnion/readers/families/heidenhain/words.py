@@ -104,6 +104,10 @@ M_UNSEEN_MODES: Final = {
     135: "exact stop of rotary axes", 138: "rotary axes that tilt", 148: "lift-off", 149: "lift-off",
 }  # fmt: skip
 
+#: Of these, those that change how the machine runs, which no CL file asks for: corners at the feed of the contour,
+#: another tool when the first one is worn, a lower feed at arcs, moves by the handwheel.
+M_ALTERING: Final = frozenset({90, 101, 110, 118})
+
 #: The others act once, where they stand: 94 takes a rotary axis back below 360 degrees, 97 passes small steps, 141
 #: lets a probe go, 143 deletes a rotation, and 145 is of the display.
 M_UNSEEN_ONCE: Final = frozenset({94, 97, 141, 143, *range(200, 205)})

@@ -247,7 +247,8 @@ class LinuxcncInterpreter(CycleInterpreter):
         """M66: read an input; with L other than 0 wait for it, up to Q seconds."""
         if block.words.get("L") is not None and block.words["L"].value:
             seconds = block.words["Q"].value if "Q" in block.words else 0.0
-            self.control.note_wait(Wording("NC226", "waits_for_input", duration=format_duration(max(seconds, 0.0))))
+            waits = Wording("NC226", "waits_for_input", duration=format_duration(max(seconds, 0.0)))
+            self.control.note_wait(waits, word.text)
         self._report_signal(word, block)
         self.control.say_once(" ".join((word.text, *(f"{name}{each.value:g}" for name, each in block.words.items()))))
 
@@ -258,13 +259,17 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _signal(self, word: Word, block: Block) -> None:
         self._report_signal(word, block)
         if "P" in block.words:
-            self.control.say_mode(f"digital output {block.words['P'].value:g}", word.text)
+            output = block.words["P"].value
+            self.control.say_mode(f"digital output {output:g}", word.text)
+            self.control.add_event("unasked", f"{word.text} P{output:g}")
 
     def _analog_output(self, word: Word, block: Block) -> None:
         self._report_signal(word, block)
         if "E" in block.words:
             value = block.words["Q"].value if "Q" in block.words else 0.0
-            self.control.say_mode(f"analog output {block.words['E'].value:g}", f"{word.text} {value:g}")
+            output = block.words["E"].value
+            self.control.say_mode(f"analog output {output:g}", f"{word.text} {value:g}")
+            self.control.add_event("unasked", f"{word.text} E{output:g} Q{value:g}")
         if block.take("E") == words.KINEMATICS_OUTPUT:
             self._note(
                 Wording("NC220", "output_switches_kinematics", word=word.text, output=words.KINEMATICS_OUTPUT),
@@ -274,14 +279,19 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _overrides(self, word: Word, block: Block) -> None:
         for code in ("M50", "M51"):
             self.control.say_mode(words.OVERRIDES[code], f"P{word.sets:g}")
+        if not word.sets:
+            self.control.add_event("unasked", word.text)
 
     def _override(self, word: Word, block: Block) -> None:
         value = block.words["P"].value if "P" in block.words else 1.0
         self.control.say_mode(words.OVERRIDES[word.text], f"P{value:g}")
+        if not value:
+            self.control.add_event("unasked", f"{word.text} P0")
 
     def _adaptive_feed(self, word: Word, block: Block) -> None:
         self.control.say_mode("adaptive feed", f"P{block.words['P'].value:g}" if "P" in block.words else "on")
         if block.take("P") != 0.0:
+            self.control.add_event("unasked", word.text)
             self._note(Wording("NC221", "m52_lets_signal_scale_feed"), Severity.WARNING)
 
     def _rename_tool(self, word: Word, block: Block) -> None:

@@ -64,6 +64,8 @@ class SinumerikControl(VirtualControl):
         # The word in force of each group that counts within radius compensation.
         self._compensation_modes: dict[str, str] = {}
         super().__init__(machine, note, shortest=shortest)
+        if self._settings.unit:  # as G700 and G710 do: feeds count in it too
+            self.set_units(self._settings.unit == "inch", True)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
 
     def add_exact_stop(self, mode: str) -> None:

@@ -217,7 +217,7 @@ class SinumerikInterpreter(WordInterpreter):
         for name, written in block.said:
             unseen_modes.say(self.control, name, written)
         for word in block.waits:
-            self.control.note_wait(Wording("NC226", "waits_for_channel", word=word))
+            self.control.note_wait(Wording("NC226", "waits_for_channel", word=word), word)
         self._corners.begin_block(block.corner)
         if DWELL in block.g:
             self._dwell(block)
@@ -336,7 +336,7 @@ class SinumerikInterpreter(WordInterpreter):
             assert name == "SETAL"
             alarm = f"SETAL({', '.join(call.argument_texts)})"
             control.add_event("message", alarm)
-            control.note_wait(Wording("NC226", "alarm", word=alarm))
+            control.note_wait(Wording("NC226", "alarm", word=alarm), alarm)
 
     def _drill(self, call: Call) -> None:
         try:

@@ -10,7 +10,7 @@ from trunnion.readers.control.contour_control import FEED_BEFORE, FEED_BEHIND
 from trunnion.readers.control.start_modes import ANGLES, VECTOR_FRAME, VECTORS, check_start_modes
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.forms import read_form
-from trunnion.readers.program.settings import family_of, reading_of
+from trunnion.readers.program.settings import family_of, reading_of, unit_of
 
 #: Whether the length of the edge in force counts in positions of the machine (G53, G153, SUPA).
 WITH_LENGTH: Final = "with_length"
@@ -36,6 +36,7 @@ class Settings:
     swivel_axes        names of the rotary axes 1 and 2 of the swivel data; empty: the definition does not say
     corner_feed        of which block corners without a feed of their own have theirs, ``FEED_BEFORE`` or
                        ``FEED_BEHIND`` (MD20201); empty: the definition does not say
+    unit               what the control counts in before a program says so, as ``unit_of`` returns it
     variables          values of variables that the control has when a program starts
     """
 
@@ -44,6 +45,7 @@ class Settings:
     length_along_z: bool = False
     swivel_axes: tuple[str, ...] = ()
     corner_feed: str = ""
+    unit: str = ""
     variables: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -56,6 +58,7 @@ def settings_of(machine: Machine) -> Settings:
         length_along_z=table.flag("length_along_z", False),
         swivel_axes=table.texts("swivel_axes", ()),
         corner_feed=table.text("corner_feed", "", one_of=("", FEED_BEFORE, FEED_BEHIND)),
+        unit=unit_of(table),
         variables=read_variables(table, VARIABLE, "R100"),
     )
     read_form(table, family_of(machine))

@@ -63,6 +63,10 @@ VALUES: Final = _words("""
     ADISPOS STOL OTOLG CTOLG FGREF OVR VELOLIM OVRA OVRRAP ACC JERKLIM ACCLIM SCC DISCL DISR DISRP FA DITS DITE
     """)
 
+#: Those that change how fast, or how hard, the axes run: no CL file asks for them. At 100 percent they change nothing.
+ALTERING: Final = _words("OVRA OVRRAP ACC JERKLIM ACCLIM")
+_NEUTRAL: Final = 100.0
+
 #: Where the spindle stands, and what others do: each a mode of its own.
 OF_SPINDLES: Final = _words("SPOS M S")
 
@@ -86,7 +90,18 @@ def say(control: EventRecorder, word: str, value: str = "") -> None:
     if word in VALUES or word in OF_SPINDLES:
         axis, _, number = value.partition("=")
         control.say_mode(word + axis, number)
+        if word in ALTERING and (percent := _percent(number)) != _NEUTRAL:
+            said = number if percent is None else f"{percent:g}"
+            control.add_event("unasked", f"{word}{axis}={said}")
     elif word in ONCE:
         control.say_once(f"{word}{value}")
     elif word in MODES:
         control.say_mode(MODES[word], f"{word}{value}")
+
+
+def _percent(text: str) -> float | None:
+    """Return a value; None: it is no number, and may change anything."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
