@@ -5,7 +5,7 @@ import pytest
 from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Body, Fail, Read
 from trunnion.cl.dialects import DIALECTS
-from trunnion.cl.word_classes import acts_on_machine, words_that_count
+from trunnion.cl.word_classes import Suspicion, acts_on_machine, words_that_count
 from trunnion.model.toolpath import Message
 
 POINT = "GOTO/10,0,-1,0,0,1"
@@ -161,7 +161,7 @@ def test_an_end_mark_of_dos_and_a_line_end_behind_a_comment_are_no_fault(read: R
 )
 def test_a_word_glued_to_another_is_a_damaged_one(major: str, meant: str) -> None:
     for dialect in DIALECTS.values():
-        assert acts_on_machine(major, words_that_count(dialect)) == (f"may be a damaged {meant}", (meant,))
+        assert acts_on_machine(major, words_that_count(dialect)) == Suspicion(meant, (meant,))
     for known in ("MODELS", "LOADCASE", "STOPPER", "FROMAT", "SHOPEV"):
         assert acts_on_machine(known, words_that_count(DIALECTS["clsf"])) is None
 

@@ -41,7 +41,16 @@ SCHEMA: Final = 1
 HOME_PLACES: Final = ("tool_change", "end")
 
 #: What a definition may demand that a proof stands on.
-DEMANDS: Final = ("zero", "tool_length", "dynamics", "start_modes", "radius_register", "measured", "given_words")
+DEMANDS: Final = (
+    "zero",
+    "tool_length",
+    "dynamics",
+    "start_modes",
+    "radius_register",
+    "cl_units",
+    "measured",
+    "given_words",
+)
 
 _AXIS_NAME: Final = "[A-Za-z][A-Za-z0-9_]{0,7}"
 

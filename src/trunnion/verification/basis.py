@@ -148,6 +148,7 @@ DEMANDS: Final[Mapping[str, tuple[Basis, ...]]] = {
     "dynamics": (RAPID, ACCELERATION),
     "start_modes": (START_MODES, START_OFFSET, START_POSITION),
     "radius_register": (),
+    "cl_units": (),
     "measured": (),
     "given_words": (),
 }
@@ -158,13 +159,21 @@ def missing_of(bases: Iterable[Basis], run: Run) -> tuple[Wording, ...]:
     return tuple(found for basis in bases if (found := basis.missing(run)) is not None)
 
 
-def missing_demands(demands: Iterable[str], run: Run, holds: RegisterValue) -> Iterator[Wording]:
-    """Yield what is missing of what is demanded for a program, each once; ``holds``: what its registers hold."""
+def missing_demands(
+    demands: Iterable[str], run: Run, holds: RegisterValue, assumes_unit: bool = False
+) -> Iterator[Wording]:
+    """Yield what is missing of what is demanded for a program, each once.
+
+    holds         what its registers hold
+    assumes_unit  a CL file is taken to be in mm, which nothing says
+    """
     for name in DEMANDS:
         if name in demands:
             yield from missing_of(DEMANDS[name], run)
     if "radius_register" in demands and any(offset is None for _, offset in offsets_of(run, holds, lambda _: 0.0)):
         yield phrase("no_radius_register")
+    if "cl_units" in demands and assumes_unit:
+        yield phrase("assumed_unit", unit="mm")
     if "given_words" in demands and (given := [each for each in stated_words(run) if each.is_given]):
         yield phrase("given_words", words=tuple(each.wording for each in given))
     if "measured" in demands:

@@ -219,6 +219,7 @@ class Verification:
     was recorded; None: it was not. ``remarks`` are the warnings that were given on the way.
     ``driven`` is the run of the tool's centre where the control compensates its radius; None: it goes as programmed.
     ``skip_levels`` has the levels of block skip (``/``) that each OPSKIP of the CL files has in the program.
+    ``assumes_unit``: a CL file is taken to be in mm, which nothing says.
     ``lost_skips`` are the places, by their numbers, of those of which no block has ``/``.
     """
 
@@ -237,6 +238,7 @@ class Verification:
     skip_levels: tuple[frozenset[int], ...] = ()
     lost_skips: Mapping[int, Place] = field(default_factory=dict)
     driven: CentreRun | None = None
+    assumes_unit: bool = False
 
     @property
     def passed(self) -> bool:
@@ -259,6 +261,7 @@ class Verification:
             stated=stated_texts(self.run),
             turns_before_offset=str(turns_before_offset(self.run) or ""),
             axes_from_home=str(axes_from_home(self.run) or ""),
+            assumed_unit="mm" if self.assumes_unit else "",
             moves=len(self.run) > 0,
         )
 

@@ -41,6 +41,7 @@ class Standing:
     stated        words and variables that the program relies on, with what somebody has stated of them
     turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force
     axes_from_home  the axes that the first cut takes to be at home: nothing states them before it
+    assumed_unit  length unit that a CL file is taken to have: nothing says it
     moves         whether there is a motion: without one nothing of a path was checked
     """
 
@@ -54,6 +55,7 @@ class Standing:
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
     turns_before_offset: str = ""
     axes_from_home: Annotated[str, Figure(is_optional=True, none="")] = ""
+    assumed_unit: Annotated[str, Figure(is_optional=True, none="")] = ""
     moves: Annotated[bool, NOT_DATA] = True
 
     @property
@@ -95,6 +97,8 @@ class Standing:
             yield phrase("assumed_offset", block=self.turns_before_offset)
         if self.axes_from_home:
             yield phrase("assumed_home", axes=self.axes_from_home)
+        if self.assumed_unit:
+            yield phrase("assumed_unit", unit=self.assumed_unit)
 
     def said(self, words: Words = LIBRARY) -> str:
         """Return what is said behind the verdict."""

@@ -67,9 +67,11 @@ def verify(
     operations = tuple(_operation_rows(context))
     levels = stretch_levels(context) if isinstance(context, ComparedContext) else ()
     lost = lost_skips(context, levels) if isinstance(context, ComparedContext) else {}
+    assumes_unit = isinstance(context, ComparedContext) and context.expected.assumes_unit
     return Verification(
         run.files[0], run.machine, run, all_checks(seen), motion.seconds, motion.tip_feed, cl_line, operations,
         waiting=motion.waiting, skip_levels=levels, lost_skips=lost, driven=None if centre.run is run else centre,
+        assumes_unit=assumes_unit,
     )  # fmt: skip
 
 

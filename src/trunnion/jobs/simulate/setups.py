@@ -78,10 +78,10 @@ def prepare_setup(
     for program in programs:
         if not isinstance(program, Run):
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
-    toolpaths = hooked_toolpaths(
-        as_toolpaths(given.cl, observer, stated_reading(of_reading, given.strict)), machine, given.hooks
-    )
-    if not given.cl_is_turned:
+    read = as_toolpaths(given.cl, observer, stated_reading(of_reading, given.strict))
+    toolpaths = hooked_toolpaths(read, machine, given.hooks)
+    if not given.cl_is_turned:  # else the post has told what its reader remarks
+        remarks += (remark for toolpath in read for remark in toolpath.remarks)
         toolpaths = toolpaths_clamped(toolpaths, *angles)
     tools = _tools(runs, known_tools(given.tools, given.tool_libraries, given.unit, toolpaths))
     if given.work_offset is not None:

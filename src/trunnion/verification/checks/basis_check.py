@@ -2,7 +2,7 @@
 
 from trunnion.messages import Wording
 from trunnion.verification.basis import missing_demands
-from trunnion.verification.context import Context
+from trunnion.verification.context import ComparedContext, Context
 from trunnion.verification.results import Check
 
 
@@ -12,6 +12,8 @@ def check_basis(context: Context) -> list[Check]:
     demands = {*context.settings.demands, *machine.demands}
     if not demands:
         return []
-    if missing := tuple(missing_demands(demands, context.run, context.settings.register_holds)):
+    assumes_unit = isinstance(context, ComparedContext) and context.expected.assumes_unit
+    holds = context.settings.register_holds
+    if missing := tuple(missing_demands(demands, context.run, holds, assumes_unit)):
         return [Check("basis", False, Wording("basis", "missing", missing=missing))]
     return [Check("basis", True, Wording("basis", "stated", demands=tuple(sorted(demands))))]

@@ -110,6 +110,7 @@ class ExpectedPath:
     program writes as such: each has one row here, that of its end, as an arc has. The path is that of an operator who
     has switched block skip on: rows and events of the OPSKIP with the numbers ``left_out`` are not there. They count
     through all operations. ``without_retract`` are lines of the CL files that leave the cut sideways then.
+    ``assumes_unit``: a CL file is taken to be in mm, which nothing says.
 
     The columns of an operation are not copied; ``tip``, ``axis`` and the like gather some rows of them.
     """
@@ -124,6 +125,7 @@ class ExpectedPath:
         *,
         left_out: frozenset[int] = frozenset(),
     ) -> None:
+        self.assumes_unit = any(not path.states_unit for path in toolpaths)
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
             file = toolpaths[0].file if toolpaths else "CL file"

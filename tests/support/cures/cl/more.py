@@ -76,6 +76,7 @@ CURES: Final = (
     _nx("CL360 number", "- GOTO/1,2,1E999", "+ GOTO/1,2,10"),
     Cure("CL410", "feeds_mm_line", read, f"{HEAD}FEDRAT/IPM,1\n{FOOT}", ({"units": "mm"},)),
     Cure("CL420", "file_states_another", read, f"UNITS/MM\n{HEAD}{FOOT}", ({"units": None},), {"units": "inch"}),
+    Cure("CL420", "mm_assumed", read, CLEAR + FOOT, ({"units": "mm"},)),
     _file("CL430 operation_no_msys", "TOOL PATH/A,TOOL,T", "MSYS/100,0,0,1,0,0,0,1,0", "GOTO/0,0,9", "END-OF-PATH",
           "TOOL PATH/B,TOOL,T", "+ MSYS/0,0,0,1,0,0,0,1,0", "GOTO/0,0,9", "END-OF-PATH"),
     _nx("CL470 contour_without_cutcom", "$$ contour data", "+ CUTCOM/LEFT", "GOTO/0,9,5"),
