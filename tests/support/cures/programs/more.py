@@ -155,7 +155,7 @@ CURES: Final = (
     _in("NC220 m114_position", "- M114 C+0", "+ M114", "L C+0 FMAX", "L X+10 F100", "M115", on=_TNC),
     _in("NC210 skip_within_block", "CYCL DEF 9.0 DWELL TIME", "- /CYCL DEF 9.1 DWELL 1", "+ CYCL DEF 9.1 DWELL 1",
         "L X+10 F100", on=_TNC),
-    _in("NC222 tabread_only_control", 'FN 28: TABREAD Q10 = 6/"X"', "- L X+Q10 F100", "+ L X+10 F100", on=_TNC),
+    _in("NC222 tabread_only_control", '- FN 28: TABREAD Q10 = 6/"X"', "+ FN 0: Q10 = +10", "L X+Q10 F100", on=_TNC),
     _in("NC220 m114_unknown", "- M114", "+ M128", "L X+10 F100", "- M115", "+ M129", on="dmu65"),
     _in("NC340 m114_with", "M114", "L X+10 F100", "- M128", "+ M115", on=_TNC),
     _in("NC340 m114_with_tcp", "M128", "L X+10 F100", "+ M129", "M114", "L X+20 F100", "M115", on=_TNC),
