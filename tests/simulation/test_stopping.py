@@ -14,13 +14,17 @@ from trunnion.simulation.stock import surface
 SLOT = "G21 G90 G17 G40 G49 G80\nT1 M6\nG43 H1\nS1000 M3\nG0 X-20 Y0 Z20\nG0 Z-5\nG1 X70 F500\nG0 Z20\nM5\nM30\n"
 
 
+#: A body without a triangle, as an older run may have left it.
+OLDER = bytes(84)
+
+
 @pytest.mark.parametrize("where", ["cutting", "saving"])
 def test_ctrl_c_leaves_no_file(
     tmp_path: Path, where: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     nc, stock, data = tmp_path / "slot.ngc", tmp_path / "stock.stl", tmp_path / "found.json"
     nc.write_text(SLOT)
-    stock.write_text("an older one")
+    stock.write_bytes(OLDER)
     owner, name = (Cutter, "measure") if where == "cutting" else (surface, "_triangles")
     own, called, threads = getattr(owner, name), list[bool](), set(threading.enumerate())
 
@@ -37,5 +41,5 @@ def test_ctrl_c_leaves_no_file(
     assert code == 2
     assert "stopped" in capsys.readouterr().err
     assert {path.name for path in tmp_path.iterdir()} == {"slot.ngc", "stock.stl"}
-    assert stock.read_text() == "an older one"
+    assert stock.read_bytes() == OLDER
     assert set(threading.enumerate()) <= threads  # others may end meanwhile

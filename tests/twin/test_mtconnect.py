@@ -104,7 +104,7 @@ def test_agents_are_told_every_end_of_a_block(program: TwinProgram) -> None:
             told = [float(value) for _, value in agent.values[f"{axis.name}_actual"]]
             place = 0
             for wanted in displayed(run.machine, column, run.joints[:, column]).tolist():
-                place = next(k for k in range(place, len(told)) if told[k] == wanted)
+                place = next(k for k in range(place, len(told)) if abs(told[k] - wanted) < 1e-9)
             times = [time for time, _ in agent.values[f"{axis.name}_actual"]]
             assert times == sorted(times)
         assert [value for _, value in agent.values["exec"]][-2:] == ["ACTIVE", "PROGRAM_COMPLETED"]

@@ -10,19 +10,20 @@ from typing import Final, NamedTuple, TypeAlias
 #: Deeper keys are refused unread: the time of the TOML parser grows with the cube of their depth.
 MAX_KEY_DEPTH: Final = 32
 
+# Groups are not possessive: before Python 3.11.5 such a group loses what it has matched. Their parts are.
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _BLANKS = re.compile(r"[ \t]*+")
-_BLANK_LINES = re.compile(r"(?:[ \t\r\n]++|#[^\n]*+)*+")
+_BLANK_LINES = re.compile(r"(?:[ \t\r\n]++|#[^\n]*+)*")
 _UNQUOTED_VALUE = re.compile(r"[^,\]}#\n]*+")
 _COMMENT = re.compile(r"#[^\n]*+")
 
 #: What follows an opening quote, with the closing one. A multi-line string may end with up to two quotes of its own
 #: before the closing three.
 _STRING_ENDS: Final = {
-    '"': re.compile(r'(?:[^"\\]++|\\.)*+"', re.DOTALL),
+    '"': re.compile(r'(?:[^"\\]++|\\.)*"', re.DOTALL),
     "'": re.compile(r"[^']*+'"),
-    '"""': re.compile(r'(?:[^"\\]++|\\.|"(?!""))*+"{3,}+', re.DOTALL),
-    "'''": re.compile(r"(?:[^']++|'(?!''))*+'{3,}+"),
+    '"""': re.compile(r'(?:[^"\\]++|\\.|"(?!""))*"{3,}+', re.DOTALL),
+    "'''": re.compile(r"(?:[^']++|'(?!''))*'{3,}+"),
 }
 
 _BELOW: Final = re.compile(r"(?:\"{3}|'{3})\r?\n")
