@@ -75,7 +75,9 @@ def test_the_block_form_can_be_the_box_round_all_that_is_cut(post: Post) -> None
     blocks = post(HEAD + arc + hole + FOOT, "--set", "blank=extents")
     assert blocks[2:4] == ["BLK FORM 0.1 Z X-10 Y-10 Z-16", "BLK FORM 0.2 X+10 Y+10 Z+50"]
     rapids = HEAD.replace("FEDRAT/MMPM,500.0\n", "RAPID\n") + FOOT
-    assert not any(block.startswith("BLK FORM") for block in post(rapids, "--set", "blank=extents", "--set", "cl_units=mm"))
+    assert not any(
+        block.startswith("BLK FORM") for block in post(rapids, "--set", "blank=extents", "--set", "cl_units=mm")
+    )
 
 
 @pytest.mark.parametrize(("way", "on", "off"), [(way, *words) for way, words in TCP.items()])
