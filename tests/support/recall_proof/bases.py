@@ -50,7 +50,13 @@ def bases(folder: Path, family: str | None = None) -> Iterator[Base]:
 
 
 def _goldens(family: str | None) -> Iterator[Base]:
-    of_case = {"fanuc": "Fanuc", "haas": "Haas", "linuxcnc": "LinuxCNC", "mikron_600u": "Heidenhain"}
+    of_case = {
+        "fanuc": "Fanuc",
+        "haas": "Haas",
+        "linuxcnc": "LinuxCNC",
+        "mikron_600u": "Heidenhain",
+        "dmu65": "Heidenhain",
+    }
     for name, case in CASES.items():
         if family in (None, of_case[name.split("/")[0]]):
             machine = GOLDEN / case.machine if case.machine.endswith(".toml") else case.machine
