@@ -9,6 +9,8 @@ import trunnion
 from tests.support.golden_controls import CASES
 from tests.support.locations import GOLDEN, ROOT
 from tests.support.recall_proof.parts import PARTS, cl_text
+from trunnion.controls import load_control
+from trunnion.machines import load_machine
 
 MACHINES: Final = {
     "Sinumerik": "yl569", "Heidenhain": "dmu65", "Fanuc": "matsuura_mx330", "Haas": "haas_umc750",
@@ -49,19 +51,17 @@ def bases(folder: Path, family: str | None = None) -> Iterator[Base]:
             yield Base(each, program.stem, machine, cl, program.read_text(encoding="utf-8"))
 
 
+def language_of(machine: str | Path) -> str:
+    """The language of a machine's programs, as the name of its control begins with."""
+    return load_control(load_machine(machine).control).name.split()[0]
+
+
 def _goldens(family: str | None) -> Iterator[Base]:
-    of_case = {
-        "fanuc": "Fanuc",
-        "haas": "Haas",
-        "linuxcnc": "LinuxCNC",
-        "mikron_600u": "Heidenhain",
-        "dmu65": "Heidenhain",
-    }
     for name, case in CASES.items():
-        if family in (None, of_case[name.split("/")[0]]):
-            machine = GOLDEN / case.machine if case.machine.endswith(".toml") else case.machine
+        machine = GOLDEN / case.machine if case.machine.endswith(".toml") else case.machine
+        if family in (None, language := language_of(machine)):
             text = (GOLDEN / name).read_text(encoding="utf-8")
-            yield Base(of_case[name.split("/")[0]], name, machine, GOLDEN / case.cl, text, _stated(case.settings))
+            yield Base(language, name, machine, GOLDEN / case.cl, text, _stated(case.settings))
     published = {
         "Sinumerik": [f"yl569/{name}" for name in ("1_contour_rough", "2_hub_rough", "3_blade_finish")],
         "Fidia": ["hs664rt/radial_holes"],
