@@ -1,5 +1,6 @@
 """The sound programs that are edited: parts and cases posted for a machine of each language, and golden programs."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -31,6 +32,13 @@ class Base:
     cl: Path
     text: str
     stated: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def tolerance(self) -> float:
+        """INTOL and OUTTOL of the first operation of its CL file together, mm; 0 if it has neither."""
+        text = self.cl.read_text(encoding="utf-8")
+        found = (re.search(rf"^{word}\s*/\s*([\d.]+)", text, re.MULTILINE) for word in ("INTOL", "OUTTOL"))
+        return sum(float(each[1]) for each in found if each)
 
 
 def bases(folder: Path, family: str | None = None) -> Iterator[Base]:
