@@ -91,7 +91,8 @@ KINDS: Final = (
     _kind(
         phrase("program_of_lathe"),
         _N + r"G50 ?S\d", _N + r"G96 ?S\d", r"G7[0-3] ?P\d+ ?Q\d", r"G7[0-6] ?[UXZ]-?[\d.]+ ?[RWZ]", r"\bT0\d0\d\b",
-        r"G28 ?U0?\.? ?W0", r"\b[UX]-?[\d.]+ ?W-?[\d.]",
+        r"G28 ?U0?\.? ?W0", r"\b[UX]-?[\d.]+ ?W-?[\d.]", r"\bLIMS(?:\[\d\])? ?=", r"\bDIAM(?:ON|OF|90)\b",
+        r"\bCYCLE9[3-8] ?\(",
     ),
     _kind(
         phrase("program_of_okuma"),
@@ -203,15 +204,17 @@ def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wo
 
 
 def _lines(file: Path) -> Iterator[tuple[int, str]]:
-    """Lines of the head of a file that are not empty, with their numbers; a pipe is not opened."""
+    """Lines of the head of a text that are not empty, with their numbers; a pipe is not opened, and data are none."""
     try:
         if not file.is_file():
             return
         with file.open("rb") as opened:
-            text = opened.read(_HEAD).decode("utf-8", "replace")
+            head = opened.read(_HEAD)
     except OSError:
         return
-    for number, line in enumerate(text.splitlines(), 1):
+    if b"\0" in head:
+        return
+    for number, line in enumerate(head.decode("utf-8", "replace").splitlines(), 1):
         if line.strip(" \t%"):
             yield number, line[:_MOST_LETTERS].rstrip()
 
