@@ -184,7 +184,8 @@ def program_for_cl_file(file: Path) -> Problem | None:
     if found is None or not found.found:
         return None
     line, letters = found.found[0]
-    return Problem(str(file), 0, Wording("CL110", "is_program", kind=found.kind.name, mark=letters, line=line))
+    variant = "is_program" if found.kind.languages else "is_foreign_program"
+    return Problem(str(file), 0, Wording("CL110", variant, kind=found.kind.name, mark=letters, line=line))
 
 
 def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wording | None:
