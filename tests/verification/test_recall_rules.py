@@ -11,10 +11,10 @@ HOME = ["N1 G90 G94 G21", "N2 G53 G0 Z0.", "N3 S500 M3", "N4 G0 X5. Y6.", "N5 G4
 HOLE = "N7 G98 G81 X5. Y6. Z-3. R2. F100."
 
 
-def kinds(lines: Sequence[str], at: str, family: str = "Fanuc") -> set[str]:
+def kinds(lines: Sequence[str], at: str, family: str = "Fanuc", tolerance: float = 0.0) -> set[str]:
     """Kinds of the edits of one line."""
     line = [*lines].index(at) + 1
-    return {edit.kind for edit in harmful("\n".join(lines) + "\n", family) if edit.line == line}
+    return {edit.kind for edit in harmful("\n".join(lines) + "\n", family, tolerance) if edit.line == line}
 
 
 @pytest.mark.parametrize(
@@ -70,3 +70,27 @@ def test_a_coordinate_that_counts_from_here_says_no_place() -> None:
     absolute = [*HOME, "N6 G1 Z-1. F90.", "N7 X9.", "N8 Y12."]
     assert "incremental from here" in kinds(absolute, "N7 X9.")
     assert {"coordinates again", "a line in two"} <= {edit.kind for edit in sound("\n".join(absolute), "Fanuc")}
+
+
+@pytest.mark.parametrize(
+    ("begin", "tolerance", "is_put_in"),
+    [
+        ("N5 G43 H1 Z40.", 0.0, True),
+        ("N5 G43 H1 Z40.", 0.01, True),
+        ("N5 G43 H1 Z40.", 0.02, False),
+        ("N5 G43.4 H1 Z40.", 0.02, True),
+    ],
+)
+def test_a_point_within_the_tolerance_of_a_turn_without_tcp_is_not_left_out(
+    begin: str, tolerance: float, is_put_in: bool
+) -> None:
+    lines = [
+        *HOME[:4],
+        begin,
+        "N6 G0 A0. C0.",
+        "N7 G1 Z-1. F90.",
+        "N8 X9.03 Y6. A2. F91.",
+        "N9 X13. A4. F92.",
+        "N10 Y9.",
+    ]
+    assert ("a cut left out" in kinds(lines, "N8 X9.03 Y6. A2. F91.", tolerance=tolerance)) is is_put_in

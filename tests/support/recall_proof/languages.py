@@ -132,6 +132,8 @@ FANUC = Language(
     },
     dropped=_FANUC_DROPPED,
     cut_word=_ISO_CUT_WORD | {"an unset variable": (r"(?<=[XYZ])-?\d+\.?\d*", "#577")},
+    tcp=r"\bG43\.[45]\b|\bG234\b",
+    no_tcp=r"\bG49\b",
 )
 
 HAAS = FANUC
@@ -296,6 +298,8 @@ FIDIA = Language(
         "an arc the other way": (r"\bG0?([23])\b", "G~"),
         "an arc as a line": (r"\bG0?[23]\b", "G1"),
     },
+    tcp=r"\bG1?96\b",
+    no_tcp=r"\bG1?97\b",
 )
 
 HEIDENHAIN = Language(
