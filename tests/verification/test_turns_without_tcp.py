@@ -128,12 +128,23 @@ def test_without_a_cl_file_no_line_is_known(tmp_path: Path) -> None:
     assert _span("yl569", _divided("yl569", cl, 0.03), span_tip=0.04).state == "ok"
 
 
-@pytest.mark.parametrize(("angle", "state"), [("76.6055", "ok"), ("76.59", "ok"), ("76.506", "FAIL")])
-def test_a_point_between_may_not_lead_the_tool_axis_off_its_way(angle: str, state: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("angle", "other", "state"),
+    [
+        ("B-76.6055", "B-76.59", "ok"),
+        ("B-76.6055", "B-76.506", "FAIL"),
+        ("B-16.3925", "B-16.38", "ok"),  # in a step in which C turns by half a turn at the pole
+        ("B-16.3925", "B-16.292", "FAIL"),
+    ],
+)
+def test_a_point_between_may_not_lead_the_tool_axis_off_its_way(
+    angle: str, other: str, state: str, tmp_path: Path
+) -> None:
     text = (GOLDEN / "mikron_600u" / "cap_m114.expected.h").read_text(encoding="utf-8")
-    assert "B-76.6055" in text
+    before, found, behind = text.rpartition(angle)
+    assert found
     program = tmp_path / "cap.h"
-    program.write_text(text.replace("B-76.6055", f"B-{angle}"), encoding="utf-8")
+    program.write_text(before + other + behind, encoding="utf-8")
     cl = GOLDEN / "mikron_600u" / "cap.cls"
     found = trunnion.verify(program, machine="mikron_600u", cl=cl, zero=(0.0, 0.0, 100.0), tool_length=100.0)
     assert check(found, "span").state == state

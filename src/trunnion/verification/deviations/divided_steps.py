@@ -1,7 +1,8 @@
 """How far the tool axis may be off in steps of the CL file that a program has divided.
 
 A point between two CL points is there to keep the tool nearer to its path. So the tool axis may not leave the great
-circle farther than the control would without any point between them, even where a coarse step may be off by more.
+circle farther than the control would without that point, nor than without any point between, even where a coarse step
+may be off by more.
 
 Units: degrees.
 """
@@ -14,7 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints, Lines
 
-#: What a point between may be off wherever it is: what programs without TCP are divided to.
+#: What a point between may be off in addition: what programs without TCP are divided to.
 LEAST: Final = 0.05
 
 
@@ -30,9 +31,12 @@ def divided_limits(cl_row: Lines, whole: Callable[[Ints, Ints], Floats]) -> Floa
     edges = np.diff(np.concatenate(([False], same, [False])).astype(np.int8))
     first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     first, last = first[first > 0], last[first > 0]
-    limits = np.full(len(cl_row), math.inf)
-    off = np.maximum(whole(first, last), LEAST)
     lengths = last - first + 1
     rows = np.repeat(first, lengths) + np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)
-    limits[rows] = np.repeat(off, lengths)
-    return limits
+    limits = np.full(len(cl_row), math.inf)
+    limits[rows] = np.repeat(whole(first, last), lengths)
+    before = rows[rows != np.repeat(last, lengths)]  # motions that end in a point between
+    without = whole(before, before + 1)
+    limits[before] = np.minimum(limits[before], without)
+    limits[before + 1] = np.minimum(limits[before + 1], without)
+    return limits + LEAST
