@@ -44,13 +44,13 @@ def test_the_verdict_says_what_it_stands_on_and_what_was_not_checked(
     page, data = tmp_path / "a.html", tmp_path / "a.json"
     machine.write_text(bare.replace("[-250, 250]\n", "[-250, 250] # measure:\n", 1), encoding="utf-8")
     program.write_text(_PROGRAM, encoding="utf-8")
-    stock = ["--stock", "box:40,40,9,-20,-20,-9.5", "--cell", "2", "--tool", "1=flat:10,length=60,flutes=30"]
+    stock = ["--stock", "box:40,40,9,200,200,-9.5", "--cell", "2", "--tool", "1=flat:10,length=60,flutes=30"]
     asked = ["simulate", str(program), "--machine", str(machine), *stock]
     known = ["--zero", "0,0,-100", "--tool-length", "110"]
     assert main([*asked, *known, "--report", str(page), "--json", str(data)]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
     grounds = (
-        "stands on 1 value nobody measured; assumed: the control starts with TRAFOOF, CYCLE800(); "
+        "stands on 2 values nobody measured; assumed: the control starts with TRAFOOF, CYCLE800(); "
         "assumed: B and C at home at line 6"
     )
     why = "collisions with the machine: not checked (the definition of the machine states no bodies)"
@@ -58,7 +58,7 @@ def test_the_verdict_says_what_it_stands_on_and_what_was_not_checked(
     assert grounds in page.read_text(encoding="utf-8")
     found = json.loads(data.read_text(encoding="utf-8"))
     assert found["not_checked"] == ["the definition of the machine states no bodies"]
-    assert [len(found["not_measured"]), *found["assumed"]] == [1, "TRAFOOF", "CYCLE800()"]
+    assert [len(found["not_measured"]), *found["assumed"]] == [2, "TRAFOOF", "CYCLE800()"]
     assert found["axes_from_home"] == "B and C at home at line 6"
     assert main(asked) == 0
     last = capsys.readouterr().out.splitlines()[-1]
