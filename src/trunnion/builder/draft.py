@@ -6,7 +6,6 @@ Out:    what the builder's page shows, as JSON has it.
 
 import tomllib
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,6 +22,7 @@ from trunnion.machines import Machine
 from trunnion.machines.jog_table import jog_table
 from trunnion.machines.loading import machine_library, read_machine
 from trunnion.messages import LIBRARY, Wording, Words, phrase, said_in
+from trunnion.records import dataclass
 from trunnion.results import to_data
 from trunnion.simulation.collisions.bodies import machine_bodies
 from trunnion.viewer.content import body_scene, machine_scene

@@ -7,7 +7,6 @@ Units:  mm, seconds of arc, degrees; workpiece frame.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, ClassVar
 
@@ -19,6 +18,7 @@ from trunnion.capability.tip_errors import TipErrors, in_radians, joints_at_zero
 from trunnion.errors import Problem
 from trunnion.machines.sensitivity import GeometryNumber, idle_numbers
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, BlockNumber, Figure
 from trunnion.verification.grounds import NO_GROUNDS, Grounded, Grounds
 

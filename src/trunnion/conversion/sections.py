@@ -1,7 +1,7 @@
 """The sections of a program that become operations: where they begin and end, and which events belong to them."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
 from trunnion.messages import Wording
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True)

@@ -19,10 +19,11 @@ those of a tool carrier.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final, TypeAlias
 
 from trunnion.foreign.machine import Key, Left, Stated, index, number
+from trunnion.records import dataclass
 from trunnion.wording import counted
 
 #: Machine data and system variables: name and index -> value.

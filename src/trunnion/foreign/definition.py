@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, Final
 
 from trunnion.controls.definition_files import load_control_table
@@ -15,6 +14,7 @@ from trunnion.machines import AngleOutput, Axis, Machine, load_machine
 from trunnion.machines.loading import shipped_machines
 from trunnion.machines.machine import Vector
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.schemas import first_line
 
 _HEAD: Final = """\

@@ -6,7 +6,7 @@ Units:  mm and degrees, as definitions have them.
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any, Final, TypeAlias
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: A place in a definition: ``("axis", "B", "limits_deg")``, ``("control", "block_numbers", "step")``.
 Key: TypeAlias = tuple[str, ...]

@@ -11,13 +11,14 @@ definition of Mastercam: they are reported, and not taken.
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, WordCounts, index, place_in, read_text
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.wording import counted
 
 _SWITCH: Final = re.compile(r"([A-Za-z_]\w*)\$?\s*[:=]\s*([^\s#][^#]*?)\s*(?:#.*)?$", re.ASCII)

@@ -10,13 +10,14 @@ machine with two tables carries the fifth, and so it does in a head.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, WordCounts, number, place_in, read_text
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 _SET: Final = re.compile(
     r"\s*set\s+(?:::)?(mom_(?:kin|sys)_\w+(?:\([\w, ]+\))?)\s+(\"[^\"$\[]*\"|[-+.\w\\#]+)\s*(?:;.*)?$"

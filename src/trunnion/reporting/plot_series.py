@@ -7,7 +7,6 @@ Units:  seconds, mm, degrees, mm/min, deg/min.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from trunnion.arrays import Floats, Lines
 from trunnion.machines import Axis
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.reporting.extents import is_zero_known, travel_rows
 from trunnion.reporting.text import clean
 from trunnion.verification.results import Verification, durations

@@ -7,7 +7,6 @@ Units:  seconds, mm, degrees, rev/min.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
 from typing import Annotated, Final
@@ -17,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints, Lines
 from trunnion.machines import Axis
 from trunnion.model.recording import SPINDLE, TIP, Mark
+from trunnion.records import dataclass
 from trunnion.reporting.extents import AxisExtent, extent_of, extremes_of, is_zero_known
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, finite_values
 from trunnion.reporting.text import clean

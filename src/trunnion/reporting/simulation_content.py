@@ -4,9 +4,9 @@ Units:  mm, mm², mm³, seconds.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from trunnion.messages import Wording, Words
+from trunnion.records import dataclass
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
 from trunnion.verification import Verdict
 

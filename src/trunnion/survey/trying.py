@@ -7,7 +7,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from functools import cache
 from pathlib import Path, PurePosixPath
@@ -26,6 +26,7 @@ from trunnion.jobs.inputs.reading import as_machine
 from trunnion.machines import Machine
 from trunnion.options.words import PROOF_SETTINGS
 from trunnion.readers import reader_of, with_reading
+from trunnion.records import dataclass
 from trunnion.survey.found_files import MOST_BYTES, is_touchable
 from trunnion.survey.stand_ins import stand_ins
 

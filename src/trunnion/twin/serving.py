@@ -3,8 +3,8 @@
 import asyncio
 import socket
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
 
+from trunnion.records import dataclass
 from trunnion.twin.mtconnect.adapter import MTConnectAdapter
 from trunnion.twin.mtconnect.agent import MTConnectAgent
 from trunnion.twin.opcua.outlet import OpcUaOutlet

@@ -7,7 +7,6 @@ Units:  mm and degrees, mm/min, rev/min, seconds of the program.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
 from typing import Final
@@ -19,6 +18,7 @@ from trunnion.machines import Machine, forward
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
+from trunnion.records import dataclass
 from trunnion.timing import TimedEvent, TimedRun
 from trunnion.twin.modal import Blocks, BlockState
 from trunnion.verification.grounds import Grounds, grounds_of

@@ -5,12 +5,12 @@ Out:    ``Grounds``, as data and in words.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import chain
 from typing import Annotated, Final
 
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.results import Figure
 from trunnion.verification.axes_from_home import axes_from_home
 from trunnion.verification.basis import assumed_modes, stated_texts, turns_before_offset

@@ -5,11 +5,11 @@ Out:    ``Standing``, as data and in words.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
 from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 from trunnion.verification.grounds import NO_GROUNDS, Grounded, Grounds
 

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Final, Unpack
@@ -29,6 +29,7 @@ from trunnion.machines.machine import Vector
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
+from trunnion.records import dataclass
 from trunnion.results import Figure
 from trunnion.verification.results import durations
 

@@ -6,7 +6,6 @@ Out:    the keys that the text can tell apart and with which it has fewer errors
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TypeAlias
 
@@ -18,6 +17,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.readers.program.forms import keys_of
 from trunnion.readers.program.settings import family_of, reading_of
+from trunnion.records import dataclass
 
 #: A word of a key, or a list of one.
 Value: TypeAlias = str | list[str]

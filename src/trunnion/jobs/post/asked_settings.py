@@ -7,7 +7,7 @@ Out:    ``AskedSetting``; the text of a project that states them.
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.definitions.toml_text import written, written_key
@@ -15,6 +15,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.jobs.post.settings_to_fill import GATHERED, entries_to_fill
 from trunnion.jobs.project.project import Division
 from trunnion.jobs.project.settings import OWN_KEYS
+from trunnion.records import dataclass
 from trunnion.wording import counted
 
 #: A value, or the end of one, in whose place something is to be written.

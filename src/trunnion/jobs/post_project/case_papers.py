@@ -7,12 +7,12 @@ Out:    those that are not, and why.
 import filecmp
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.errors import InputError
 from trunnion.jobs.post.papers.manifests import verify_manifest
 from trunnion.jobs.result_output import PaperFiles
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

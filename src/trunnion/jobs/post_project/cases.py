@@ -8,7 +8,7 @@ Out:    for each of them how the programs that are posted now differ from those 
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
@@ -29,6 +29,7 @@ from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.result_output import NO_PAPERS
 from trunnion.jobs.verify.comparing import diff
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: What projects are called that are cases, and how the names of others end.
 _NAMES: Final = ("case.toml", "part.toml")

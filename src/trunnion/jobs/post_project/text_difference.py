@@ -7,11 +7,11 @@ Out:    what to say of the difference, and the first lines of it.
 import difflib
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import islice, zip_longest
 from pathlib import Path
 from typing import BinaryIO, Final
 
+from trunnion.records import dataclass
 from trunnion.wording import counted
 
 #: Lines behind the first difference that are compared by what they say, and not by their numbers alone.

@@ -1,7 +1,7 @@
 """What a simulation found, as a record for scripts, data and reports."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from typing import Annotated, Any, ClassVar, Final
 
@@ -12,6 +12,7 @@ from trunnion.jobs.simulate.travel import ProgramTravel, judged_travel, travel_d
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
 from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.model.run_samples import joint_samples
+from trunnion.records import dataclass
 from trunnion.reporting.remarks import remark_data
 from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
 from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperation, SimulationFinding, setup_findings

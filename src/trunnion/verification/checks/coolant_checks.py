@@ -1,7 +1,7 @@
 """The coolant of a program against COOLNT in the CL files, as far as the control or its definition knows the words."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import EventValue, Run, RunEvent
+from trunnion.records import dataclass
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.event_words import event_word
 from trunnion.verification.expected.states import all_coolants, coolant_states

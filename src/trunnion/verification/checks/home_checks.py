@@ -1,7 +1,7 @@
 """Motions to the machine's home positions."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -11,6 +11,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.checks.passages import without_retract
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.context import Context, check_from_places

@@ -3,7 +3,7 @@
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import zip_longest
 from typing import Final
 
@@ -13,6 +13,7 @@ from trunnion.arrays import Flags
 from trunnion.messages import Wording
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Kind, Stop
+from trunnion.records import dataclass
 from trunnion.verification.checks.restated_modes import RestatedModes
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.checks.skip_faults import skip_faults

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -25,6 +24,7 @@ from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
+from trunnion.records import dataclass
 
 #: Words with which a block goes to a place.
 _PLACE: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z

@@ -1,7 +1,7 @@
 """Control flow of a Klartext program: labels, calls, and jumps of FN functions."""
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.errors import Severity
@@ -12,6 +12,7 @@ from trunnion.readers.families.heidenhain.parameters import KlartextError, Param
 from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
+from trunnion.records import dataclass
 
 #: How deep calls of labels may nest.
 MAX_LABEL_DEPTH: Final = 20

@@ -5,7 +5,7 @@ Of a loop only its lines are known: its end jumps back to its beginning, which e
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.errors import Severity
@@ -20,6 +20,7 @@ from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import TYPES
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import ProgramEnd
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)
