@@ -114,8 +114,10 @@ def test_a_word_that_no_definition_states_is_not_checked(tmp_path: Path) -> None
 
 
 #: How a program changes its tool, and whether coolant is said before it.
-_CHANGES = {"yl569": r"(N\d+ T=1\n)", "dmu65": r"(\d+ TOOL CALL 1 .*\n)", "haas_umc750": r"(N\d+ T1 M6\n)",
-            "matsuura_mx330": r"(N\d+ T1 M6\n)", "xyzac_trt": r"(N\d+ T1 M6\n)", "hs664rt": r"(N\d+ M306 T\.1\n)"}  # fmt: skip
+_CHANGES = {
+    "yl569": r"(N\d+ T=1\n)", "dmu65": r"(\d+ TOOL CALL 1 .*\n)", "haas_umc750": r"(N\d+ T1 M6\n)",
+    "matsuura_mx330": r"(N\d+ T1 M6\n)", "xyzac_trt": r"(N\d+ T1 M6\n)", "hs664rt": r"(N\d+ M306 T\.1\n)",
+}  # fmt: skip
 
 
 @pytest.mark.third
