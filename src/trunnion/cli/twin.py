@@ -9,7 +9,7 @@ from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml
-from trunnion.messages import Wording, phrase
+from trunnion.messages import Wording, joined
 
 if TYPE_CHECKING:
     from trunnion.twin.serving import TwinAddresses
@@ -47,8 +47,8 @@ def _announce(addresses: "TwinAddresses", given: Given) -> None:
         lines.append(f"MTConnect: an agent connects to {addresses.mtconnect} (SHDR); --device-xml writes its devices")
     if addresses.agent:
         lines.append(f"MTConnect: http://{addresses.agent}/probe, /current and /sample (from this computer)")
-    if addresses.not_measured:
-        lines.append(f"positions and times: {phrase('stands_on', values=addresses.not_measured)}")
+    if grounds := joined(addresses.grounds.wordings(named=True)):
+        lines.append(f"positions and times: {grounds}")
     if given.hold:
         lines.append("the program waits for a client to call Start in the object Twin")
     print(*lines, "Ctrl-C ends it", sep="\n", file=sys.stderr, flush=True)
