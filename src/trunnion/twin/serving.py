@@ -5,6 +5,7 @@ import socket
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 
+from trunnion.messages import Wording
 from trunnion.twin.mtconnect.adapter import MTConnectAdapter
 from trunnion.twin.mtconnect.agent import MTConnectAgent
 from trunnion.twin.opcua.outlet import OpcUaOutlet
@@ -27,7 +28,7 @@ class TwinAddresses:
     mtconnect: str
     agent: str
     fingerprint: str
-    not_measured: tuple[str, ...] = ()
+    not_measured: tuple[Wording, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

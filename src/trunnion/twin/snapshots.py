@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, forward
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
 from trunnion.timing import TimedEvent, TimedRun
@@ -99,9 +100,9 @@ class TwinProgram:
         return tuple(PurePath(name).name for name in self.run.files) or (self.name,)
 
     @property
-    def not_measured(self) -> tuple[str, ...]:
+    def not_measured(self) -> tuple[Wording, ...]:
         """Values of the definition that positions and times stand on, though nobody has measured them."""
-        return tuple(map(str, unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run))))
+        return tuple(each.said for each in unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run)))
 
     @cached_property
     def tools(self) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from trunnion.arrays import Flags, Floats, Lines
 from trunnion.compensation.centre_runs import CentreRun
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
-from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase, texts
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
@@ -115,10 +115,6 @@ class State(StrEnum):
 _STATES: Final = {State.OK: "state_ok", State.FAIL: "state_fail", State.NOT_CHECKED: "state_not_checked"}
 
 
-def _texts(wordings: Sequence[Wording]) -> list[str]:
-    return [wording.what for wording in wordings]
-
-
 @dataclass(frozen=True, slots=True)
 class Check:
     """One question about a program, and its answer.
@@ -141,9 +137,9 @@ class Check:
     limit: float | None = None
     unit: str = ""
     places: tuple[Place, ...] = ()
-    missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
+    missing: Annotated[tuple[Wording, ...], Figure(take=texts, after="state")] = ()
     coverage: Coverage | None = None
-    stands_on: Annotated[tuple[Wording, ...], Figure(take=_texts, after="missing")] = ()
+    stands_on: Annotated[tuple[Wording, ...], Figure(take=texts, after="missing")] = ()
 
     @property
     @Figure(after="key")
@@ -256,7 +252,7 @@ class Verification:
             failed=states.count(State.FAIL),
             not_checked=states.count(State.NOT_CHECKED),
             warnings=severities.count(Severity.WARNING),
-            not_measured=tuple(dict.fromkeys(str(value) for check in self.checks for value in check.stands_on)),
+            not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
             assumed=assumed_modes(self.run),
             stated=stated_texts(self.run),
             turns_before_offset=str(turns_before_offset(self.run) or ""),

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
-from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase, texts
 from trunnion.results import NOT_DATA, Figure
 
 
@@ -50,7 +50,7 @@ class Standing:
     failed: int
     not_checked: int
     warnings: int = 0
-    not_measured: tuple[str, ...] = ()
+    not_measured: Annotated[tuple[Wording, ...], Figure(take=texts)] = ()
     assumed: tuple[str, ...] = ()
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
     turns_before_offset: str = ""

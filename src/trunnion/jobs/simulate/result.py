@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.simulate.travel import ProgramTravel, judged_travel, travel_data
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
-from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase, texts
 from trunnion.model.run_samples import joint_samples
 from trunnion.reporting.remarks import remark_data
 from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
@@ -102,7 +102,7 @@ class SimulationResult:
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
     cuts_unknown: Annotated[tuple[Wording, ...], Figure("cuts_not_checked", after="remarks", take=_sentences)] = ()
     skip_meanings: Annotated[tuple[Wording, ...], Figure("meanings", after="remarks", take=_sentences)] = ()
-    not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
+    not_measured: Annotated[tuple[Wording, ...], Figure(take=texts, after="remarks")] = ()
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=(), after="remarks")] = ()
     travel: Annotated[tuple[ProgramTravel, ...], Figure(take=travel_data, after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
@@ -250,13 +250,13 @@ def make_result(cut: CutSetup) -> SimulationResult:
     )
 
 
-def _not_measured(cut: CutSetup) -> tuple[str, ...]:
+def _not_measured(cut: CutSetup) -> tuple[Wording, ...]:
     """Return the values that nobody has measured, and that distances of bodies stand on; none if none were checked."""
     joints = [joint_samples(run) for run in cut.setup.runs]
     if not (cut.pairs and joints):
         return ()
     kinds = (*POSITIONS, ValueKind.BODIES)
-    return tuple(map(str, unmeasured_values(cut.setup.machine, kinds, np.concatenate(joints))))
+    return tuple(each.said for each in unmeasured_values(cut.setup.machine, kinds, np.concatenate(joints)))
 
 
 def not_measured_lines(found: SimulationResult, words: Words = LIBRARY) -> Iterator[str]:
