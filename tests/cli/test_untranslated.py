@@ -10,8 +10,7 @@ from tests.support.frozen_results import lay_out
 from tests.support.spoken_runs import NOT_RUN, RUNS, lay_out_more, lines_of
 from tests.support.translations import TRANSLATED
 from trunnion.cli import main
-from trunnion.controls import load_control
-from trunnion.controls.loading import shipped_controls
+from trunnion.jobs.describe.controls import describe_controls
 from trunnion.jobs.registry import JOBS
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.messages import LANGUAGES
@@ -39,7 +38,7 @@ ALIKE = {
 
 #: What machines and controls are called.
 NAMES = sorted(
-    {load_machine(key).name for key in shipped_machines()} | {load_control(key).name for key in shipped_controls()},
+    {load_machine(key).name for key in shipped_machines()} | {each.name for each in describe_controls()},
     key=len,
     reverse=True,
 )

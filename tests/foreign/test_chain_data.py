@@ -200,7 +200,7 @@ def test_the_range_of_swivel_data_does_not_replace_software_limits(tmp_path: Pat
         ("$TC_CARR7=1", "$TC_CARR7=1"),
         ("$TC_CARR4[1]=1e99", "$TC_CARR4[1] = 1e99"),
         ("$TC_CARR4[1]=NAN", "$TC_CARR4[1] = NAN"),
-        ("$MN_SOMETHING=3", "1 other machine data"),
+        ("$MN_SOMETHING=3", "1 other machine datum from here on"),
         ('$MN_AXCONF_MACHAX_NAME_TAB[6]="Z"', "$MN_AXCONF_MACHAX_NAME_TAB[6] = Z"),
     ],
 )

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import copy_context
-from functools import partial
 
 from trunnion.cli.wording import in_words, said
 from trunnion.messages import word_said
@@ -45,8 +44,8 @@ def progress_lines(what: str, total: int, unit: str, *, every: float = 30.0) -> 
     def watch() -> None:
         while not is_over.wait(every):
             passed = format_duration(time.monotonic() - started)
-            counts = {"what": what, "unit": unit, "done": done, "total": total}
-            print(words.run(partial(said, "progress", passed=passed, **counts)), file=sys.stderr, flush=True)
+            text = words.run(lambda: said("progress", what=what, done=done, total=total, unit=unit, passed=passed))
+            print(text, file=sys.stderr, flush=True)
 
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
