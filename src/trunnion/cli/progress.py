@@ -41,11 +41,13 @@ def progress_lines(what: str, total: int, unit: str, *, every: float = 30.0) -> 
         nonlocal done
         done += more
 
+    def line_after(passed: str) -> str:
+        return said("progress", what=what, done=done, total=total, unit=unit, passed=passed)
+
     def watch() -> None:
         while not is_over.wait(every):
             passed = format_duration(time.monotonic() - started)
-            text = words.run(lambda: said("progress", what=what, done=done, total=total, unit=unit, passed=passed))
-            print(text, file=sys.stderr, flush=True)
+            print(words.run(line_after, passed), file=sys.stderr, flush=True)
 
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
