@@ -33,7 +33,7 @@ ALIKE = {
         "Home",
         "End",
     },
-    "de": {"Code", "Name", "Operation", "Start"},
+    "de": {"Code", "Name", "Operation", "Start", "in"},
 }
 
 #: What machines and controls are called.
@@ -43,25 +43,28 @@ NAMES = sorted(
     reverse=True,
 )
 
+#: What the system says, and what is printed of files and is typed.
+QUOTED = ("Connect call failed", "3 is no name of anything", "trunnion test changed")
+
 #: A word, and what holds none: file names, options, settings, keys of definitions, commands of LaTeX.
 WORD = re.compile(r"(?<![\w/.\\{-])[A-Za-z]?[a-z]{2,}(?![\w/.(}-])")
+
+#: Lines of programs and of definitions, which have no language.
+CODE = re.compile(r"\s*(?:N\d+ )?[;(#{<]|\s*[\w.]+ = ")
 
 
 def english_words(line: str, language: str) -> set[str]:
     """Words of a line that should be those of another language."""
-    return set(WORD.findall(line)) - ALIKE["zh"] - ALIKE[language]
+    return set() if CODE.match(line) else set(WORD.findall(line)) - ALIKE["zh"] - ALIKE[language]
 
 
 #: Words behind each other, which a sentence has.
 SENTENCE = re.compile(r"(?<![\w/.\\{-])[A-Za-z]?[a-z]{2,}(?: [a-z]{2,}){2,}(?![\w/.(}-])")
 
-#: Lines of programs and of definitions, which have no language.
-CODE = re.compile(r"\s*[;(#{<]|\s*[\w.]+ = ")
-
 
 def english_parts(line: str) -> set[str]:
     """Three words behind each other, which are no name of a machine or a control."""
-    for name in NAMES:
+    for name in (*NAMES, *QUOTED):
         line = line.replace(name, "")
     found = [each.split() for each in SENTENCE.findall(line)] if not CODE.match(line) else []
     return {" ".join(words[k : k + 3]) for words in found for k in range(len(words) - 2)}

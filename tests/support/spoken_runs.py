@@ -135,13 +135,10 @@ def text_lines(page: str) -> Iterator[str]:
 def _texts_of(shown: object) -> Iterator[str]:
     """Yield the texts of the plots of a page."""
     if isinstance(shown, dict):
-        for name in ("title", "note", "name", "limitName"):
-            if isinstance(text := shown.get(name), str):
-                yield text
-        for key in ("words", "plots", "lines"):
-            yield from _texts_of(shown.get(key))
-        yield from (str(each) for each in shown.values() if isinstance(each, str))
+        yield from (shown[name] for name in ("title", "note", "name", "limitName", "first") if shown.get(name))
+        yield from shown.get("words", {}).values()
         yield from (str(name) for _, name in shown.get("marks", ()))
+        yield from _texts_of([*shown.get("plots", ()), *shown.get("lines", ())])
     elif isinstance(shown, list):
         for each in shown:
             yield from _texts_of(each)
