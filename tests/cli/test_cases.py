@@ -200,7 +200,7 @@ def test_an_old_program_that_nobody_can_read_is_told(case: Path, capsys: Capture
     case.with_name("top.mpf").write_bytes(b"\x00\xff nonsense\n")
     code, out, _ = tried(capsys, case.parent)
     assert code == 1
-    assert "motion: different: " in out
+    assert "motion: the program that is there cannot be read" in out
 
 
 @pytest.mark.parametrize(
