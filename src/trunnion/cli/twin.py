@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from trunnion.cli.printing import print_result
 from trunnion.cli.terminal import Terminal
-from trunnion.cli.wording import line, said
+from trunnion.cli.wording import line, said, spoken
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml
-from trunnion.messages import Wording, phrase
+from trunnion.messages import Wording, joined
 
 if TYPE_CHECKING:
     from trunnion.twin.serving import TwinAddresses
@@ -48,8 +48,8 @@ def _announce(addresses: "TwinAddresses", given: Given) -> None:
         lines.append(said("twin_adapter", address=addresses.mtconnect))
     if addresses.agent:
         lines.append(said("twin_agent", address=addresses.agent))
-    if addresses.not_measured:
-        lines.append(said("twin_stands_on", basis=phrase("stands_on", values=addresses.not_measured)))
+    if grounds := joined(addresses.grounds.wordings(named=True), spoken()):
+        lines.append(said("twin_stands_on", basis=grounds))
     if given.hold:
         lines.append(said("twin_waits"))
     print(*lines, said("ctrl_c_ends"), sep="\n", file=sys.stderr, flush=True)

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
 from trunnion.machines.machine import Vector
-from trunnion.messages import Wording, foreign, texts
+from trunnion.messages import Wording, foreign
 from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
@@ -213,7 +213,7 @@ class Placement:
     most_distance_mm: float | None = None
     left_out: tuple[tuple[str, str], ...] = ()
     table: Annotated[ClampingArea | None, Figure(after="region")] = None
-    not_measured: Annotated[tuple[Wording, ...], Figure(take=texts, after="remarks")] = ()
+    not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
 

@@ -12,15 +12,14 @@ from trunnion.arrays import Flags, Floats, Lines
 from trunnion.compensation.centre_runs import CentreRun
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
-from trunnion.messages import LIBRARY, Wording, Words, joined, phrase, texts
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
-from trunnion.verification.axes_from_home import axes_from_home
-from trunnion.verification.basis import assumed_modes, stated_texts, turns_before_offset
 from trunnion.verification.block_names import block_name
+from trunnion.verification.grounds import grounds_of
 from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -116,6 +115,10 @@ class State(StrEnum):
 _STATES: Final = {State.OK: "state_ok", State.FAIL: "state_fail", State.NOT_CHECKED: "state_not_checked"}
 
 
+def _texts(wordings: Sequence[Wording]) -> list[str]:
+    return [wording.what for wording in wordings]
+
+
 @dataclass(frozen=True, slots=True)
 class Check:
     """One question about a program, and its answer.
@@ -138,9 +141,9 @@ class Check:
     limit: float | None = None
     unit: str = ""
     places: tuple[Place, ...] = ()
-    missing: Annotated[tuple[Wording, ...], Figure(take=texts, after="state")] = ()
+    missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
     coverage: Coverage | None = None
-    stands_on: Annotated[tuple[Wording, ...], Figure(take=texts, after="missing")] = ()
+    stands_on: Annotated[tuple[Wording, ...], Figure(take=_texts, after="missing")] = ()
 
     @property
     @Figure(after="key")
@@ -253,11 +256,7 @@ class Verification:
             failed=states.count(State.FAIL),
             not_checked=states.count(State.NOT_CHECKED),
             warnings=severities.count(Severity.WARNING),
-            not_measured=tuple(dict.fromkeys(value for check in self.checks for value in check.stands_on)),
-            assumed=assumed_modes(self.run),
-            stated=stated_texts(self.run),
-            turns_before_offset=str(turns_before_offset(self.run) or ""),
-            axes_from_home=str(axes_from_home(self.run) or ""),
+            grounds=grounds_of((self.run,), (value for check in self.checks for value in check.stands_on)),
             assumed_unit="mm" if self.assumes_unit else "",
             moves=len(self.run) > 0,
         )

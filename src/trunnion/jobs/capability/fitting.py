@@ -85,7 +85,7 @@ class MachineFit:
     missing: Annotated[float | None, Figure(unit="mm", decimals=6, after="turn_deg")] = None
     zero_mm: Vector | None = None
     turn_deg: float | None = None
-    not_measured: Annotated[tuple[Wording, ...], Figure(take=texts)] = ()
+    not_measured: tuple[str, ...] = ()
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -300,7 +300,7 @@ def _does_not_fit(error: TrunnionError, key: str, margins: tuple[AxisMargin, ...
     return MachineFit(key, FitStatus.NOT, _reasons(error), None, margins)
 
 
-def _not_measured(posted: PostResult) -> tuple[Wording, ...]:
+def _not_measured(posted: PostResult) -> tuple[str, ...]:
     return () if posted.standing is None else posted.standing.not_measured
 
 
