@@ -61,3 +61,19 @@ def test_a_subprogram_is_named_before_what_is_proposed(tmp_path: Path) -> None:
     assert lines[0].startswith("this looks like a subprogram, by M99 in line 3; give the program that calls it")
     program.write_text(FANUC + "G1 X5. F9.\n" + END)
     assert len(list(proposed_reading(program, trunnion.load_machine("matsuura_mx330")).lines())) == 1
+
+
+def test_a_foreign_program_is_named_before_what_is_proposed(tmp_path: Path) -> None:
+    program = tmp_path / "a.nc"
+    program.write_text("%PART,MX--\nN10 G90\n#RTCP ON\nN20 X5 F9\n#RTCP OFF\nM30\n")
+    lines = list(proposed_reading(program, trunnion.load_machine("matsuura_mx330")).lines())
+    assert lines[0].startswith("this looks like a Fagor program, by #RTCP in line 3")
+
+
+def test_data_are_refused_and_not_counted_as_errors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program = tmp_path / "a.nc"
+    program.write_bytes(bytes(range(256)))
+    assert main(["check", "matsuura_mx330", "--program", str(program)]) == 2
+    said = capsys.readouterr()
+    assert "[NC110]" in said.err
+    assert not said.out

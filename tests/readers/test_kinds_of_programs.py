@@ -53,6 +53,23 @@ def test_a_tape_is_known_by_the_end_of_its_blocks(tmp_path: Path) -> None:
     assert found.kind.name.what.startswith("a tape with $")
 
 
+def test_a_lathe_is_known_by_words_of_a_sinumerik(tmp_path: Path) -> None:
+    program = tmp_path / "shaft.mpf"
+    program.write_text('N10 G18 G90 G95 DIAMON\nN20 LIMS=3000\nN60 CYCLE95("A",2,0.1,0.2,,0.3,0.2,0.1,1)\nM30\n')
+    run = trunnion.read_program(program, machine="yl569")
+    assert run.errors[0].text.startswith("this looks like a program for a lathe")
+
+
+@pytest.mark.parametrize("data", ["%\nO0005\nG90 G54\nM30\n%\n".encode("utf-16"), bytes(range(256)) * 8])
+def test_what_is_no_text_does_not_look_like_one(tmp_path: Path, data: bytes) -> None:
+    program = tmp_path / "part.nc"
+    program.write_bytes(data)
+    assert recognize(program) is None
+    with pytest.raises(trunnion.TrunnionError) as refused:
+        trunnion.read_program(program, machine="matsuura_mx330")
+    assert [each.code for each in refused.value.problems] == ["NC110"]
+
+
 @pytest.mark.parametrize("folder", sorted(path.name for path in (TESTS / "golden").iterdir() if path.is_dir()))
 def test_no_golden_program_looks_like_another_machine(folder: str) -> None:
     for program in (TESTS / "golden" / folder).glob("*.expected.*"):

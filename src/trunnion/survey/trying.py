@@ -179,7 +179,8 @@ def _with_settings(subject: _Subject, outcome: Outcome) -> Outcome:
 
 def _with_keys(subject: _Subject, outcome: Outcome) -> Outcome:
     """Return what comes of a program with the keys under which it reads best."""
-    subject.keys = proposed_reading(subject.trial.path, as_machine(subject.trial.machine)).keys
+    with suppress(TrunnionError):  # of a file that cannot be read, which its outcome says
+        subject.keys = proposed_reading(subject.trial.path, as_machine(subject.trial.machine)).keys
     if not subject.keys:
         return outcome
     subject.asked = outcome

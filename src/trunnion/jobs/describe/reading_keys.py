@@ -68,6 +68,7 @@ class Proposal:
     after   with them
     why     what each key changes
     role    what the program is, if it looks like a subprogram
+    kind    what it is, if it looks like nothing for the control
     """
 
     keys: dict[str, Value]
@@ -75,11 +76,13 @@ class Proposal:
     after: tuple[int, int]
     why: tuple[Wording, ...]
     role: Wording | None = None
+    kind: Wording | None = None
 
     def lines(self) -> Iterator[str]:
         """Yield the proposal as TOML to copy, with why as comments."""
-        if self.role is not None:
-            yield self.role.with_cure().what
+        for said in (self.kind, self.role):
+            if said is not None:
+                yield said.with_cure().what
         if not self.keys:
             yield str(phrase("reads_best_so", errors=self.before[0]))
             return
@@ -111,7 +114,17 @@ def proposed_reading(program: Path, machine: Machine) -> Proposal:
             said = phrase(variant, before=best[0], after=score[0], axes=best[1] - score[1])
             why |= {key: said for key, _ in added}
             keys, best = tried, score
-    return Proposal(keys, first, best, tuple(why[key] for key in keys), readers.role_of(program, machine))
+    kind = _kind(program, readers.with_reading(machine, keys)) if best[0] else None
+    return Proposal(keys, first, best, tuple(why[key] for key in keys), readers.role_of(program, machine), kind)
+
+
+def _kind(program: Path, machine: Machine) -> Wording | None:
+    """Return what a program with errors looks like, if that is nothing for the control.
+
+    Raises ``InputError`` if the file cannot be read.
+    """
+    errors = readers.with_kind(readers.run_program(program, machine), program).errors
+    return next((each.wording for each in errors if each.code == "NC113"), None)
 
 
 def _candidates(text: str, machine: Machine) -> Iterator[tuple[str, Value]]:

@@ -91,7 +91,8 @@ KINDS: Final = (
     _kind(
         phrase("program_of_lathe"),
         _N + r"G50 ?S\d", _N + r"G96 ?S\d", r"G7[0-3] ?P\d+ ?Q\d", r"G7[0-6] ?[UXZ]-?[\d.]+ ?[RWZ]", r"\bT0\d0\d\b",
-        r"G28 ?U0?\.? ?W0", r"\b[UX]-?[\d.]+ ?W-?[\d.]",
+        r"G28 ?U0?\.? ?W0", r"\b[UX]-?[\d.]+ ?W-?[\d.]", r"\bLIMS(?:\[\d\])? ?=", r"\bDIAM(?:ON|OF|90)\b",
+        r"\bCYCLE9[3-8] ?\(",
     ),
     _kind(
         phrase("program_of_okuma"),
@@ -183,7 +184,8 @@ def program_for_cl_file(file: Path) -> Problem | None:
     if found is None or not found.found:
         return None
     line, letters = found.found[0]
-    return Problem(str(file), 0, Wording("CL110", "is_program", kind=found.kind.name, mark=letters, line=line))
+    variant = "is_program" if found.kind.languages else "is_foreign_program"
+    return Problem(str(file), 0, Wording("CL110", variant, kind=found.kind.name, mark=letters, line=line))
 
 
 def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wording | None:
@@ -203,15 +205,17 @@ def _doubt(program: Path, language: str, is_still: bool, is_certain: bool) -> Wo
 
 
 def _lines(file: Path) -> Iterator[tuple[int, str]]:
-    """Lines of the head of a file that are not empty, with their numbers; a pipe is not opened."""
+    """Lines of the head of a text that are not empty, with their numbers; a pipe is not opened, and data are none."""
     try:
         if not file.is_file():
             return
         with file.open("rb") as opened:
-            text = opened.read(_HEAD).decode("utf-8", "replace")
+            head = opened.read(_HEAD)
     except OSError:
         return
-    for number, line in enumerate(text.splitlines(), 1):
+    if b"\0" in head:
+        return
+    for number, line in enumerate(head.decode("utf-8", "replace").splitlines(), 1):
         if line.strip(" \t%"):
             yield number, line[:_MOST_LETTERS].rstrip()
 

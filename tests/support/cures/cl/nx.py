@@ -33,9 +33,11 @@ _SECOND: Final = HEAD.replace("OP1", "OP2")
 _ARC: Final = "CIRCLE/10,5,5,0,0,1,5"
 
 _PROGRAM: Final = HEADS["mikron_600u"].format(lines="L X+10 F100")
+_FAGOR: Final = "%PART,MX--\nN10 G90\n#RTCP ON\nN20 X5 F9\n#RTCP OFF\nM30\n"
 
 CURES: Final = (
     Cure("CL110", "is_program", read, _PROGRAM, (), cured_by=verify("mikron_600u")),
+    _said("CL110", "is_foreign_program", _FAGOR, (_FAGOR, _CUT)),
     Cure(
         "CL110",
         "begins_variable",
