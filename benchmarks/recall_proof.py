@@ -79,7 +79,7 @@ def edits_of(base: Base, arguments: argparse.Namespace) -> Iterator[tuple[bool, 
     """Yield the edits of a program, and whether they harm."""
     seed = f"{arguments.seed} {base.family} {base.name}"
     is_cut = arguments.judge == "simulate"
-    harms = removal_edits(base) if is_cut else harmful(base.text, base.family)
+    harms = removal_edits(base) if is_cut else harmful(base.text, base.family, base.tolerance)
     # The proof refuses points that nothing asks for.
     left_out = {"a line in two"} if arguments.judge in ("proof", "convert") else set()
     yield from ((True, edit) for edit in chosen(harms, arguments.each, seed))

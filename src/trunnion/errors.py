@@ -12,13 +12,14 @@ import re
 import stat
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from itertools import chain
 from pathlib import Path
 from typing import Final
 
 from trunnion.messages import LIBRARY, Wording, Words
+from trunnion.records import dataclass
 from trunnion.wording import one_line
 
 

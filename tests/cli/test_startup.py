@@ -65,6 +65,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.options.limits",
         "trunnion.options.option",
         "trunnion.options.words",
+        "trunnion.records",
         "trunnion.version",
         "trunnion.wording",
     }
@@ -97,6 +98,7 @@ def test_the_version_is_said_without_the_commands(tmp_path: Path) -> None:
         "trunnion.cli.terminal_text",
         "trunnion.errors",
         "trunnion.messages",
+        "trunnion.records",
         "trunnion.version",
         "trunnion.wording",
     }

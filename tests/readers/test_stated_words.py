@@ -212,3 +212,11 @@ def test_a_value_beyond_its_limits_is_an_error_of_the_variable(tmp_path: Path) -
     assert problem.subject is not None
     assert (problem.subject.kind, problem.subject.name) == ("setting", "#100")
     assert "control.reading" not in str(problem)
+
+
+def test_a_variable_in_small_letters_is_not_said_to_count_for_nothing(tmp_path: Path) -> None:
+    program = tmp_path / "a.ngc"
+    program.write_text("G21 G90 G17 G94 G54\nG0 X#<_depth>\nM2\n")
+    found = trunnion.verify(program, machine="xyzac_trt", settings={"#<_depth>": 2})
+    assert [each.word for each in found.run.stated] == ["#<_depth>"]
+    assert not [each for each in found.remarks if each.code == "NC228"]

@@ -5,7 +5,7 @@ here, and ``trunnion.cl.assemble`` makes operations of them when the file has be
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum, auto
 from typing import NamedTuple
 
@@ -16,6 +16,7 @@ from trunnion.cl.scan import PointColumns
 from trunnion.messages import Wording
 from trunnion.model.splines import SplineRows
 from trunnion.model.toolpath import CycleOn, Event, Frame, Sense, Tool
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)

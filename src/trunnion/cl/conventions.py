@@ -1,9 +1,10 @@
 """The conventions of a dialect of CL files: what its files leave unsaid, and handlers of statements ask for."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from trunnion.cl.builder import NoAxis
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)

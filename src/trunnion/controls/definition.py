@@ -5,7 +5,7 @@ What these cannot express is code, in the writer module of the control's family.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import chain
 from typing import Final
 
@@ -40,6 +40,7 @@ from trunnion.controls.words import BlockNumbers, NumberFormat, Word
 from trunnion.messages import Wording, phrase
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.motion import MachiningMode
+from trunnion.records import dataclass
 
 #: Millimetres of an inch.
 MM_PER_INCH: Final = 25.4

@@ -10,7 +10,7 @@ Templates with conditions and loops are ``trunnion.controls.text_template``, in 
 
 import re
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from importlib.resources import files
 from typing import Final
@@ -18,6 +18,7 @@ from typing import Final
 from trunnion.controls.words import NumberFormat, WordRangeError
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 Value = str | float | None
 

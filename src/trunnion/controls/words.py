@@ -4,14 +4,13 @@ A number is rounded once, to a count: a whole number of its last printed digit. 
 counts, which is what is printed: -0.0004 with three decimals is 0.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.jit import kernel
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: The count of a word that is not in the block.
 ABSENT = np.iinfo(np.int64).min

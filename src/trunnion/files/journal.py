@@ -13,13 +13,14 @@ import os
 import shutil
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
 from trunnion.files.digests import FileDigests, digest_of
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.hidden_folders import JOURNAL, is_hidden_folder
+from trunnion.records import dataclass
 
 #: The folder, in a hidden one, in which files survive that are replaced.
 _EARLIER: Final = ".earlier"

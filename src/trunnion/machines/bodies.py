@@ -4,8 +4,9 @@ Frame: the machine frame with all axes at zero. Units: mm and degrees. Files of 
 whoever asks for them (``trunnion.simulation``), never when a definition is loaded.
 """
 
-from dataclasses import dataclass
 from typing import Final, TypeAlias
+
+from trunnion.records import dataclass
 
 Vector: TypeAlias = tuple[float, float, float]
 

@@ -7,7 +7,7 @@ Limits, home and all axis values are those that the control displays and the pro
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from functools import partial
 from typing import Annotated, Final
@@ -19,6 +19,7 @@ from trunnion.definitions import LocatedValue, Table
 from trunnion.definitions.marked_values import MarkedValue
 from trunnion.machines.bodies import MachineBody
 from trunnion.machines.bodies import Vector as Vector
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure, to_data
 
 #: Greatest component along the tool of a slide that is across it.

@@ -18,12 +18,13 @@ something else of the same subject.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from numbers import Integral, Real
 from string import Formatter
 from types import MappingProxyType
 from typing import Any, Final, Literal, Self, TypeAlias
+
+from trunnion.records import dataclass
 
 #: The file of each kind of code; what is no such kind is the key of a check.
 CATALOGUES: Final = {

@@ -10,7 +10,6 @@ amplitude changes as the radius does, and a slope. Its derivative is zero where 
 slope. Where rotary axes turn along an arc, their angles move linearly, and the extremes are searched among samples.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -22,6 +21,7 @@ from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import CHUNK_ROWS, PositionChunk, Run
 from trunnion.model.subdivision import arc_frames, circle_points
 from trunnion.model.toolpath import Arcs, From, Operation
+from trunnion.records import dataclass
 
 #: Extremes as near to an end are those of the end, radians.
 _AT_END: Final = 1e-9

@@ -1,6 +1,6 @@
 """The planner's result: motions on a machine, with problems and decisions."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import Annotated
 
@@ -11,6 +11,7 @@ from trunnion.model.arcs import with_closed_turns
 from trunnion.model.deviations import Deviations
 from trunnion.model.frames import into_plane
 from trunnion.model.toolpath import Frame, Operation
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 

@@ -5,12 +5,11 @@ their changes (``ModalState``). Linear axes, tips and tool axes follow from the 
 ``chunk`` compute them for some rows; the whole columns are computed on first access and cached.
 
 Units: mm, degrees, unit vectors, rev/min; feeds in mm/min, mm/rev or 1/min according to ``feed_mode``.
-Frame: the workpiece frame of the machine, whose origin is the zero set by the work offset. Programmable frames and
-tilted planes are already transformed into it.
+Frame: the machine's workpiece frame, zeroed by the work offset; programmed frames and tilted planes are resolved.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from enum import IntEnum, IntFlag
 from functools import cached_property
 from typing import TypeVar
@@ -35,6 +34,7 @@ from trunnion.model.spindle_work import SpindleHole
 from trunnion.model.splines import Splines
 from trunnion.model.stated_words import StatedWord
 from trunnion.model.toolpath import Arcs
+from trunnion.records import dataclass
 
 #: Rows computed at a time: a few megabytes, and long enough that handing over to the other thread costs nothing.
 CHUNK_ROWS = 16384

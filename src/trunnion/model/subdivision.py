@@ -9,8 +9,6 @@ Without TCP the axes move linearly and the tip follows from them. On circles the
 and the rotary angles move linearly.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
@@ -18,6 +16,7 @@ from trunnion.machines import forward
 from trunnion.model import axis_positions
 from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 
 #: If start and end are nearer than this, mm, the circle is a full one.
 FULL_CIRCLE_GAP: float = 1e-6

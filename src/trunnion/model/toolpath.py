@@ -2,12 +2,11 @@
 
 Motion is columns, a row for each CL point. Events are frozen records with the row before which they happen, and a line.
 
-Units: mm, degrees, unit vectors for directions, mm/min or mm/rev for feeds.
-Frame: the operation's own coordinate system (``Operation.frame``, MSYS in a CLSF).
+Units: mm, degrees, mm/min or mm/rev, unit vectors. Frame: the operation's own (``Operation.frame``, MSYS in a CLSF).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import IntEnum, StrEnum
 from typing import BinaryIO
 
@@ -18,6 +17,7 @@ from trunnion.errors import Problem
 from trunnion.messages import Wording, foreign
 from trunnion.model.clamping import Clamping
 from trunnion.model.splines import Splines
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 

@@ -6,10 +6,11 @@ Each kind has one message, whichever front it is read by: ``parse`` takes a text
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.wording import nearest_word
 
 #: Lengths, widths and factors are below this.

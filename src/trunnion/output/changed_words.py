@@ -1,11 +1,11 @@
 """Words that a function of the user has changed, as events of the motion to which they belong."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Coolant, CycleOn, Event
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """What the stages of planning hand to each other: the request, and operations prepared for it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from trunnion.arrays import Floats, Ints
@@ -13,6 +13,7 @@ from trunnion.model.toolpath import Frame, Operation
 from trunnion.planning.linearization.arc_chords import source_rows
 from trunnion.planning.machining_mode import machine_x_direction, tilted_plane
 from trunnion.planning.options import ControlCapabilities, PlanOptions
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,12 +7,12 @@ Units: mm and degrees (or whatever the path and the limits agree on), seconds. N
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
+from trunnion.records import dataclass
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.fastest_program import MotionLimits, SquareRates, faster
 

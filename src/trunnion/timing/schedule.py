@@ -12,7 +12,6 @@ the program stops it. The first motion at feed after the spindle stood, or turne
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from typing import Final
 
@@ -21,6 +20,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints, distinct
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.spindle import SpindleRamps, SpindleSpeeds
 

@@ -8,7 +8,6 @@ Axes stay on the programmed path: where a control rounds a corner off, they go t
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, forward
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.timing.axis_pieces import MOST_PIECES, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.path import PathBuilder

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import islice
 
 import numpy as np
@@ -12,6 +12,7 @@ from trunnion.compensation.stretches import RegisterValue
 from trunnion.messages import Wording
 from trunnion.model.axis_tolerance import AxisTolerance
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
+from trunnion.records import dataclass
 from trunnion.verification.block_names import block_name_of
 from trunnion.verification.expected.path import ExpectedPath, OperationSettings
 from trunnion.verification.matching.pairs import Matching

@@ -1,7 +1,7 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
@@ -16,6 +16,7 @@ from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
 from trunnion.verification.axes_from_home import axes_from_home
 from trunnion.verification.basis import assumed_modes, stated_texts, turns_before_offset

@@ -1,5 +1,6 @@
 """The sound programs that are edited: parts and cases posted for a machine of each language, and golden programs."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +10,8 @@ import trunnion
 from tests.support.golden_controls import CASES
 from tests.support.locations import GOLDEN, ROOT
 from tests.support.recall_proof.parts import PARTS, cl_text
+from trunnion.controls import load_control
+from trunnion.machines import load_machine
 
 MACHINES: Final = {
     "Sinumerik": "yl569", "Heidenhain": "dmu65", "Fanuc": "matsuura_mx330", "Haas": "haas_umc750",
@@ -30,6 +33,13 @@ class Base:
     text: str
     stated: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def tolerance(self) -> float:
+        """INTOL and OUTTOL of the first operation of its CL file together, mm; 0 if it has neither."""
+        text = self.cl.read_text(encoding="utf-8")
+        found = (re.search(rf"^{word}\s*/\s*([\d.]+)", text, re.MULTILINE) for word in ("INTOL", "OUTTOL"))
+        return sum(float(each[1]) for each in found if each)
+
 
 def bases(folder: Path, family: str | None = None) -> Iterator[Base]:
     """Yield every base; ``folder`` takes the files that are made on the way."""
@@ -49,19 +59,17 @@ def bases(folder: Path, family: str | None = None) -> Iterator[Base]:
             yield Base(each, program.stem, machine, cl, program.read_text(encoding="utf-8"))
 
 
+def language_of(machine: str | Path) -> str:
+    """The language of a machine's programs, as the name of its control begins with."""
+    return load_control(load_machine(machine).control).name.split()[0]
+
+
 def _goldens(family: str | None) -> Iterator[Base]:
-    of_case = {
-        "fanuc": "Fanuc",
-        "haas": "Haas",
-        "linuxcnc": "LinuxCNC",
-        "mikron_600u": "Heidenhain",
-        "dmu65": "Heidenhain",
-    }
     for name, case in CASES.items():
-        if family in (None, of_case[name.split("/")[0]]):
-            machine = GOLDEN / case.machine if case.machine.endswith(".toml") else case.machine
+        machine = GOLDEN / case.machine if case.machine.endswith(".toml") else case.machine
+        if family in (None, language := language_of(machine)):
             text = (GOLDEN / name).read_text(encoding="utf-8")
-            yield Base(of_case[name.split("/")[0]], name, machine, GOLDEN / case.cl, text, _stated(case.settings))
+            yield Base(language, name, machine, GOLDEN / case.cl, text, _stated(case.settings))
     published = {
         "Sinumerik": [f"yl569/{name}" for name in ("1_contour_rough", "2_hub_rough", "3_blade_finish")],
         "Fidia": ["hs664rt/radial_holes"],

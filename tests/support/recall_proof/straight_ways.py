@@ -46,6 +46,30 @@ def is_on_straight_way(blocks: "list[Block]", k: int, changed: dict[str, float] 
     )
 
 
+def is_near_straight_way(blocks: "list[Block]", k: int, tolerance: float) -> bool:
+    """Whether the axes come so near to the end of block ``k`` without it that the tip need not leave its tolerance.
+
+    Without TCP the axes go evenly from the point before to that behind. How far linear axes are off there is how far
+    the tip is; part of that may be along its way. So twice the tolerance, mm, is no harm that is sure.
+    """
+    if not 0 < k < len(blocks) - 1 or blocks[k].tcp or not (blocks[k].cuts and blocks[k + 1].cuts):
+        return False
+    start = blocks[k].before
+    point = {**start, **_coordinates(blocks[k])}
+    end = {**point, **_coordinates(blocks[k + 1])}
+    if point.keys() != start.keys() or end.keys() != start.keys():
+        return False
+    way = {name: end[name] - start[name] for name in start}
+    turning = max((name for name in way if name in "ABC"), key=lambda name: abs(way[name]), default="")
+    if not turning or abs(way[turning]) <= _SAME:
+        return False
+    part = (point[turning] - start[turning]) / way[turning]
+    return 0.0 < part < 1.0 and all(
+        abs(point[name] - start[name] - part * way[name]) <= (_SAME if name in "ABC" else 2.0 * tolerance)
+        for name in way
+    )
+
+
 def _coordinates(block: "Block") -> dict[str, float]:
     return {word[1]: float(word[2]) for word in block.words}
 

@@ -4,7 +4,7 @@ Records about an operation stand before the tool change (1000 to 1002) that begi
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import PureWindowsPath
 from typing import Final
 
@@ -15,6 +15,7 @@ from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole
 from trunnion.cl.statements import apt_tools, events, operations
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: The numbers of a plane that is the top view, and of a work coordinate system that shifts nothing either.
 _TOP: Final = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)

@@ -4,7 +4,6 @@
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from trunnion.errors import Problem
@@ -18,6 +17,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramOutput
+from trunnion.records import dataclass
 from trunnion.verification import Check, Verification
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner

@@ -1,7 +1,5 @@
 """What the modules of this folder hand to each other: the task, the regions in which it is solved, and the result."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
@@ -11,6 +9,7 @@ from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.poses.states import REWIND_STEP
 from trunnion.planning.rotary_positions import tool_axes
 from trunnion.planning.speed.rotary_speed import max_rotary_steps
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -57,7 +57,7 @@ def stated_words(known: Iterable[KnownWord], noted: Iterable[Diagnostic], machin
 def unread_words(runs: Sequence[Run], machine: Machine) -> Iterator[Diagnostic]:
     """Yield a warning for each word and variable that was stated for the run alone, and that no meaning relied on."""
     control = control_of(machine)
-    met = {plain_code(each.word) for run in runs for each in run.stated}
+    met = {plain_code(normal_word(each.word)) for run in runs for each in run.stated}
     for table in (control.table("known"), control.table("reading").table("variables")):
         for name in table.names():
             if table.location(name)[0] == GIVEN and plain_code(normal_word(name)) not in met:

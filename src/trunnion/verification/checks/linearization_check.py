@@ -16,6 +16,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.checks.coverage import coverage_of
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues, Faults
 from trunnion.verification.deviations.linearization import LinearizationErrors
+from trunnion.verification.deviations.tip_limits import DIVIDED_TO
 from trunnion.verification.expected.arcs import circle_of
 from trunnion.verification.expected.path import WrittenSpline
 from trunnion.verification.expected.splines import dense_points, span_counts
@@ -116,7 +117,8 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     settings = context.settings
     asked = settings.span is not None or settings.span_tip is not None
     axis = errors.axis if settings.span is not None or errors.axis.count else motion.axis_deviation
-    tip = errors.tip if asked or errors.tip.count else motion.tip_deviation
+    in_cuts = not asked and not errors.tip.count and errors.cuts.row >= 0
+    tip = errors.cuts if in_cuts else errors.tip if asked or errors.tip.count else motion.tip_deviation
     on_way = axis is errors.axis
     deviation, deviation_row = _largest_deviation(context)
     splines = spline_faults(context) if isinstance(context, ComparedContext) else SplineFaults()
@@ -138,14 +140,25 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     answer = Wording("span", "on_way" if on_way else "half_way", tip=off_tip, axis=axis.value)
     if axis.row >= 0:
         answer = Wording("span", "in_block", measured=answer, block=context.block_name(axis.row))
-    if limits := (*_allowed_tip(settings), *_allowed_axis(settings, errors, axis.row)):
+    judged = tip.row if not asked and tip is not motion.tip_deviation else -1
+    if limits := (*_allowed_tip(settings, errors, judged), *_allowed_axis(settings, errors, axis.row)):
         answer = Wording("span", "allowed", measured=answer, limits=limits)
     if faults:
         answer = Wording("span", "with_faults", measured=answer, fault=Faults(faults, len(faults)).answer())
         places = [*faults[:MAX_PLACES], *places]
     passed = not errors.axis.count + errors.tip.count + len(faults)
     seen = coverage_of(context, _seen(context, rapids=settings.span_tip is not None))
-    return Check("span", passed, answer, axis.value, settings.span, "deg", tuple(places), (), seen)
+    missing = _missing(context, motion, errors)
+    return Check("span", passed, answer, axis.value, settings.span, "deg", tuple(places), missing, seen)
+
+
+def _missing(context: Context, motion: AxisMotion, errors: LinearizationErrors) -> tuple[Wording, ...]:
+    """Return what would say whether the tip may be as far off as it is."""
+    if context.settings.span_tip is not None:
+        return ()
+    if not isinstance(context, ComparedContext):
+        return (phrase("no_cl_file"),) if motion.tip_deviation.value > DIVIDED_TO else ()
+    return (Wording("span", "no_tolerance", off=errors.unstated.value),) if errors.unstated.count else ()
 
 
 def _seen(context: Context, *, rapids: bool) -> SeenRows:
@@ -169,9 +182,13 @@ def _turning(run: Run, rows: Ints) -> Flags:
     return np.asarray(np.abs(run.rotary[rows] - before).max(axis=1, initial=0.0) > NO_ROTATION)
 
 
-def _allowed_tip(settings: ExpectedValues) -> Iterator[Wording]:
+def _allowed_tip(settings: ExpectedValues, errors: LinearizationErrors, row: int) -> Iterator[Wording]:
+    """Yield the tolerance of the tip that counts in a row; -1: none is judged."""
     if settings.span_tip is not None:
         yield Wording("span", "limit_tip", limit=settings.span_tip)
+    elif row >= 0 and not errors.is_long(row):
+        limit, is_stated = errors.limit_at(row)
+        yield Wording("span", "limit_tip_stated" if is_stated else "limit_tip_default", limit=limit)
 
 
 def _allowed_axis(settings: ExpectedValues, errors: LinearizationErrors, row: int) -> Iterator[Wording]:
@@ -182,6 +199,8 @@ def _allowed_axis(settings: ExpectedValues, errors: LinearizationErrors, row: in
         default, allowed = settings.axis_tolerance, errors.allowed_by_default(row)
         if math.isinf(allowed):
             yield Wording("span", "no_limit")
+        elif errors.is_divided(row):
+            yield Wording("span", "limit_between", limit=allowed)
         elif allowed > max(default.cutting, default.finishing) + _NOISE:
             yield Wording("span", "limit_of_turn", limit=allowed)
         else:

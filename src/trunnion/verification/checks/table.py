@@ -5,13 +5,14 @@ Out:    checks.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Final, TypeVar
 
 from trunnion.definitions.marked_values import MarkedValue
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, kind_of, unmeasured_values
 from trunnion.messages import phrase
 from trunnion.model.run_samples import joint_samples
+from trunnion.records import dataclass
 from trunnion.verification.basis import ACCELERATION, RAPID, SPINDLE, TOOL_LENGTH, TRAVEL, ZERO, Basis, missing_of
 from trunnion.verification.checks.basis_check import check_basis
 from trunnion.verification.checks.compensation_checks import check_compensation

@@ -16,12 +16,14 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Floats2, Floats3, Ints, Lines
 from trunnion.jit import inner, kernel
-from trunnion.machines import Machine
-from trunnion.machines.forward import KinematicChain, forward, forward_row, kinematic_chain
+from trunnion.machines.forward import KinematicChain, forward_row, kinematic_chain
 from trunnion.model.axis_tolerance import AxisTolerance, allowed_deviation
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import Orientation, ProgrammedWord, RowPositions, Run
-from trunnion.model.toolpath import Kind, Phase
+from trunnion.model.toolpath import Kind
+from trunnion.verification.deviations.arc_turns import off_arcs
+from trunnion.verification.deviations.divided_steps import divided_limits
+from trunnion.verification.deviations.tip_limits import FREE_PHASES, tip_limits
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
 from trunnion.verification.kinematics.positioning_moves import comes_from_home, rotary_positioning_flags
@@ -36,12 +38,6 @@ _ARITHMETIC: Final = 1e-6
 
 #: Smaller rotary motion, degrees, makes no error.
 _STILL: Final = 1e-9
-
-#: How far the tip may leave a line of a cut without TCP where nothing says it, mm; or INTOL and OUTTOL together.
-LEAST_TIP: Final = 0.05
-
-#: Phases in which the tool does not touch the part.
-_FREE_PHASES: Final = (Phase.RAPID, Phase.APPROACH, Phase.DEPARTURE, Phase.TRAVERSE)
 
 #: Positions within a motion at which it is sampled, and by how many degrees they are apart in longer turns. No multiple
 #: of that is a whole turn, so that none passes unseen.
@@ -92,6 +88,8 @@ class LinearizationErrors:
     tip   mm from the straight line, without TCP; where no setting limits it, of motions that turn a rotary axis by more
           than half a turn, which no step of a CL file asks for, and of cuts along lines of the CL file
     axis  degrees from the great circle, wherever the control interpolates rotary angles
+    cuts  where no setting limits the tip: mm from the lines of the CL file in cuts without TCP, whatever is allowed
+    unstated  those of them that are in no tolerance of the CL file, where they are beyond what it would allow at least
     """
 
     def __init__(
@@ -103,6 +101,7 @@ class LinearizationErrors:
         matching: Matching | None = None,
     ) -> None:
         self._run = run
+        self._tip_tolerance = limits.tip_tolerance
         self._tip_uncertainty = 2.0 * math.sqrt(3.0) * limits.tip_tolerance
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._is_rotary = np.array([axis.is_rotary for axis in run.machine.axes])
@@ -113,6 +112,7 @@ class LinearizationErrors:
         self._tip_is_limited = math.isfinite(limits.tip)
         self._judges_turns = expected is not None
         self.tip = WorstRows(limits.tip if self._tip_is_limited else self._tip_uncertainty + _ARITHMETIC, max_rows)
+        self.cuts, self.unstated = WorstRows(math.inf, max_rows), WorstRows(0.0, max_rows)
         self.axis = WorstRows(0.0 if limits.by_default else math.inf if limits.axis is None else limits.axis, max_rows)
 
     @cached_property
@@ -135,7 +135,7 @@ class LinearizationErrors:
         rows = self._rows_to_sample(first, end, positions, tcp, long, cuts)
         off_tip, off_axis = np.zeros(end - first), np.zeros(end - first)
         on_arcs = np.flatnonzero(long & (kind == Kind.ARC))
-        off_tip[on_arcs] = _off_arcs(self._run.machine_at(first), positions.joints, self._rotary, on_arcs)
+        off_tip[on_arcs] = off_arcs(self._run.machine_at(first), positions.joints, self._rotary, on_arcs)
         if not len(rows):
             self.tip.add(first, off_tip)
             return
@@ -147,8 +147,7 @@ class LinearizationErrors:
         )  # fmt: skip
         if not self._tip_is_limited:
             off_tip[~(long | cuts)] = 0.0
-            small = np.flatnonzero(cuts & ~long)
-            off_tip[small] = np.where(off_tip[small] > self._allowed_tip(first + small), off_tip[small], 0.0)
+            self._judge_cuts(first, np.flatnonzero(cuts & ~long), off_tip)
             off_axis[kind == Kind.RAPID] = 0.0
         self.tip.add(first, off_tip)
         if self._by_default is not None:
@@ -175,9 +174,12 @@ class LinearizationErrors:
         for section in self._expected.sections if self._expected is not None else ():
             moves = section.operation.moves
             here = np.flatnonzero((cl >= section.first) & (cl < section.end))
-            free = np.isin(moves.phase[cl[here] - section.first], _FREE_PHASES)
+            free = np.isin(moves.phase[cl[here] - section.first], FREE_PHASES)
             tolerance[here] = np.where(free, math.inf, limits.tolerance.of(section.operation))
-        return allowed_deviation(tolerance, turn) + limits.rounding
+        allowed = allowed_deviation(tolerance, turn)
+        if self._divided is not None:
+            allowed = np.where(np.isfinite(allowed), np.minimum(allowed, self._divided[first + rows]), allowed)
+        return allowed + limits.rounding
 
     def _long_turns(self, first: int, end: int, positions: RowPositions, tcp: Flags) -> Flags:
         """Which rows turn a rotary axis by more than half a turn, whole turns included, without TCP, (end - first,).
@@ -208,16 +210,45 @@ class LinearizationErrors:
             return np.zeros(end - first, np.bool_)
         return np.asarray(cuts & (self._cl_row[first:end] >= 0))
 
-    def _allowed_tip(self, rows: Ints) -> Floats:
-        """How far the tip may leave the lines of the CL file that rows are on, (k,) mm; infinite where none is cut."""
-        allowed, cl = np.full(len(rows), np.inf), self._cl_row[rows]
-        for section in self._expected.sections if self._expected is not None else ():
-            here = np.flatnonzero((cl >= section.first) & (cl < section.end))
-            operation = section.operation
-            limit = max((operation.intol or 0.0) + (operation.outtol or 0.0), LEAST_TIP) + self._tip_uncertainty
-            free = np.isin(operation.moves.phase[cl[here] - section.first], _FREE_PHASES)
-            allowed[here] = np.where(free, math.inf, limit)
-        return allowed
+    def _judge_cuts(self, first: int, rows: Ints, off_tip: Floats) -> None:
+        """Leave how far the tip is off in rows, counted from ``first``, only where that is a fault."""
+        allowed, known = tip_limits(self._expected, self._cl_row[first + rows].astype(np.int64))
+        off = np.where(np.isfinite(allowed), off_tip[rows], 0.0)
+        is_fault = off > allowed + self._tip_tolerance
+        judged, unknown = np.zeros((2, len(off_tip)))
+        judged[rows] = off
+        unknown[rows] = np.where(is_fault | (off <= known + self._tip_tolerance), 0.0, off)
+        self.cuts.add(first, judged)
+        self.unstated.add(first, unknown)
+        off_tip[rows] = np.where(is_fault, off, 0.0)
+
+    def limit_at(self, row: int) -> tuple[float, bool]:
+        """Return how far the tip may leave its line in a row of ``cuts``, mm, and whether the CL file states that."""
+        allowed, known = tip_limits(self._expected, self._cl_row[row : row + 1].astype(np.int64))
+        return float(known[0]), bool(allowed[0] == known[0])
+
+    @cached_property
+    def _divided(self) -> Floats | None:
+        """(n,) how far the tool axis may be off in steps that are divided; None: none is."""
+        if self._matching is None or not len(self._matching.intermediate[0]):
+            return None
+        return divided_limits(self._cl_row, self._undivided)
+
+    def is_divided(self, row: int) -> bool:
+        """Whether the step that a row is on has points between, which say how far the tool axis may be off."""
+        return self._divided is not None and abs(self.allowed_by_default(row) - float(self._divided[row])) <= 1e-9
+
+    def _undivided(self, first: Ints, last: Ints) -> Floats:
+        """How far the tool axis would be off in steps from the row before ``first`` to ``last``, (k,) degrees."""
+        ends = self._run.positions(np.stack((first - 1, last), axis=1).ravel())
+        tips, axes = self._expected_ends(self._cl_row[last].astype(np.int64))
+        off_tip, off_axis = np.zeros((2, 2 * len(first)))
+        rows, under_tcp = 2 * np.arange(len(first)), np.ones(2 * len(first), np.bool_)
+        write_linearization_errors(
+            kinematic_chain(self._run.machine_at(0)), ends.joints, ends.tip, ends.axis, self._is_rotary, rows, tips,
+            axes, np.zeros(len(rows), np.bool_), under_tcp, 0.0, off_tip, off_axis,
+        )  # fmt: skip
+        return off_axis[rows]
 
     def _rows_to_sample(
         self, first: int, end: int, positions: RowPositions, tcp: Flags, long: Flags, cuts: Flags
@@ -225,7 +256,7 @@ class LinearizationErrors:
         """Rows, counted from ``first``, in which rotary motion may lead the tool off its path.
 
         Rapids count only where the tip has a limit, or in ``long`` turns, and those that only position rotary axes
-        never do. ``cuts`` count whatever they turn.
+        never do. ``cuts`` count whatever they turn, and so do steps that are divided.
         """
         run = self._run
         kind, frame = run.kind[first:end], run.state.machine_frame.part(first, end)
@@ -234,7 +265,8 @@ class LinearizationErrors:
         sampled = (turns > _STILL).any(axis=1) & ~frame & (kind != Kind.ARC)
         if self._by_default is not None and not self._tip_is_limited:
             total = np.radians(turns[:, 0] + turns[:, 1])
-            sampled &= (0.25 * total * total > math.radians(self._by_default.tolerance.finishing)) | cuts
+            needed = (0.25 * total * total > math.radians(self._by_default.tolerance.finishing)) | cuts
+            sampled &= needed if self._divided is None else needed | np.isfinite(self._divided[first:end])
         sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & self._tip_is_limited) | long
         by_angles = run.orientation_between(first, end) == Orientation.ANGLES
         # No great circle leads round by more than half a turn: the words of rotary axes do.
@@ -251,26 +283,16 @@ class LinearizationErrors:
             cl = self._cl_row[first + rows[matched]].astype(np.int64)
             order = np.argsort(cl, kind="stable")
             matched, cl = matched[order], cl[order]
-            tips[matched] = np.stack((self._expected.tip(cl - 1), self._expected.tip(cl)), axis=1)
+            tips[matched], wanted = self._expected_ends(cl)
             at_feed = self._run.kind[first + rows[matched]] != Kind.RAPID
-            cl = cl[at_feed]
-            axes[matched[at_feed]] = np.stack((self._expected.axis(cl - 1), self._expected.axis(cl)), axis=1)
+            axes[matched[at_feed]] = wanted[at_feed]
         return tips, axes
 
-
-def _off_arcs(machine: Machine, joints: Floats, rotary: Ints, rows: Ints) -> Floats:
-    """How far the turn within arcs leads the tip off, at least, (k,) mm: as if the slides stood at one of its ends."""
-    off = np.zeros(len(rows))
-    shares = np.linspace(0.0, 1.0, 2 * _SAMPLES + 3)[:, None]
-    for k, row in enumerate(rows.tolist()):
-        step = joints[row + 1, rotary] - joints[row, rotary]
-        step *= min(1.0, 360.0 / float(np.abs(step).max()))
-        for end in (row, row + 1):
-            turned = np.tile(joints[end], (len(shares), 1))
-            turned[:, rotary] += shares * step * (1.0 if end == row else -1.0)
-            tips = forward(machine, turned)[0]
-            off[k] = max(off[k], float(np.linalg.norm(tips - tips[0], axis=1).max()))
-    return off
+    def _expected_ends(self, cl: Ints) -> tuple[Floats, Floats]:
+        """Tips and tool axes of CL rows and of those before them, (k, 2, 3) each."""
+        assert self._expected is not None
+        both = np.stack((cl - 1, cl), axis=1)
+        return self._expected.tip(both.ravel()).reshape(-1, 2, 3), self._expected.axis(both.ravel()).reshape(-1, 2, 3)
 
 
 @kernel(writes="off_tip off_axis")

@@ -7,7 +7,7 @@ Frame:  the program's: the coordinate system of the first operation that moves, 
 
 from collections.abc import Callable, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -29,6 +29,7 @@ from trunnion.model.toolpath import (
     Operation,
     Toolpath,
 )
+from trunnion.records import dataclass
 from trunnion.verification.expected.frames import transform_to_frame
 from trunnion.verification.expected.holes import Hole, HoleSource, holes_of_operation, without_holes, without_rows
 from trunnion.verification.expected.skipped import rows_without_retract, skipped_stretches, without_stretches

@@ -59,7 +59,7 @@ _FITS: Final = _chosen(floor(1.0), necked(4.0, 25.0, 75.0), _SLOT, _LEANS)
 
 
 def _searched(wanted: Wanted) -> Trial:
-    """Return what chooses axes in a slot within few iterations."""
+    """Return what chooses axes in a slot within fewer iterations than are allowed, so that they can run out."""
     attempts = (("highs-ipm", {"maxiter": 15}),)
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:

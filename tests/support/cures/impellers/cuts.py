@@ -110,7 +110,11 @@ def _led(*places: tuple[float, float], foot: float = 20.0) -> Trial:
 
 
 def _faceted(tolerance: float) -> Trial:
-    """Return what makes a mesh whose facets are 0.6 mm off the surfaces of a blade that meets itself."""
+    """Return what makes a mesh that is taken to be 0.6 mm off the surfaces.
+
+    No definition is known whose mesh is too far off: of blades that are thick, twisted or kinked it keeps within half
+    the tolerance, or they are refused before (IMP212, IMP214). So its cure makes a mesh in which nothing is taken.
+    """
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
         with patch.object(model, "off_surfaces", return_value=np.array([0.6])):
@@ -222,7 +226,7 @@ CURES: Final = (
         (),
         cured_by=_led(*_FLAT_HUB, foot=5.0),
     ),
-    Cure("IMP220", "facets_would_mm", _faceted(0.5), IMPELLER, (), cured_by=_faceted(4.0)),
+    Cure("IMP220", "facets_would_mm", _faceted(0.5), IMPELLER, (), cured_by=_mesh),
     Cure("IMP220", "bodies_make_no", _mesh, _CROSSING, _LARGE),
     Cure("IMP420", "makes_no_solid", _solid(1, b"it fails"), IMPELLER, (), cured_by=_mesh),
     Cure("IMP421", "open_cascade_makes", _solid(ends=False), IMPELLER, (), cured_by=_mesh),

@@ -111,6 +111,7 @@ CURES: Final = (
     _line("NC211", "unknown_g_word", "G777", ""),
     _line("NC212", "twice_in_block", "G1 X10 X20 F100", "G1 X20 F100"),
     _line("NC223", "", "G1 X=R7 F100", "R7=10\nG1 X=R7 F100"),
+    _line("NC223", "no_value_in_program", "G1 X=R7 F100", "R7=10\nG1 X=R7 F100"),
     _line("NC230", "", "G1 A5 F100", "G1 B5 F100"),
     _line("NC320", "", "G2 X10 Y10 F100", "G2 X10 Y10 CR=8 F100"),
     _line("NC320", "", "G2 X10. Y10. F100.", "G2 X10. Y10. R8. F100.", on="matsuura_mx330"),

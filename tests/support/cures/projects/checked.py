@@ -54,7 +54,11 @@ def _seen(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 
 def _without_places(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-    """Post a project whose simulation blames no line for what is missing."""
+    """Post a project whose simulation is taken to blame no line for what is missing.
+
+    No project is known that does so: what the stock lacks is said before (SIM131, SIM132), and a row that takes metal
+    from the part is found even where it takes all of it. The cure needs no such simulation.
+    """
     simulate = checks._simulate
     with patch.object(checks, "_simulate", lambda *given: replace(simulate(*given), findings=())):
         return _post(text, settings, folder)
