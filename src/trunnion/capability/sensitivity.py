@@ -20,6 +20,7 @@ from trunnion.errors import Problem
 from trunnion.machines.sensitivity import GeometryNumber, idle_numbers
 from trunnion.model.run import Run
 from trunnion.results import NOT_DATA, BlockNumber, Figure
+from trunnion.verification.grounds import NO_GROUNDS, Grounded, Grounds
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,7 @@ class NumberSensitivity:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sensitivity:
+class Sensitivity(Grounded):
     """What each number of a machine's geometry does to a program, the worst one first.
 
     run      the program
@@ -87,6 +88,7 @@ class Sensitivity:
     remarks  what was assumed
     length   how far lengths are off, mm
     angle    how far angles are off, seconds of arc
+    grounds  what it stands on besides the program
     """
 
     SCHEMA: ClassVar[int] = 2
@@ -105,6 +107,7 @@ class Sensitivity:
     remarks: tuple[Problem, ...]
     length: Annotated[float, NOT_DATA]
     angle: Annotated[float, NOT_DATA]
+    grounds: Annotated[Grounds, Figure(is_flat=True)] = NO_GROUNDS
 
 
 def program_sensitivity(

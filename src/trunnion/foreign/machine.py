@@ -58,11 +58,36 @@ class Stated:
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What no definition takes: what it is, where it stands, and why."""
+    """What no definition takes.
 
-    what: str
+    said    what it is: a wording, or the text of the file itself
+    where   file and line
+    reason  why it is not taken
+    """
+
+    said: str | Wording
     where: str
-    why: str
+    reason: Wording
+
+    @property
+    def what(self) -> str:
+        """What it is, in English."""
+        return str(self.said)
+
+    @property
+    def why(self) -> str:
+        """Why it is not taken, in English."""
+        return self.reason.what
+
+
+def because(variant: str, /, **parameters: object) -> Wording:
+    """Return a text of the catalogue ``foreign``: what is not taken, or why."""
+    return Wording("foreign", variant, **parameters)
+
+
+def not_taken(value: Stated, reason: Wording) -> Left:
+    """Return a value that no definition takes, as its file has it."""
+    return Left(f"{value.name} = {value.value}", value.place, reason)
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ class Curve:
     """
 
     column: str
-    name: str
+    name: str | Wording
     limits: tuple[float, ...] = ()
     limit_name: str | Wording = "limits"
     floating: bool = False
@@ -41,7 +41,7 @@ class Curve:
 class Plot:
     """Curves in one plot; with ``step`` a value holds for the whole motion and is drawn as a step."""
 
-    title: str
+    title: str | Wording
     unit: str
     curves: tuple[Curve, ...]
     step: bool = False
@@ -66,11 +66,11 @@ class PlotSeries:
     lines: dict[str, Lines]
     plots: tuple[Plot, ...]
     files: tuple[str, ...]
-    tool_changes: tuple[tuple[int, str], ...]
+    tool_changes: tuple[tuple[int, str | Wording], ...]
     timed: bool
     name: str = ""
-    title: str = ""
-    note: str = ""
+    title: str | Wording = ""
+    note: str | Wording = ""
 
     def __len__(self) -> int:
         return len(self.seconds)

@@ -21,6 +21,7 @@ from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
 from trunnion.timing import TimedEvent, TimedRun
 from trunnion.twin.modal import Blocks, BlockState
+from trunnion.verification.grounds import Grounds, grounds_of
 
 #: How far beyond its travel an axis may stand before it is an alarm, mm or degrees.
 _TRAVEL_TOLERANCE = 1e-6
@@ -99,9 +100,9 @@ class TwinProgram:
         return tuple(PurePath(name).name for name in self.run.files) or (self.name,)
 
     @property
-    def not_measured(self) -> tuple[str, ...]:
-        """Values of the definition that positions and times stand on, though nobody has measured them."""
-        return tuple(map(str, unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run))))
+    def grounds(self) -> Grounds:
+        """What positions and times stand on besides the program."""
+        return grounds_of((self.run,), unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run)))
 
     @cached_property
     def tools(self) -> tuple[str, ...]:

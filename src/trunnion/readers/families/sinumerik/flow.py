@@ -314,10 +314,10 @@ class Flow:
 
     def _def(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         kind = reader.peek()
-        while kind and kind not in TYPES:
+        while kind and kind not in TYPES and kind != ",":
             reader.at += 1
             kind = reader.peek()
-        if not kind:
+        if kind not in TYPES:
             raise ExpressionError(Wording("NC210", "def_needs_type"))
         reader.at += 1
         if kind == "STRING":
