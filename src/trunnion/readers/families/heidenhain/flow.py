@@ -7,7 +7,7 @@ from typing import Final
 from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
-from trunnion.readers.families.heidenhain.fn_functions import execute, waiting_function
+from trunnion.readers.families.heidenhain.fn_functions import acting_function, execute
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
 from trunnion.readers.program import interpreter
@@ -124,8 +124,9 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         if _PARAMETER.search(rest):
             active.source.jumps_back = 0
         label = execute(rest, active.parameters, self._note)
-        if (wait := waiting_function(rest)) is not None:
-            self.control.add_event("unasked", f"FN {wait}")
+        if (number := acting_function(rest)) is not None:
+            self.control.add_event("unasked", f"FN {number}")
+            self.control.say_once(f"FN {number}")
         if label is not None:
             active.source.load()
             active.source.jump_without_choice(self._line_of(active, label))

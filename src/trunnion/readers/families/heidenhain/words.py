@@ -257,6 +257,9 @@ FN_SYSTEM_DATA: Final = frozenset({17, 25})
 #: FN functions that stop the program, or let it wait.
 FN_WAITS: Final = frozenset({14, 20})
 
+#: FN functions that stop the program, wait, or speak to the PLC, which may do anything: no path shows them.
+FN_ACTS: Final = FN_WAITS | {19, 29}
+
 #: FN functions that are not simulated: what they do.
 FN_NOT_SIMULATED: Final = {
     14: "stops the program with an error message", 15: "prints", 16: "prints to a file", 17: "writes system data",
