@@ -135,7 +135,7 @@ M_NOT_SIMULATED: Final = {
     142: ("deletes modal program information: not simulated", True),
     144: ("positions count with the offset of the head: not simulated", True),
     150: ("suppresses the message of a limit switch: not simulated", True),
-    143: ("deletes a basic rotation, which only the control knows", False),
+    143: ("deletes a basic rotation, which only the control knows", True),
     200: ("laser cutting is not simulated", False),
     201: ("laser cutting is not simulated", False),
     202: ("laser cutting is not simulated", False),
