@@ -18,7 +18,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
-from trunnion.messages import LIBRARY, Wording, Words
+from trunnion.messages import LIBRARY, Wording, Words, phrase
 from trunnion.records import dataclass
 from trunnion.wording import one_line
 
@@ -109,6 +109,14 @@ class Problem:
     def __str__(self) -> str:
         """Return ``file:line: severity: what; cure [code]``."""
         return self.line_of_text()
+
+    @property
+    def said(self) -> Wording:
+        """Its line as a wording, which can stand in others."""
+        place = f"{self.file}:{self.line}" if self.line else self.file
+        severity = Wording("terminal", "error" if self.severity is Severity.ERROR else "warning")
+        parts = {"place": place, "severity": severity, "said": self.wording.with_cure()}
+        return phrase("problem_with_code", code=self.code, **parts) if self.code else phrase("problem_at", **parts)
 
     def line_of_text(self, words: Words = LIBRARY, called: str = "") -> str:
         """Return what ``str`` does in the words of a front, which may call the file otherwise."""

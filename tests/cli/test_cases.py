@@ -41,7 +41,7 @@ def test_another_text_with_the_same_motion_is_told_and_shown(case: Path, capsys:
     code, out, err = tried(capsys, case.parent)
     assert code == 1
     assert f"{case}: DIFFERENT: top.mpf: text: 2 lines removed, 2 added" in out
-    assert "motion the same: 9 points" in out
+    assert "motion: same: 9 points" in out
     assert "  -N450 ; CUTTING\n  +N450 ;Cutting\n" in out
     assert "--accept" in err
     assert contents(case.parent) == before
@@ -51,7 +51,7 @@ def test_another_motion_is_told_by_what_the_tool_does(case: Path, capsys: Captur
     case.with_name("top.cls").write_text(operation("FACE").replace("500.0", "400.0") + operation("SLOT 2", start=""))
     code, out, _ = tried(capsys, case.parent)
     assert code == 1
-    assert "motion DIFFERS: 1 place" in out
+    assert "motion: different: 1 place" in out
     assert "feed 500 against 400 mm/min" in out
 
 
@@ -183,7 +183,7 @@ def test_a_huge_file_in_place_of_a_program_is_not_read(case: Path, capsys: Captu
     code, out, _ = tried(capsys, case)
     assert code == 1
     assert "33554432 bytes are there" in out
-    assert "motion DIFFERS: not compared: top.mpf is far larger" in out
+    assert "motion: not compared: top.mpf is far larger" in out
 
 
 def test_a_link_to_a_file_elsewhere_is_not_read(case: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -200,7 +200,7 @@ def test_an_old_program_that_nobody_can_read_is_told(case: Path, capsys: Capture
     case.with_name("top.mpf").write_bytes(b"\x00\xff nonsense\n")
     code, out, _ = tried(capsys, case.parent)
     assert code == 1
-    assert "motion DIFFERS" in out
+    assert "motion: the program that is there cannot be read" in out
 
 
 @pytest.mark.parametrize(
@@ -256,4 +256,4 @@ def test_cases_that_share_a_definition_stand_above_it(tmp_path: Path, capsys: Ca
     code, out, _ = tried(capsys, tmp_path)
     assert code == 1
     assert out.count("DIFFERENT: top.mpf: text: ") == out.count("and block numbers behind them") == 2
-    assert out.count("motion DIFFERS") == 2
+    assert out.count("motion: different: ") == 2

@@ -60,3 +60,14 @@ def test_a_program_without_an_end_is_warned_of(machine: str, tmp_path: Path) -> 
     assert len(kept) < len(lines)
     found = _converted(machine, "\n".join([*kept, ""]), tmp_path)
     assert "without M30 or M2" in " ".join(map(str, found.problems))
+
+
+@pytest.mark.parametrize("machine", [machine for machine in FAMILIES if machine != "dmu65"])
+def test_a_skipped_stop_between_operations_skips_nothing_else(machine: str, tmp_path: Path) -> None:
+    lines = _posted(machine, "two_tools", tmp_path).splitlines()
+    change = max(k for k, line in enumerate(lines) if re.search(r"\bM6\b|M306", line))
+    begin = max(k for k in range(change) if re.search(r"\bM5\b", lines[k]))
+    for stop in ("M1", "G4 P1000" if machine in ("matsuura_mx330", "haas_umc750") else "M0"):
+        text = _converted(machine, "\n".join([*lines[: begin + 1], f"/{stop}", *lines[begin + 1 :], ""]), tmp_path).text
+        signs = re.findall(r"OPSKIP/\w+|OPSTOP|STOP|DELAY", text or "")
+        assert signs in (["OPSKIP/ON", found, "OPSKIP/OFF"] for found in ("OPSTOP", "STOP", "DELAY")), signs

@@ -179,7 +179,7 @@ def test_what_the_definition_does_not_take_is_listed(tmp_path: Path) -> None:
     assert "can add" in left["$TC_CARR44[1] = 0.01"]
     assert "can add" in left["$TC_CARR65[1] = 0.2"]
     assert left["1 value of the swivel data 1"] == "0 or empty"
-    assert "not closed" in left["I2 + I3 + I4 = [0.0, 0.0, 7.0] in the swivel data 1"]
+    assert "not closed" in left["I2 + I3 + I4 = [0.0, 0.0, 7.0] (swivel data 1)"]
 
 
 def test_the_range_of_swivel_data_does_not_replace_software_limits(tmp_path: Path) -> None:
@@ -200,7 +200,7 @@ def test_the_range_of_swivel_data_does_not_replace_software_limits(tmp_path: Pat
         ("$TC_CARR7=1", "$TC_CARR7=1"),
         ("$TC_CARR4[1]=1e99", "$TC_CARR4[1] = 1e99"),
         ("$TC_CARR4[1]=NAN", "$TC_CARR4[1] = NAN"),
-        ("$MN_SOMETHING=3", "1 other machine data"),
+        ("$MN_SOMETHING=3", "1 other machine datum from here on"),
         ('$MN_AXCONF_MACHAX_NAME_TAB[6]="Z"', "$MN_AXCONF_MACHAX_NAME_TAB[6] = Z"),
     ],
 )

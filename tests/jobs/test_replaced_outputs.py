@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from tests.support.command_lines import code_of, ending_of, fill_folder, line_with
-from tests.support.locations import YL569
+from tests.support.locations import TESTS, YL569
 from trunnion.cli import main
 from trunnion.jobs.job import Job
 from trunnion.jobs.registry import JOBS
-from trunnion.jobs.replaced_outputs import beginning, told
+from trunnion.jobs.replaced_outputs import beginning, told, writers
 from trunnion.options.kinds import FileOut
 from trunnion.options.option import Option, outputs
 
@@ -108,3 +108,35 @@ def test_a_mesh_is_written_again(ending: str, tmp_path: Path, monkeypatch: pytes
     begins = beginning(save, ending)
     assert begins is not None
     assert begins.match((tmp_path / f"stock{ending}").read_bytes()[:1000])
+
+
+#: What writes data of each command, for which nothing is posted or simulated anew.
+RESULT_OF = {
+    "convert": "convert", "curve": "curve", "diff": "diff", "fit": "fit", "info": "info", "manifest_check": "verify",
+    "place": "place", "place_nowhere": "place", "post": "post", "posted": "post", "reach": "reach", "sheet": "post",
+    "reach_part": "reach", "sensitivity": "sensitivity", "simulate": "simulate", "survey": "survey",
+    "verify": "verify", "verify_failed": "verify",
+}  # fmt: skip
+
+
+def test_the_data_of_each_command_are_known_as_its_own() -> None:
+    found = {name: writers((TESTS / f"golden/results/{name}.json").read_bytes()[:1000]) for name in RESULT_OF}
+    assert {name: commands for name, commands in found.items() if RESULT_OF[name] not in commands} == {}
+    shared = {"post", "verify", "sheet", "posted", "verify_failed"}
+    assert {name for name, commands in found.items() if len(commands) > 1} <= shared | {"place", "simulate"}
+
+
+@pytest.mark.parametrize("other", ["simulate", "verify", "diff", "place", "survey"])
+def test_a_result_replaces_no_result_of_another_command(
+    other: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(YL569 / "2_hub_rough.cls", "part.cls")
+    theirs = (TESTS / f"golden/results/{other}.json").read_bytes()
+    Path("a.json").write_bytes(theirs)
+    assert main(["info", "part.cls", "--json", "a.json"]) == 2
+    assert Path("a.json").read_bytes() == theirs
+    writer = {"verify": "post"}.get(other, other)
+    assert f"holds a result of trunnion {writer}, and would be replaced" in capsys.readouterr().err
+    shutil.copy(TESTS / "golden/results/info.json", "a.json")
+    assert main(["info", "part.cls", "--json", "a.json"]) == 0

@@ -36,6 +36,7 @@ SAYERS = {
     "label": "report",
     "on_sheet": "sheet",
     "on_survey": "survey",
+    "because": "foreign",
     "Fault": "DEF580",
     "_TextError": "SIM153",
     "_SizeError": "SIM123",

@@ -108,7 +108,7 @@ def judge(name: str, mutation: Mutation, folder: Path) -> Outcome:
     if not failed:
         return Outcome("MISSED") if first is not None else Outcome("OUTSIDE", changed[0])
     shows = (first or set()) | _first_in_another_offset(untouched(name), run)
-    return _placed(mutation, failed, run, shows)
+    return _placed(mutation, name, failed, run, shows)
 
 
 def _first_in_another_offset(one: Run, two: Run) -> set[int]:
@@ -122,12 +122,12 @@ def _first_in_another_offset(one: Run, two: Run) -> set[int]:
     return set(two.line[rows[:1]].tolist())
 
 
-def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) -> Outcome:
+def _placed(mutation: Mutation, name: str, failed: list[Check], run: Run, first: set[int]) -> Outcome:
     """How near the failed checks are to the fault."""
     motions = run.line[run.line >= mutation.line][:1].tolist()
     changes = [e.line for e in run.events if e.kind == "tool_change" and e.line >= mutation.line][:1]
     shows = {line + k for line in (*first, *motions, *changes) for k in (-1, 0, 1)}
-    shows |= _uses(mutation) | _assigned_without_definition(mutation)
+    shows |= _uses(mutation, name) | _assigned_without_definition(mutation)
     right = {"BLOCK": {mutation.line}, "NEXT": {mutation.line - 1, mutation.line + 1}, "SHOWS": shows}
     for what, lines in right.items():
         near = tuple(check.key for check in failed if any(place.nc_line in lines for place in check.places))
@@ -136,10 +136,12 @@ def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) 
     return Outcome("MISPLACED", "", tuple(check.key for check in failed))
 
 
-def _uses(mutation: Mutation) -> set[int]:
-    """Lines of the program that use a variable which the line of the fault sets."""
-    names = re.findall(r"(\b_\w+)=", mutation.lines[mutation.line - 1]) if mutation.line <= len(mutation.lines) else []
-    return {k for k, line in enumerate(mutation.lines, 1) for name in names if re.search(rf"{name}\b(?!=)", line)}
+def _uses(mutation: Mutation, name: str) -> set[int]:
+    """Lines of the program that use a variable which the line of the fault sets, or set in the golden program."""
+    golden = (YL569 / f"{name}.expected.mpf").read_text(encoding="utf-8").splitlines()
+    told = "\n".join(line for lines in (mutation.lines, golden) for line in lines[mutation.line - 1 : mutation.line])
+    names = re.findall(r"(\b_\w+)=", told)
+    return {k for k, line in enumerate(mutation.lines, 1) for each in names if re.search(rf"{each}\b(?!=)", line)}
 
 
 def _assigned_without_definition(mutation: Mutation) -> set[int]:

@@ -49,6 +49,10 @@ WORDS = (
     "ball mill", "mill", "T-cutter", "barrel cutter", "drill", "clockwise", "counterclockwise", "standing",
     "contour", "tool's centre", "diameter", "radius", *FileKind, *Became, *NumberKind, "APT CL data (ISO 4343)",
     "CAMWorks CL data", "Autodesk Fusion or HSMWorks APT",
+    "of rapid speed", "Spindle", "spindle", "fastest", "writing", "placing", "turns", "tool paths", "steps", "tilts",
+    "fit", "machines", "sensitivity", "motions", "states of the stock", "states", "survey", "files", "cutting",
+    "blocks", "batch", "tasks", "prepare", "kernels", "points", "of acceleration", "tool axes", "places",
+    "field of tool axes", "rounds", "layers", "links", "passes", "fit of a flank",
 )  # fmt: skip
 
 

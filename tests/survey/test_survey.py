@@ -414,3 +414,25 @@ def test_subprograms_are_read_through_the_programs_beside_them_that_call_them(
     }
     assert {each.file for each in found.files if each.tries} == contents.keys() - {"O0077.nc", "O0088.nc", "POCKET.SPF"}
     assert [each.became for each in found.files if each.file in ("O0001.nc", "MAIN.MPF")] == [Became.READ] * 2
+
+
+def test_units_dialect_and_strictness_of_cl_files_are_stated_for_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(taking, "LocalWorkers", Here)
+    folder = tmp_path / "cl"
+    folder.mkdir()
+    ways = "GOTO/0,0,40,0,0,1\nGOTO/300,0,40,0,0,1\n"
+    (folder / "far.cls").write_text(f"{HEAD}{ways}{FOOT}", encoding="utf-8")
+    (folder / "odd.cls").write_text(f"{HEAD}ODDITY/1\n{ways}{FOOT}", encoding="utf-8")
+
+    def codes(**stated: Any) -> dict[str, set[str]]:
+        found = take_survey(folder, machine=["yl569"], **stated)
+        return {file.file: {code for each in file.tries for code in each.codes} for file in found.files}
+
+    assert codes() == codes(strict=True) | {"odd.cls": set()} == {"far.cls": set(), "odd.cls": set()}
+    assert codes(strict=True)["odd.cls"] == {"CL210"}
+    assert codes(units="inch")["far.cls"] == {"PLN125"}
+    assert codes(dialect="nci") == {"far.cls": {"CL110", "CL165"}, "odd.cls": {"CL110", "CL165"}}
+    with pytest.raises(InputError, match="furlong"):
+        codes(units="furlong")

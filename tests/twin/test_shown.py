@@ -289,9 +289,9 @@ def test_a_tool_with_a_name_has_one_number_everywhere(tmp_path: Path) -> None:
 def test_a_twin_says_what_its_positions_and_times_stand_on(tmp_path: Path) -> None:
     file = tmp_path / "part.mpf"
     file.write_text(HEAD + "G0 X0 Y0 Z50 B0 C0\nG1 X10 F500\nM30\n")
-    assert twin_program(file, machine="yl569").not_measured == ()
+    assert twin_program(file, machine="yl569").grounds.not_measured == ()
     file.write_text(HEAD + "G0 X0 Y0 Z50 B0 C0\nG1 X10 C30 F500\nM30\n")
-    found = twin_program(file, machine="yl569").not_measured
+    found = twin_program(file, machine="yl569").grounds.not_measured
     assert [value.partition(" (")[0] for value in found] == ["C point_mm", "spindle gauge_point_mm"]
 
 

@@ -1,5 +1,6 @@
 """Coolant through words of the machine's builder: where they stand, and what switches off behind them."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -110,3 +111,31 @@ def test_a_word_that_no_definition_states_is_not_checked(tmp_path: Path) -> None
     checks = {check.key: check for check in trunnion.verify(program, machine="matsuura_mx330", cl=source).checks}
     assert checks["coolant"].state == "not checked"
     assert "THRU" in checks["coolant"].told
+
+
+#: How a program changes its tool, and whether coolant is said before it.
+_CHANGES = {
+    "yl569": r"(N\d+ T=1\n)", "dmu65": r"(\d+ TOOL CALL 1 .*\n)", "haas_umc750": r"(N\d+ T1 M6\n)",
+    "matsuura_mx330": r"(N\d+ T1 M6\n)", "xyzac_trt": r"(N\d+ T1 M6\n)", "hs664rt": r"(N\d+ M306 T\.1\n)",
+}  # fmt: skip
+
+
+@pytest.mark.third
+@pytest.mark.parametrize("machine", _CHANGES)
+def test_coolant_that_is_only_said_before_the_tool_change_is_not_checked(machine: str, tmp_path: Path) -> None:
+    source, program = tmp_path / "part.cls", tmp_path / ("part.h" if machine == "dmu65" else "part.nc")
+    source.write_text(_CL.format(kind="FLOOD"))
+    text = trunnion.post(source, machine=machine, settings={"part": "PART"}).text or ""
+    before = re.sub(r"(?m)^N?\d* ?M8\n| M8\b", "", text)
+    for changed, said in ((text, ()), (re.sub(_CHANGES[machine], r"M8\n\1", before), ("turned off coolant",))):
+        lines = changed.splitlines()
+        if machine == "dmu65":
+            numbers = iter(range(len(lines)))
+            lines = [line if line[0] == " " else re.sub(r"^(\d+ )?", f"{next(numbers)} ", line) for line in lines]
+        program.write_text("\n".join(lines) + "\n")
+        check = next(
+            each for each in trunnion.verify(program, machine=machine, cl=source).checks if each.key == "coolant"
+        )
+        assert check.passed, check.summary
+        assert len(check.missing) == len(said)
+        assert all(text in each.what for text, each in zip(said, check.missing, strict=True))

@@ -205,3 +205,29 @@ def test_two_ways_to_say_a_mode_that_no_path_shows_are_a_difference(tmp_path: Pa
         if not said.startswith(told) or bool(said) != bool(told):
             wrong.append((machine, one, two, said))
     assert not wrong
+
+
+@pytest.mark.parametrize(
+    ("machine", "word", "told"),
+    [
+        ("yl569", "SETAL(65000)", "SETAL(65000)"),
+        ("dmu65", "FN 14: ERROR=1000", "FN 14"),
+        ("dmu65", "FN 20: WAIT FOR SYNC", "FN 20"),
+        ("dmu65", "FN 29: PLC=+1", "FN 29"),
+        ("matsuura_mx330", "G91 G30 P2 Z0.\nG90", "G30 P2"),
+    ],
+)
+def test_what_stops_the_program_or_goes_to_another_reference_position_is_a_difference(
+    machine: str, word: str, told: str, folder: Path
+) -> None:
+    lines = posted(machine, "tilted_flood", folder).splitlines()
+    at = max(k for k, line in enumerate(lines) if re.search(r"SUPA G0 Z|G53 G0 Z|L Z\S+ R0 FMAX M91", line))
+    if told == "G30 P2":
+        one, two = [*lines[:at], "G91 G28 Z0.", "G90", *lines[at + 1 :]], [*lines[:at], word, *lines[at + 1 :]]
+    else:
+        at = max(k for k, line in enumerate(lines[:at]) if re.search(r"\bX", line))
+        one, two = lines, [*lines[:at], word, *lines[at:]]
+    found = compared(folder, machine, "\n".join([*one, ""]), "\n".join([*two, ""]))
+    assert not found.same
+    assert found.first is not None
+    assert told in found.first.text

@@ -56,6 +56,7 @@ WORDS = [
     ("LinuxCNC", "M64 P1", "M64 P1"),
     ("LinuxCNC", "M68 E1 Q5", "M68 E1 Q5"),
     ("LinuxCNC", "M66 P1 L3 Q2", "M66"),
+    ("LinuxCNC", "M60", "M60"),
     ("Haas", "M13", "M13"),
     ("Haas", "M12", "M12"),
     ("Haas", "M10", "M10"),
@@ -65,6 +66,8 @@ WORDS = [
     ("Heidenhain", "L M101", "M101"),
     ("Heidenhain", "L M118 X1", "M118 X1"),
     ("Heidenhain", "FN 14: ERROR=1000", "FN 14"),
+    ("Heidenhain", "FN 19: PLC=+1 / +2", "FN 19"),
+    ("Heidenhain", "FN 29: PLC=+1", "FN 29"),
 ]
 
 

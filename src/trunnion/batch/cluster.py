@@ -11,7 +11,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
@@ -26,6 +26,7 @@ from trunnion.errors import InputError, Problem, warning
 from trunnion.extras import import_extra
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.wording import format_duration
 
 #: Where Dask's client logs.

@@ -7,7 +7,7 @@ shares in work, and no others. Once the joined result is written, its shares are
 
 from collections import deque
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Final
 
 from trunnion.batch.records import FOLDER, Record
@@ -19,6 +19,7 @@ from trunnion.batch.workers import DAMAGED, Assignment
 from trunnion.errors import InputError, Problem, warning
 from trunnion.jobs.observer import Observer
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: The folder of shares within that of records.
 SHARES: Final = f"{FOLDER}/shares"

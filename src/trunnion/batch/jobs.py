@@ -6,7 +6,7 @@ Out:    a ``Batch`` of ``BatchJob`` records, and its ``Unit`` records, one for e
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
@@ -30,6 +30,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.options.groups import BODIES
 from trunnion.options.kinds import FileIn
+from trunnion.records import dataclass
 
 #: Files that a folder may have, all and those of a batch: a record of each is held while it runs.
 MOST_FILES: Final = 1_000_000

@@ -4,7 +4,7 @@ A file of jobs may come from anyone: it names files beside or below its own only
 """
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
@@ -26,6 +26,7 @@ from trunnion.messages import Wording, phrase
 from trunnion.options.kinds import FileOut, Setting
 from trunnion.options.option import Option
 from trunnion.options.words import PROOF_SETTINGS
+from trunnion.records import dataclass
 
 #: Jobs that a file may have, patterns of one, and settings.
 _MOST_JOBS: Final = 1000

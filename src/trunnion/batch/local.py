@@ -11,7 +11,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from tempfile import TemporaryDirectory
@@ -22,6 +22,7 @@ from trunnion.batch.workers import died, timed_out
 from trunnion.errors import InputError, Problem
 from trunnion.files.interrupts import children_without_interrupts
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: How often a file is tried whose worker dies: the first time another one may have taken the memory.
 TRIES: Final = 2

@@ -9,7 +9,7 @@ written is told from what somebody else has put there, whenever it ends.
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Final
 
@@ -18,6 +18,7 @@ from trunnion.batch.stores import Store, TakenError
 from trunnion.batch.worker_task import NO_COSTS, Costs, Outcome, Status
 from trunnion.errors import InputError, Problem, Severity, key_subject
 from trunnion.messages import Wording, foreign
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: The folder of records within the results; no output has a name that begins with a point.

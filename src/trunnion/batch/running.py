@@ -4,7 +4,7 @@ import os
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from operator import attrgetter
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, ClassVar, Final
@@ -34,6 +34,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.paths import is_file
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import FIRST, NOT_DATA, Figure, to_data
 
 #: What data says of a file.

@@ -7,11 +7,12 @@ are renamed and copied.
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Final
 
 from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Kept, TakenError
+from trunnion.records import dataclass
 
 #: What a kept share begins with; the longest line that is read.
 _MARK: Final = b"trunnion share 1 "

@@ -8,7 +8,6 @@ import os
 import stat
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, Protocol
 
@@ -19,6 +18,7 @@ from trunnion.extras import import_extra
 from trunnion.files import atomic_file
 from trunnion.files.places import FULL
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Files that are asked for at once where that takes a journey each.
 _AT_ONCE: Final = 256

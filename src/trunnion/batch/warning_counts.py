@@ -1,10 +1,10 @@
 """What a batch warns of: how many files have each code, and the first of them."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from trunnion.batch.records import Record
 from trunnion.errors import Problem, Severity
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

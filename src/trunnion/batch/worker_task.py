@@ -8,7 +8,7 @@ elsewhere. They are the same on every computer, so that messages and checksums a
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final
@@ -16,6 +16,7 @@ from typing import Any, Final
 from trunnion.batch.share_seals import Seal
 from trunnion.batch.stores import Kept
 from trunnion.errors import Problem
+from trunnion.records import dataclass
 
 #: Where files of the jobs' folder lie, and those of a machine's definition that lies elsewhere.
 FILES: Final = "files/"

@@ -2,13 +2,13 @@
 
 import errno
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import Final, Protocol
 
 from trunnion.batch.records import Record
 from trunnion.batch.worker_task import DEFINITIONS, FILES, Outcome, Task
 from trunnion.errors import Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.wording import format_duration
 
 

@@ -1,12 +1,12 @@
 """Definitions to start from where no shipped machine has the same order of axes."""
 
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.builder.document import with_value
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem
 from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.records import dataclass
 from trunnion.schemas import first_line
 
 

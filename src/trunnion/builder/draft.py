@@ -6,7 +6,6 @@ Out:    what the builder's page shows, as JSON has it.
 
 import tomllib
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,7 +21,8 @@ from trunnion.jobs.describe.definition_checks import machine_problems
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import jog_table
 from trunnion.machines.loading import machine_library, read_machine
-from trunnion.messages import LIBRARY, Wording, Words, phrase, said_in
+from trunnion.messages import LIBRARY, Wording, Words, joined, phrase, said_in
+from trunnion.records import dataclass
 from trunnion.results import to_data
 from trunnion.simulation.collisions.bodies import machine_bodies
 from trunnion.viewer.content import body_scene, machine_scene
@@ -199,7 +199,7 @@ def _notes(root: LocatedValue) -> SettingNotes:
         assert isinstance(control.value, dict)
         merged = {key: value for key, value in control.value.items() if key != "extends"}
         found = describe_settings(load_control(Table(LocatedValue(merged, control.file, control.line), "control")))
-        return SettingNotes({one.name: one.meaning for one in found}, {one.name: one.allowed for one in found})
+        return SettingNotes({one.name: one.meant for one in found}, {one.name: one.allowed_said for one in found})
     return SettingNotes()
 
 
@@ -225,9 +225,7 @@ def _machine(machine: Machine | None, words: Words) -> dict[str, Any]:
     if sum(len(body["faces"]) for body in bodies) > 3 * _MOST_TRIANGLES:
         bodies, remark = [], phrase("bodies_not_drawn", most=_MOST_TRIANGLES).text("what", words)
     jogs = jog_table(machine)
-    told = [
-        {"axis": each.axis.name, "what": f"{each.tool}; {each.iron}" if each.tool else each.iron} for each in jogs.axes
-    ]
+    told = [{"axis": each.axis.name, "what": joined((each.tool_said, each.iron_said), words)} for each in jogs.axes]
     homes = [axis.home for axis in machine.axes]
     return {"machine": {**machine_scene(machine), "homes": homes}, "bodies": bodies, "jogs": told, "remark": remark}
 

@@ -6,7 +6,7 @@ Out:    pages of fields. What each is called and its help are texts of the catal
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Any, Final
 
 from trunnion.builder.document import FieldPath
@@ -16,6 +16,7 @@ from trunnion.controls.vocabulary import FEEDS_WITHOUT_TCP, HOLE_APPROACH_HEIGHT
 from trunnion.definitions import LocatedValue
 from trunnion.machines.machine import AngleOutput, AxisKind, Mount, PositiveDirection, PreferredSign
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 #: Pages, in their order.

@@ -8,7 +8,6 @@ import difflib
 import io
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any, Final
 
@@ -17,6 +16,7 @@ from trunnion.jobs.post.posting import post
 from trunnion.jobs.post.result import ProofFailedError
 from trunnion.machines import Machine
 from trunnion.messages import LIBRARY, Words
+from trunnion.records import dataclass
 from trunnion.results import to_data
 from trunnion.verification import Check
 from trunnion.viewer.shown import checks_data, problem_text

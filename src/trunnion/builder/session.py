@@ -9,7 +9,6 @@ import binascii
 import hashlib
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -34,6 +33,7 @@ from trunnion.errors import InputError
 from trunnion.files import atomic_file
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.messages import LIBRARY, Words
+from trunnion.records import dataclass
 from trunnion.schemas import first_line, put_beside
 
 #: A CL file for the sample program has so many bytes at most.

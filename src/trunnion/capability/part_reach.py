@@ -1,7 +1,6 @@
 """Which facets of a part the tip reaches along their normals, or near them."""
 
 import math
-from dataclasses import dataclass
 from typing import Annotated, Final
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.machines.reach import reached_points
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.meshes import TriangleMesh
 

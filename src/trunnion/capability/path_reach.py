@@ -1,7 +1,6 @@
 """Which points of CL files the tip reaches."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -11,6 +10,7 @@ from trunnion.machines import Machine
 from trunnion.machines.reach import reached_points
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import Operation, Toolpath
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 

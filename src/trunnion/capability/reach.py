@@ -1,7 +1,7 @@
 """What a machine reaches with each tilt of the tool axis."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from operator import attrgetter
 from typing import Annotated, ClassVar, Final
@@ -15,6 +15,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.reach import AxisPoses, PoseBodies, ReachedVolume, axis_poses, pose_bodies, reached_volumes
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import Degrees, Figure
 
 #: Directions by which the share of the sphere is found.

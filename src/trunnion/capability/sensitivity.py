@@ -7,7 +7,6 @@ Units:  mm, seconds of arc, degrees; workpiece frame.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, ClassVar
 
@@ -19,7 +18,9 @@ from trunnion.capability.tip_errors import TipErrors, in_radians, joints_at_zero
 from trunnion.errors import Problem
 from trunnion.machines.sensitivity import GeometryNumber, idle_numbers
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, BlockNumber, Figure
+from trunnion.verification.grounds import NO_GROUNDS, Grounded, Grounds
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,7 @@ class NumberSensitivity:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sensitivity:
+class Sensitivity(Grounded):
     """What each number of a machine's geometry does to a program, the worst one first.
 
     run      the program
@@ -87,6 +88,7 @@ class Sensitivity:
     remarks  what was assumed
     length   how far lengths are off, mm
     angle    how far angles are off, seconds of arc
+    grounds  what it stands on besides the program
     """
 
     SCHEMA: ClassVar[int] = 2
@@ -105,6 +107,7 @@ class Sensitivity:
     remarks: tuple[Problem, ...]
     length: Annotated[float, NOT_DATA]
     angle: Annotated[float, NOT_DATA]
+    grounds: Annotated[Grounds, Figure(is_flat=True)] = NO_GROUNDS
 
 
 def program_sensitivity(

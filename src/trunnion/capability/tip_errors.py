@@ -7,7 +7,6 @@ Units:  mm, radians; workpiece frame.
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from itertools import repeat
 from typing import Final
 
@@ -16,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, slide_positions
 from trunnion.machines.sensitivity import GeometryNumber, NumberDerivative, derivatives
+from trunnion.records import dataclass
 
 _SECONDS: Final = 3600.0
 

@@ -2,12 +2,12 @@
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from trunnion.cl.conventions import Conventions
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.text_format import APT_TEXT, TextFormat
+from trunnion.records import dataclass
 
 #: Raises ``StatementError`` if the statement cannot be used.
 Handler = Callable[[ReaderState, Statement], None]

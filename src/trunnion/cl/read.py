@@ -5,7 +5,7 @@ sized; then for its content. Points never become Python objects.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import BinaryIO, Final
 
@@ -29,6 +29,7 @@ from trunnion.cl.unknown import unknown_statement_remarks
 from trunnion.encoding import EncodingDetector
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Toolpath
+from trunnion.records import dataclass
 
 #: Bytes read at a time, with what is made of them no more than the processor keeps near.
 CHUNK = 1 << 20

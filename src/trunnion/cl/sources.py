@@ -15,7 +15,6 @@ import tempfile
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Final, cast
 
@@ -24,6 +23,7 @@ from trunnion.cl.dialects import recognize_dialect
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file, warning
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.wording import one_line
 
 #: A text that is longer than this may be no more than so many times as long as its archive. CL files are some 3 to 25

@@ -1,6 +1,6 @@
 """The state of the CL reader between two statements: the operation being read, the row, and what is modal."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, NamedTuple, TypeVar
 
 from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBuilder, SurfaceSpeed
@@ -9,6 +9,7 @@ from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.statement import Statement
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
+from trunnion.records import dataclass
 
 MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8

@@ -5,13 +5,13 @@ and a ``parse`` of its own; everything behind them is shared.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import Final, Protocol
 
 from trunnion.arrays import Ints2
 from trunnion.cl.scan import Piece, PointColumns, scan
 from trunnion.cl.statement import Statement, parse
+from trunnion.records import dataclass
 
 
 class Scan(Protocol):

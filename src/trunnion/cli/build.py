@@ -5,7 +5,7 @@ from pathlib import Path
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
 from trunnion.cli.printing import announce
-from trunnion.cli.wording import page_speech
+from trunnion.cli.wording import page_speech, said
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines
@@ -29,7 +29,7 @@ def run(given: Given) -> int:
         )
     session = BuilderSession(file.parent, file.name) if file is not None else BuilderSession(Path())
     session.start()
-    speech = page_speech()
+    speech, announced = page_speech(), announce(said("ctrl_c_ends"), browser=given.browser)
     with listen(given.host, given.port) as listening:
-        serve(lambda access: builder_application(session, access, speech), listening, announce(browser=given.browser))
+        serve(lambda access: builder_application(session, access, speech), listening, announced)
     return 0

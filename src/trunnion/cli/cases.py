@@ -6,11 +6,13 @@ from pathlib import Path
 
 from trunnion.cli.printing import print_result, tell
 from trunnion.cli.results import show
-from trunnion.cli.wording import problem_line, problem_lines
+from trunnion.cli.wording import in_words, line, part, problem_line, problem_lines, spoken
 from trunnion.errors import InputError, RefusedError, TrunnionError
 from trunnion.jobs.job import Given
 from trunnion.jobs.post_project.cases import Case, ChangedProgram, find_cases, posted_case
-from trunnion.wording import counted, one_line
+from trunnion.messages import Wording
+from trunnion.verification.comparison.result import Comparison
+from trunnion.wording import one_line
 
 
 def run(given: Given) -> int:
@@ -22,12 +24,12 @@ def run(given: Given) -> int:
         outcomes.append({"case": path.as_posix(), "outcome": outcome})
         became[outcome] += 1
         code = max(code, own)
-    parts = ", ".join(f"{count} {outcome}" for outcome, count in became.items())
+    parts = tuple(part(f"count_{outcome.replace(' ', '_')}", count=count) for outcome, count in became.items())
     data = {"schema": 1, "passed": code == 0, "cases": outcomes}
-    show(given, lambda: data, [f"{counted(len(paths), 'case')}: {parts}"])
+    show(given, lambda: data, [line("cases_in_all", count=len(paths), parts=parts)])
     if code and not given.accept and became["different"] + became["new"]:
         folder = f'"{given.folder}"' if " " in given.folder else given.folder
-        tell(f"trunnion test {folder} --accept takes the new programs over, once you have looked at them")
+        tell(line("accept_takes_over", folder=folder))
     return code
 
 
@@ -48,10 +50,11 @@ def _test(path: Path, *, accept: bool, quiet: bool) -> tuple[str, int]:
             return _tell_error(case, error, said)
         left = len(case.gone) - len(accepted.removed)
         if accepted.written:
-            said(one_line(f"{path}: accepted: {', '.join(file.name for file in accepted.written)}"))
+            names = tuple(file.name for file in accepted.written)
+            said(one_line(line("case_accepted", case=str(path), names=names)))
         if accepted.removed:
-            names = ", ".join(file.name for file in accepted.removed)
-            said(one_line(f"{path}: removed: {names}; remove it from the control, too"))
+            names = tuple(file.name for file in accepted.removed)
+            said(one_line(line("case_removed", case=str(path), names=names)))
         if left or case.passed:
             return outcome, 1 if left else 0
         return "accepted", 0
@@ -60,8 +63,7 @@ def _test(path: Path, *, accept: bool, quiet: bool) -> tuple[str, int]:
 def _tell_error(case: Case, error: TrunnionError, said: Callable[[str], None]) -> tuple[str, int]:
     tell(*problem_lines(error.problems))
     is_refused = isinstance(error, RefusedError)
-    what = "REFUSED: a program must not run" if is_refused else "NOT TESTED: it cannot be posted"
-    said(one_line(f"{case.path}: {what}"))
+    said(one_line(line("case_refused" if is_refused else "case_not_tested", case=str(case.path))))
     assert is_refused or isinstance(error, InputError)
     return ("refused", 1) if is_refused else ("not tested", 2)
 
@@ -75,28 +77,33 @@ def _outcome(case: Case) -> str:
 def _lines(case: Case, outcome: str) -> Iterator[str]:
     """Yield a case in lines."""
     if outcome == "same":
-        yield f"{case.path}: same: {', '.join(file.name for file in case.same)}"
+        yield line("case_same", case=str(case.path), names=tuple(file.name for file in case.same))
         return
     for program in case.changed:
-        yield f"{case.path}: {outcome.upper()}: {'; '.join(_of_files(program))}"
+        yield line(f"case_{outcome}", case=str(case.path), files=tuple(_of_files(program)))
         if any(each.text for each in program.files):
-            first, *more = program.motion
-            if program.moves:
-                yield f"  motion the same: {first.removeprefix('same: ')}"
-            else:
-                yield f"  motion DIFFERS: {first.removeprefix('different: ')}"
-            yield from (f"  {line}" for line in more)
+            first, *more = _motion_lines(program.motion)
+            yield f"  {line('case_motion', motion=first)}"
+            yield from (f"  {each}" for each in more)
         for each in program.files:
             if each.text is not None:
-                yield from (f"  {line}" for line in each.text.lines)
+                yield from (f"  {shown}" for shown in each.text.lines)
                 if each.text.is_cut:
-                    yield "  and so on"
+                    yield f"  {line('and_so_on')}"
     for paper in case.papers:
-        yield f"{case.path}: PAPER: {paper.file.name} {paper.why}"
+        yield line("case_paper", case=str(case.path), file=paper.file.name, why=paper.why)
     for file in case.gone:
-        yield f"{case.path}: GONE: {file.name} is of an operation that there is no more"
+        yield line("case_gone", case=str(case.path), file=file.name)
 
 
-def _of_files(program: ChangedProgram) -> Iterator[str]:
+def _motion_lines(motion: Comparison | Wording | None) -> list[str]:
+    """Return how a program moves against the one that is there."""
+    return list(motion.lines(spoken())) if isinstance(motion, Comparison) else [in_words(motion)] if motion else [""]
+
+
+def _of_files(program: ChangedProgram) -> Iterator[Wording]:
     for each in program.files:
-        yield f"{each.file.name} is new" if each.text is None else f"{each.file.name}: text: {each.text.summary}"
+        if each.text is None:
+            yield part("file_is_new", file=each.file.name)
+        else:
+            yield part("file_text", file=each.file.name, summary=each.text.summary)

@@ -6,7 +6,6 @@ Out:    what it is in a line, once its loader has read all of it.
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
@@ -15,6 +14,7 @@ from trunnion.definitions import LocatedValue, load_table, own_keys
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.machines.loading import machine_library
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import to_data
 
 #: What a file has, and warnings.

@@ -59,7 +59,7 @@ def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:
     """How to post the CL file such that the program's head becomes the same."""
     name = "FILE.cls" if target == "-" else target
     words = [f"--set={key}={value}" for key, value in settings.items()]
-    return "to post it with the same head: " + shlex.join(["trunnion", "post", name, "--machine", machine, *words])
+    return said("post_with_same_head", command=shlex.join(["trunnion", "post", name, "--machine", machine, *words]))
 
 
 def _target_file(given: Given, extension: str) -> str:

@@ -56,12 +56,15 @@ def print_result(*lines: str, end: str = "\n") -> None:
         raise InputError(Problem("stdout", 0, wording)) from None
 
 
-def announce(*, browser: bool) -> Callable[[str], None]:
-    """Return what to do when a page can be opened: print its address and, unless told not to, open it."""
+def announce(ending: str, *, browser: bool) -> Callable[[str], None]:
+    """Return what to do when a page can be opened: print its address and, unless told not to, open it.
+
+    ending  a line that says what ends it
+    """
 
     def ready(address: str) -> None:
         print(address, flush=True)
-        print("Ctrl-C ends it", file=sys.stderr)
+        print(ending, file=sys.stderr)
         if browser:
             import webbrowser  # no other command needs it
 

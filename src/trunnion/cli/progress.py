@@ -5,7 +5,10 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import copy_context
 
+from trunnion.cli.wording import in_words, said
+from trunnion.messages import word_said
 from trunnion.wording import format_duration
 
 
@@ -16,6 +19,8 @@ def progress(what: str, total: int, unit: str, *, delay: float = 1) -> Iterator[
         yield lambda more: None
         return
     from tqdm import tqdm  # imported late: it takes as long as posting a small file
+
+    what, unit = _said(what), _said(unit)
 
     with tqdm(total=total, unit=unit, unit_scale=True, desc=what, delay=delay, leave=False) as bar:
 
@@ -29,15 +34,20 @@ def progress(what: str, total: int, unit: str, *, delay: float = 1) -> Iterator[
 def progress_lines(what: str, total: int, unit: str, *, every: float = 30.0) -> Iterator[Callable[[int], None]]:
     """Yield the same, and print to stderr how much has been done whenever so many seconds have gone by."""
     done, started, is_over = 0, time.monotonic(), threading.Event()
+    what, unit = _said(what), _said(unit)
+    words = copy_context()  # of another thread
 
     def advance(more: int) -> None:
         nonlocal done
         done += more
 
+    def line_after(passed: str) -> str:
+        return said("progress", what=what, done=done, total=total, unit=unit, passed=passed)
+
     def watch() -> None:
         while not is_over.wait(every):
             passed = format_duration(time.monotonic() - started)
-            print(f"{what}: {done} of {total} {unit} after {passed}", file=sys.stderr, flush=True)
+            print(words.run(line_after, passed), file=sys.stderr, flush=True)
 
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
@@ -46,3 +56,9 @@ def progress_lines(what: str, total: int, unit: str, *, every: float = 30.0) -> 
     finally:
         is_over.set()
         watcher.join()
+
+
+def _said(name: str) -> str:
+    """Return the name of a stage or a unit in the language of the command, with what stands before it."""
+    before, mark, word = name.rpartition(": ")
+    return f"{before}{mark}{word.replace(word.strip(), in_words(word_said(word.strip())))}" if word.strip() else name

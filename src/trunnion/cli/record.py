@@ -5,17 +5,19 @@ import sys
 
 from trunnion.cli.printing import print_result, tell
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import line, said
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.recording import record
-from trunnion.wording import counted
 
 
 def run(given: Given) -> int:
     """Record until the user ends it, or until the time is over."""
     password = machine_password(given.user)
     made = record(**given.arguments(), password=password, ready=_announce, observer=Terminal())
-    gaps = f", {counted(made.gaps, 'gap')} marked" if made.gaps else ""
-    print_result(f"{given.output}: {counted(made.rows, 'row')}{gaps}")
+    if made.gaps:
+        print_result(line("recorded_with_gaps", file=given.output, rows=made.rows, gaps=made.gaps))
+    else:
+        print_result(line("recorded", file=given.output, rows=made.rows))
     return 0
 
 
@@ -25,8 +27,8 @@ def machine_password(user: str) -> str:
     """
     if not user:
         return ""
-    return getpass.getpass("Password: ") if sys.stdin.isatty() else sys.stdin.readline().rstrip("\r\n")
+    return getpass.getpass(said("ask_password")) if sys.stdin.isatty() else sys.stdin.readline().rstrip("\r\n")
 
 
 def _announce(names: tuple[str, ...]) -> None:
-    tell(f"recording {', '.join(names)}", "Ctrl-C ends it")
+    tell(said("recording", names=names), said("ctrl_c_ends"))

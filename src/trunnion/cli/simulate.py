@@ -8,7 +8,7 @@ from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_words, line, part, spoken, together
 from trunnion.jobs.job import Given
 from trunnion.jobs.simulate.report import write_simulation_report
-from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines, travel_lines
+from trunnion.jobs.simulate.result import SimulationResult, bodies_stand_lines, travel_lines
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.messages import word_said
 from trunnion.model.clamping import Clamping, number
@@ -69,7 +69,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             yield f"{_of_setup(each.setup)}{told}"
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield line("removed_in_all", volume=found.removed, cell=cell, accuracy=found.accuracy)
-    yield from not_measured_lines(found, spoken())
+    yield from bodies_stand_lines(found, spoken())
     yield from travel_lines(found, spoken())
     yield found.line(spoken())
 

@@ -11,14 +11,14 @@ from typing import Final
 
 from trunnion.cli.printing import tell
 from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import line, part, spoken
 from trunnion.errors import InputError, Problem, Severity, TrunnionError
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines
-from trunnion.messages import Wording
+from trunnion.messages import Wording, library_words, phrase
 from trunnion.options.kinds import FileIn, FileOut, Setting, Switch
 from trunnion.options.option import Option
-from trunnion.wording import counted
 
 #: A key of a project, where other options have words in place of one.
 _NAME: Final = re.compile(r"\w+")
@@ -59,7 +59,7 @@ def suggestion(given: Given, target: str, terminal: NotingTerminal) -> Iterator[
         if any(each.is_needed for each in asked_settings(problems)):
             _write(given, (keys, unsaid), file, problems)
         else:
-            tell(f"{file}: not written: nothing can be filled in that ends the errors")
+            tell(line("nothing_suggested", file=str(file)))
         raise
     _write(given, (keys, unsaid), file, terminal.found)
 
@@ -172,13 +172,11 @@ def _write(given: Given, said: tuple[dict[str, object], list[str]], file: Path, 
     own = {each.setting: given.values[each.name] for each in given.job.options if each.setting}
     stated = {name: str(value) for name, value in own.items() if value is not None}
     keys, unsaid = said
-    head = [f"To post it: trunnion post {shlex.quote(str(file))}"]
-    head += [f"A project does not state {', '.join(unsaid)}: what was given there is left out."] if unsaid else []
-    head += [
-        f"No setting can name {each}: name it otherwise in CAM, or state a value for all."
-        for each in unnamed_operations(problems)
-    ]
-    text = project_text(keys, {**stated, **dict(given.settings)}, asked, head)
+    head = [phrase("to_post_project", file=shlex.quote(str(file)))]
+    head += [phrase("not_in_project", options=tuple(unsaid))] if unsaid else []
+    head += [phrase("operation_not_named", operation=each) for each in unnamed_operations(problems)]
+    words = library_words(spoken().language)
+    text = project_text(keys, {**stated, **dict(given.settings)}, asked, head, words)
     with atomic_file(file) as sink:
         sink.write(text.encode())
     needed = sum(each.to_fill and each.is_needed for each in asked)
@@ -186,7 +184,7 @@ def _write(given: Given, said: tuple[dict[str, object], list[str]], file: Path, 
     answered = [problem for each in asked for problem in each.problems]
     others = [each for each in problems if each.severity is Severity.ERROR and each.code != GATHERED]
     others = [each for each in others if each not in answered]
-    parts = [f"{counted(needed, 'setting')} to fill in"]
-    parts += [f"{counted(decisions, 'decision')} behind #"] if decisions else []
-    parts += [f"{counted(len(others), 'error')} to mend otherwise"] if others else []
-    tell(f"{file}: {', '.join(parts)}; then: trunnion post {shlex.quote(str(file))}")
+    parts = [part("settings_to_fill", count=needed)]
+    parts += [part("decisions_behind", count=decisions)] if decisions else []
+    parts += [part("errors_otherwise", count=len(others))] if others else []
+    tell(line("suggested", file=str(file), parts=tuple(parts), name=shlex.quote(str(file))))

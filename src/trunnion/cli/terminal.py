@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 from trunnion.cli.printing import tell, tell_problem
 from trunnion.cli.progress import progress
-from trunnion.cli.wording import in_command_words, problem_lines, said, spoken
+from trunnion.cli.wording import in_words, problem_lines, said, spoken
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.observer import Observer
@@ -51,7 +51,7 @@ class Terminal(Observer):
         """Print the decisions of the planner."""
         self._explained = self._recorded and bool(plan.decisions)
         if self._explain:
-            tell(*(in_command_words(str(decision)) for decision in plan.decisions))
+            tell(*(f"{each.file}:{each.line}: {each.operation}: {in_words(each.said)}" for each in plan.decisions))
 
     def verified(self, verification: Verification) -> None:
         """Print one line a check, the places of failed checks, and times."""

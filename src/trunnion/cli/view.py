@@ -7,7 +7,7 @@ from typing import Any, Final
 from trunnion.cli.printing import announce, print_result
 from trunnion.cli.record import machine_password
 from trunnion.cli.terminal import Terminal
-from trunnion.cli.wording import page_speech, spoken
+from trunnion.cli.wording import line, page_speech, said, spoken
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.job import Given
 from trunnion.jobs.twin.recording import machine_feed
@@ -19,7 +19,6 @@ from trunnion.viewer.content import ViewContent
 from trunnion.viewer.live import LiveView
 from trunnion.viewer.server import view_application
 from trunnion.viewer.serving import listen, serve
-from trunnion.wording import counted
 
 #: How to connect to a machine, and what is shown of one without a program.
 _LIVE: Final = tuple(option.name for option in LIVE)
@@ -35,7 +34,7 @@ def run(given: Given) -> int:
     shown = given.arguments("output", *_LIVE)
     if given.output is not None:
         standing = write_view(**shown, output=given.output, observer=Terminal())
-        print_result(f"{given.output}: written", standing)
+        print_result(line("file_written", file=given.output), standing)
         return 0
 
     speech = page_speech()
@@ -46,13 +45,15 @@ def run(given: Given) -> int:
         else:
             content, live = _live(given, shown)
         print(
-            counted(len(content.scene["findings"]), "finding"),
+            said("findings", count=len(content.scene["findings"])),
             *filter(None, [content.said(spoken())["standing"]]),
             sep="\n",
             file=sys.stderr,
         )
         serve(
-            lambda access: view_application(content, access, live, speech), listening, announce(browser=given.browser)
+            lambda access: view_application(content, access, live, speech),
+            listening,
+            announce(said("ctrl_c_ends"), browser=given.browser),
         )
     return 0
 

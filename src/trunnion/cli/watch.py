@@ -14,7 +14,7 @@ from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of
 from trunnion.cli.terminal import warn_of_old
-from trunnion.cli.wording import problem_lines
+from trunnion.cli.wording import problem_lines, said
 from trunnion.errors import Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk, output_group
 from trunnion.jobs.inputs.bodies import fixture_files
@@ -29,7 +29,7 @@ from trunnion.jobs.project.file import load_project
 from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Project
 from trunnion.jobs.simulate.posted import simulation_files
-from trunnion.wording import counted, one_line
+from trunnion.wording import one_line
 
 
 def run(given: Given) -> int:
@@ -45,7 +45,7 @@ def follow(given: Given, waiting: Waiting, now: Callable[[], datetime] = datetim
     """Post as ``run`` does, where time passes as ``waiting`` says."""
     work: _Work = _ProjectWork(given) if names_project(given.cl) else _FilesWork(given)
     try:
-        tell(f"{work.name}: watched; Ctrl-C ends it")
+        tell(said("watched", name=work.name))
         watch(_Told(work, now), waiting)
     except Ended:
         raise
@@ -102,7 +102,8 @@ class _Told:
             self._tell(_failure(error, is_unchanged()))
             self._warn_of_old_programs()
             return
-        self._tell(f"{'posted' if may_run else 'written by force, and must not run'}: {', '.join(written)}")
+        variant = "watched_posted" if may_run else "watched_forced"
+        self._tell(said(variant, names=tuple(written)))
 
     def _tell(self, what: str) -> None:
         print_result(one_line(f"{self._now():%H:%M:%S} {self._work.name}: {what}"))
@@ -119,12 +120,12 @@ class _ChangedError(Exception):
 def _failure(error: _ChangedError | TrunnionError | OSError, is_unchanged: bool) -> str:
     """Return what a round that failed says, after its problems are printed."""
     if isinstance(error, _ChangedError) or not is_unchanged:
-        return "has changed while it was posted; it is posted again when it rests"
+        return said("watched_changed")
     if isinstance(error, OSError):
-        return f"NOT posted: {error.strerror or error}"
+        return said("watched_error", reason=str(error.strerror or error))
     tell(*problem_lines(error.problems))
-    kind = "the program must not run" if isinstance(error, RefusedError) else "what it is made from cannot be used"
-    return f"NOT posted: {kind} ({counted(len(error.problems), 'message')})"
+    variant = "watched_refused" if isinstance(error, RefusedError) else "watched_unusable"
+    return said(variant, count=len(error.problems))
 
 
 def _of_definition(machine: str) -> set[str]:

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterator, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass
 from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
@@ -12,6 +11,7 @@ from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import Problem, TrunnionError, first_of_kinds
 from trunnion.jobs.registry import JOBS
 from trunnion.messages import ENGLISH, Wording, Words, phrase
+from trunnion.records import dataclass
 
 if TYPE_CHECKING:
     from trunnion.viewer.language import Speech

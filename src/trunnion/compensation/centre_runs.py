@@ -6,7 +6,6 @@ Units:  mm.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,6 +18,7 @@ from trunnion.compensation.stretches import Stretch
 from trunnion.compensation.styles import STYLES
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 
 #: A smaller offset, mm, is none.
 NOTHING: Final = 1e-9

@@ -8,7 +8,7 @@ What a machine reaches and where a part fits stands on where the tool goes, and 
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -22,6 +22,7 @@ from trunnion.compensation.styles import STYLES, WIDEST, CompensationStyle
 from trunnion.errors import Problem, Severity
 from trunnion.model.splines import Splines
 from trunnion.model.toolpath import CutterComp, Kind, Operation, Toolpath
+from trunnion.records import dataclass
 
 #: The axis perpendicular to each plane of CUTCOM; without one the control works in XY.
 _NORMALS: Final = {"": 2, "XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}

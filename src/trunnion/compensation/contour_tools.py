@@ -1,10 +1,11 @@
 """Which tools go along points of the contour, as the CL files of a program say, and not along those of their centre."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from trunnion.model.run import Run
 from trunnion.model.toolpath import CutterComp, LoadTool, Toolpath
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ them: that is what the operator is asked to enter. It is reported, for nobody ha
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from trunnion.compensation.centre_runs import CentreRun, run_of_centre
 from trunnion.compensation.contour_tools import ContourTools
@@ -17,6 +16,7 @@ from trunnion.compensation.offsets import Fault
 from trunnion.compensation.stretches import RadiusOf, RegisterValue, Stretch, offsets_of
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,7 +1,7 @@
 """A run with rows between its rows."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from trunnion.model.columns import RampColumn, StepColumn
 from trunnion.model.run import Run
 from trunnion.model.run_columns import ModalState
 from trunnion.model.toolpath import Arcs, Kind
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

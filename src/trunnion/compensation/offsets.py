@@ -8,7 +8,7 @@ Inner corners end where both equidistants meet. The first element is the line on
 may be the one on which it ends.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import Final
 
@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.compensation.plane_path import PlanePath, Points, meetings
 from trunnion.compensation.styles import CompensationStyle, Corner, Entry
+from trunnion.records import dataclass
 
 #: A path that turns round by less than this short of half a turn goes back where it came from, radians.
 _ROUNDING: Final = 1e-6

@@ -5,7 +5,6 @@ Out:    an ``Insertion``; where no tool fits.
 Units:  mm.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,6 +15,7 @@ from trunnion.compensation.offsets import CentrePath, Fault, centre_path
 from trunnion.compensation.plane_path import PlanePath, Points
 from trunnion.compensation.styles import CompensationStyle
 from trunnion.model.toolpath import Arcs
+from trunnion.records import dataclass
 
 #: A smaller motion in the plane, mm, is none.
 _STILL: Final = 1e-6

@@ -1,12 +1,12 @@
 """A path in a plane: lines and circles as arrays of complex numbers, x + iy in mm."""
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Floats, Ints
+from trunnion.records import dataclass
 
 Points: TypeAlias = NDArray[np.complex128]
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from itertools import pairwise
 from typing import Final
@@ -13,6 +13,7 @@ from trunnion.arrays import distinct
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import tool_additions
+from trunnion.records import dataclass
 
 #: Words that add to the radius by which the control compensates.
 ADDED_RADII: Final = frozenset({"DR", "TOFFR", "TOFFLR"})

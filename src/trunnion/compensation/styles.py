@@ -1,9 +1,10 @@
 """How controls round outer corners under radius compensation, and how they come to the contour and leave it."""
 
 import math
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
+
+from trunnion.records import dataclass
 
 
 class Corner(StrEnum):

@@ -7,7 +7,6 @@ definition. The sequence of a program and its modal state are common to all fami
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final, Protocol
 
 from trunnion.arrays import Flags, Floats, Ints
@@ -18,6 +17,7 @@ from trunnion.model.motion import Motion
 from trunnion.model.splines import Spline
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, SpindleOff, SpindleOn, Stop
 from trunnion.planning.holes.cycles import Cycle, SpindleState
+from trunnion.records import dataclass
 
 Formats = Mapping[str, NumberFormat]
 Codes = Mapping[str, int]

@@ -4,8 +4,9 @@ Each place is declared once: the names of its templates and of its function, wha
 there. Readers of definitions and of hooks, writers, messages and the tables of the docs are made of it.
 """
 
-from dataclasses import dataclass
 from typing import Final
+
+from trunnion.records import dataclass
 
 #: What a name of a template begins with at the statement of a CL file, whose word follows.
 EVENT_PLACE: Final = "event_"

@@ -7,13 +7,13 @@ Out:    rules that judge a text, and say what to write instead.
 import math
 import re
 import unicodedata
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
 from trunnion.definitions import Table
 from trunnion.definitions.messages import a_number, a_whole_number
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: Controls read numbers without an exponent.
 _NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)")

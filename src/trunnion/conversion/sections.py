@@ -1,7 +1,7 @@
 """The sections of a program that become operations: where they begin and end, and which events belong to them."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
 from trunnion.messages import Wording
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True)
@@ -131,17 +132,43 @@ def assign_events(
         inside = range(section.first_event, section.end_event)
         others = (n for n in range(begin, end) if n not in inside)
         after = {n for n in others if _concerns_others(events[n], template_lines, smoothing)}
-        own = [events[n] for n in range(begin, end) if n in inside or n in after]
+        own = _with_own_skips(events, range(begin, end), inside, after)
         row = int(section.rows[0])
         running = _coolant_running(events[: section.first_event], coolants)
         if running and not any(event.row <= row and _is_coolant(event, coolants) for event in own):
             own.insert(0, running._replace(row=row))
         skipped = next((event for event in reversed(events[: section.first_event]) if event.kind == "skip"), None)
-        if section.part > 1 and skipped is not None and skipped.value:
+        begun = bool(own) and own[0].kind == "skip" and bool(own[0].value)
+        if section.part > 1 and skipped is not None and skipped.value and not begun:
             own.insert(0, skipped._replace(row=row))
         assigned.append(own)
         begin = end
     return assigned
+
+
+def _with_own_skips(
+    events: Sequence[ProgramEvent], all_of_them: range, inside: range, after: Collection[int]
+) -> list[ProgramEvent]:
+    """Return the events of a section: those ``inside``, and those ``after`` another section that belong to it.
+
+    Of the skip signs between two sections those count that stand right before such an event, or lead into the section:
+    each sign that begins has the one that ends it.
+    """
+    own, said, latest = list[ProgramEvent](), False, None
+    for n in all_of_them:
+        event = events[n]
+        if event.kind == "skip" and n not in inside:
+            latest = event
+            continue
+        if latest is not None and latest.value != said and (n in inside or n in after):
+            own.append(latest)
+            said, latest = bool(latest.value), None
+        if n in inside or n in after:
+            own.append(event)
+            said = bool(event.value) if event.kind == "skip" else said
+    if latest is not None and said and not latest.value:
+        own.append(latest)
+    return own
 
 
 def _coolant_running(events: Sequence[ProgramEvent], coolants: Mapping[int, str]) -> ProgramEvent | None:

@@ -9,7 +9,7 @@ spindle stops at an angle or the operator takes the tool out, nothing says which
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.spindle_work import SpindleHole, SpindleTask
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, Kind, Sense, SpindleOff, SpindleOn
+from trunnion.records import dataclass
 
 _REFUSED = {
     SpindleTask.LIFT: "stops the spindle at an angle and moves the tool off the wall",

@@ -5,11 +5,12 @@ page on conversion is made of the table, and a test converts a program with each
 """
 
 from collections.abc import Iterator
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from enum import StrEnum
 from typing import Final
 
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Where a program can go: a CL file, or a control of these families.
 TARGETS: Final = ("CL", "Sinumerik", "Klartext", "Fanuc", "Haas", "Fidia", "LinuxCNC")

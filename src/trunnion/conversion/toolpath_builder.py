@@ -9,7 +9,7 @@ axes before an operation's first position. Where they stand between two cuts, th
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from trunnion.controls.definition import Control
@@ -47,6 +47,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Event, Frame, LoadTool, Operation, Tool, Toolpath
 from trunnion.readers import reader_of
+from trunnion.records import dataclass
 from trunnion.verification import restore_rapids
 
 

@@ -4,7 +4,7 @@ for, and the problems.
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from importlib.resources import files
 from pathlib import PurePath
 from typing import Final, Self
@@ -15,6 +15,7 @@ from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
 from trunnion.errors import InputError, Problem, key_subject
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Keys that are not known and are told one by one: for each a similar one is looked for.
 _MOST_UNREAD: Final = 100

@@ -1,8 +1,9 @@
 """What a getter of a table asks of a key: the questions of all getters are the schema of a definition."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, NamedTuple
+
+from trunnion.records import dataclass
 
 #: No length, angle, speed or count of a definition is greater; squares of what is do not overflow.
 GREATEST: Final = 1e9

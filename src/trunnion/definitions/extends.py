@@ -5,7 +5,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePosixPath
@@ -19,6 +19,7 @@ from trunnion.definitions.toml_faults import toml_fault
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: Larger files are refused unread; real definitions have a few kilobytes.
 MAX_FILE_BYTES: Final = 1_000_000

@@ -2,12 +2,12 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.value_marks import marked_values
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,10 @@ from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.toml_text import written, written_key
 from trunnion.definitions.value_marks import ANY_MARK
+from trunnion.messages import LIBRARY, Words, phrase
 
 
-def resolved_text(root: LocatedValue) -> str:
+def resolved_text(root: LocatedValue, words: Words = LIBRARY) -> str:
     """Return a merged definition as TOML that says the same; what it extends is in it, and not named.
 
     A comment behind each value names file and line, after the mark of a value that is still to be measured or assumed;
@@ -19,7 +20,7 @@ def resolved_text(root: LocatedValue) -> str:
     marks = {(each.file, each.line): f"{each.mark}; " for each in marked_in(root, ANY_MARK)}
     head = "".join(f"# {name}: {file}\n" for file, name in names.items())
     lines = "\n".join(_table(root, (), names, marks))
-    return f"# Where each value comes from:\n{head}\n{lines}\n"
+    return f"# {phrase('where_values_come_from').text('what', words)}\n{head}\n{lines}\n"
 
 
 def _files(value: LocatedValue) -> Iterator[str]:

@@ -3,9 +3,10 @@
 import re
 import tomllib
 from collections.abc import Mapping, Set
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, NamedTuple, TypeAlias
+
+from trunnion.records import dataclass
 
 #: Deeper keys are refused unread: the time of the TOML parser grows with the cube of their depth.
 MAX_KEY_DEPTH: Final = 32

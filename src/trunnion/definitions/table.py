@@ -3,7 +3,6 @@
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, NamedTuple, TypedDict, Unpack, overload
 
@@ -15,6 +14,7 @@ from trunnion.definitions.setting_text import setting_text
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 
 class Required:

@@ -5,11 +5,11 @@ The files in the folder ``explanations`` of each language of ``trunnion.messages
 ``cure`` what to do about it.
 """
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
 from trunnion.messages import ENGLISH, catalogue, said_in
+from trunnion.records import dataclass
 
 #: The files in the order of the docs, and what each is about.
 SUBJECTS: Final = {

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
@@ -12,6 +12,7 @@ from trunnion.files.interrupts import held_interrupts
 from trunnion.files.journal import Journal, Names, Record, begin
 from trunnion.files.places import OutputPlace, cannot_write
 from trunnion.messages import phrase
+from trunnion.records import dataclass
 
 #: Names of files in a message.
 _MOST_NAMED: Final = 5

@@ -8,12 +8,12 @@ import errno
 import os
 import stat
 from collections.abc import Hashable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: What the system says where there is no more space.
 FULL: Final = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))

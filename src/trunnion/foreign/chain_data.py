@@ -19,11 +19,12 @@ those of a tool carrier.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final, TypeAlias
 
-from trunnion.foreign.machine import Key, Left, Stated, index, number
-from trunnion.wording import counted
+from trunnion.foreign.machine import Key, Left, Stated, because, index, not_taken, number
+from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Machine data and system variables: name and index -> value.
 Data: TypeAlias = Mapping[tuple[str, str], Stated]
@@ -54,15 +55,15 @@ _CLOSED: Final = {"T": ((1, 2, 3),), "P": ((2, 3, 4),), "M": ((1, 2), (3, 4))}
 #: Offset -> the first of its three variables, and the first of its fine offsets.
 _OF_TC_CARR: Final = {1: (1, 41), 2: (4, 44), 3: (15, 55), 4: (18, 58)}
 
-#: Variables of a tool carrier that no definition takes: first, last, why.
+#: Variables of a tool carrier that no definition takes: first, last, why (texts of the catalogue ``foreign``).
 _NOT_TAKEN: Final = (
-    (13, 14, "an angle of a rotary axis that is set by hand"),
-    (24, 25, "the position that counts as zero in the swivel data: a definition has all axes at 0"),
-    (26, 29, "a definition has no Hirth coupling"),
-    (34, 40, "it names the swivel data, or is for the screens of the control"),
-    (41, 60, "a fine offset, which the control can add: compare with it and without it"),
-    (61, 63, "nothing says here what it means"),
-    (64, 65, "a fine offset of an angle, which the control can add"),
+    (13, 14, "angle_set_by_hand"),
+    (24, 25, "zero_position"),
+    (26, 29, "no_hirth"),
+    (34, 40, "names_the_data"),
+    (41, 60, "fine_offset"),
+    (61, 63, "meaning_unknown"),
+    (64, 65, "fine_offset_of_angle"),
 )
 
 #: Chains that are closed to this, mm.
@@ -82,7 +83,7 @@ class Chain:
 class _Source:
     """Vectors by their numbers, from one kind of data: ``offsets`` I1 to I4, ``axes`` V1 and V2."""
 
-    name: str
+    name: Wording
     kind: str
     offsets: Mapping[int, Stated]
     axes: Mapping[int, Stated]
@@ -95,7 +96,7 @@ def chain_of(data: Data, names: Mapping[int, str]) -> Chain:
     kind_number = 0 if kind is None else index(kind.value) or 0
     carrier, others = _carriers(data, kind_number == OF_CARRIER)
     if kind is not None and kind_number not in TYPES and kind_number != OF_CARRIER:
-        chain.left.append(Left(f"{kind.name} = {kind.value}", kind.place, "no transformation with five axes"))
+        chain.left.append(not_taken(kind, because("no_five_axes")))
     if kind_number in TYPES and len(axes := _transformed(data)) == 2 and all(axis in names for axis in axes):
         mounts = MOUNTS[TYPES[kind_number]]
         chain.order = ((names[axes[0]], mounts[0]), (names[axes[1]], mounts[1]))
@@ -112,8 +113,8 @@ def chain_of(data: Data, names: Mapping[int, str]) -> Chain:
     for other in others:
         count = sum(1 for name, row in data if name.startswith("TC_CARR") and row == other)
         place = _first_of(data, other)
-        why = f"the swivel data {carrier} count"
-        chain.left.append(Left(f"{counted(count, 'value')} of the swivel data {other}", place.place, why))
+        values = because("values_of_swivel_data", count=count, carrier=other)
+        chain.left.append(Left(values, place.place, because("other_data_count", carrier=carrier)))
     return chain
 
 
@@ -173,8 +174,7 @@ def _of_traori(data: Data, kind: int, left: list[Left]) -> _Source | None:
     if kind not in _GENERIC:
         for (name, _), value in data.items():
             if name.removesuffix("_1") in _OF_TRAORI:
-                why = "its meaning is known for the types 24, 40 and 56 of TRAORI alone"
-                left.append(Left(f"{value.name} = {value.value}", value.place, why))
+                left.append(not_taken(value, because("generic_types_alone")))
         return None
     offsets = {
         which: found
@@ -189,8 +189,8 @@ def _of_traori(data: Data, kind: int, left: list[Left]) -> _Source | None:
     used = {f"TRAFO5_{name}" for name in _OFFSETS[TYPES[kind]].values()} | {"TRAFO5_AXIS1", "TRAFO5_AXIS2"}
     for (name, _), value in data.items():
         if name.removesuffix("_1") in set(_OF_TRAORI) - used:
-            left.append(Left(f"{value.name} = {value.value}", value.place, f"type {kind} does not use it"))
-    return _Source("TRAORI", TYPES[kind], offsets, axes)
+            left.append(not_taken(value, because("type_without_it", kind=kind)))
+    return _Source(because("of_traori"), TYPES[kind], offsets, axes)
 
 
 _OF_TRAORI: Final = (
@@ -205,8 +205,8 @@ def _of_carrier(data: Data, carrier: str, left: list[Left]) -> _Source | None:
         return None
     if kind is None or str(kind.value).upper() not in MOUNTS:
         place = _first_of(data, carrier)
-        why = "nothing says whether the head, the table or both turn ($TC_CARR23 T, P or M)"
-        left.append(Left(f"vectors of the swivel data {carrier}", (kind or place).place, why))
+        vectors = because("vectors_of_swivel_data", carrier=carrier)
+        left.append(Left(vectors, (kind or place).place, because("head_or_table_unknown")))
         return None
     offsets = {
         which: found
@@ -218,7 +218,7 @@ def _of_carrier(data: Data, carrier: str, left: list[Left]) -> _Source | None:
         for which, first in ((1, 7), (2, 10))
         if (found := _vector(data, [(f"TC_CARR{first + k}", carrier) for k in range(3)], left))
     }
-    return _Source(f"swivel data {carrier}", str(kind.value).upper(), offsets, axes)
+    return _Source(because("of_swivel_data", carrier=carrier), str(kind.value).upper(), offsets, axes)
 
 
 def _vector(data: Data, keys: Sequence[tuple[str, str]], left: list[Left]) -> Stated | None:
@@ -232,7 +232,7 @@ def _vector(data: Data, keys: Sequence[tuple[str, str]], left: list[Left]) -> St
     components = [0.0 if each is None else number(each.value) for each in found]
     if None in components:
         bad = next(each for each in found if each is not None and number(each.value) is None)
-        left.append(Left(f"{bad.name} = {bad.value}", bad.place, "it is no number, so the vector is not taken"))
+        left.append(not_taken(bad, because("no_number_in_vector")))
         return None
     return first.as_value(components)
 
@@ -241,8 +241,7 @@ def _take(source: _Source, chain: Chain) -> None:
     """Put the lines of rotation under the keys of a definition; what was taken before counts."""
     if len(chain.order) != 2 or tuple(mount for _, mount in chain.order) != MOUNTS[source.kind]:
         for value in (*source.offsets.values(), *source.axes.values()):
-            why = f"the kind {source.kind} of the {source.name} does not go with the rotary axes"
-            chain.left.append(Left(f"{value.name} = {value.value}", value.place, why))
+            chain.left.append(not_taken(value, because("kind_does_not_fit", kind=source.kind, source=source.name)))
         return
     for which, (name, mount) in enumerate(chain.order, 1):
         if (vector := source.axes.get(which)) and (size := math.hypot(*vector.value)) > 0.0:
@@ -252,12 +251,12 @@ def _take(source: _Source, chain: Chain) -> None:
             _keep(chain, ("axis", name, "direction"), vector.as_value(line))
             _keep(chain, ("axis", name, "positive"), vector.as_value("reversed" if is_back else "standard"))
         elif vector is not None:
-            chain.left.append(Left(f"{vector.name} = {vector.value}", vector.place, "the vector has no length"))
+            chain.left.append(not_taken(vector, because("vector_without_length")))
         terms = [source.offsets[each] for each in _PLACES[source.kind][which - 1] if each in source.offsets]
         for each in _PLACES[source.kind][which - 1] if terms else ():
             if each not in source.offsets:
-                why = f"it is not in the file, and counts as 0 for the place of {name}"
-                chain.left.append(Left(f"I{each} of the {source.name}", terms[0].place, why))
+                offset = because("offset_of", offset=f"I{each}", source=source.name)
+                chain.left.append(Left(offset, terms[0].place, because("counts_as_zero", axis=name)))
         if terms:
             place = [sum(each.value[k] for each in terms) for k in range(3)]
             _keep(chain, ("axis", name, "point_mm"), terms[-1].as_value(place))
@@ -267,15 +266,20 @@ def _take(source: _Source, chain: Chain) -> None:
         rest = [sum(each.value[k] for each in terms) for k in range(3)]
         if len(terms) == len(closed) and math.hypot(*rest) > _CLOSES:
             sums = " + ".join(f"I{each}" for each in closed)
-            why = "the chain is not closed: so it is where a head or a table is changed"
-            chain.left.append(Left(f"{sums} = {rest} in the {source.name}", terms[-1].place, why))
+            found = because("offset_of", offset=f"{sums} = {rest}", source=source.name)
+            chain.left.append(Left(found, terms[-1].place, because("chain_not_closed")))
 
 
 def _keep(chain: Chain, key: Key, value: Stated) -> None:
     known = chain.values.setdefault(key, value)
     if known is not value and not _is_same(known.value, value.value):
-        why = f"{known.name} has {known.value} ({known.place}), which counts"
-        chain.left.append(Left(f"{'.'.join(key)} = {value.value} of {value.name}", value.place, why))
+        why = because("other_has", name=known.name, value=str(known.value), place=known.place)
+        chain.left.append(Left(of_value(key, value), value.place, why))
+
+
+def of_value(key: Key, value: Stated) -> Wording:
+    """Return a value under its key, and of what it is."""
+    return because("value_of", key=".".join(key), value=str(value.value), name=value.name)
 
 
 def _is_same(one: object, other: object) -> bool:
@@ -293,7 +297,8 @@ def _take_limits(data: Data, carrier: str, chain: Chain) -> None:
         if at is None or ends == [0.0, 0.0]:
             continue
         if None in ends or not (ends[0] or 0.0) < (ends[1] or 0.0):
-            chain.left.append(Left(f"{at.name}: {name} from {ends[0]} to {ends[1]}", at.place, "it is no range"))
+            ends_said = because("axis_from_to", name=at.name, axis=name, low=str(ends[0]), high=str(ends[1]))
+            chain.left.append(Left(ends_said, at.place, because("no_range")))
         else:
             chain.values[("axis", name, "limits_deg")] = at.as_value(ends)
 
@@ -307,9 +312,10 @@ def _left_of_carrier(data: Data, carrier: str, chain: Chain) -> Iterator[Left]:
             if value is not None and (number(value.value) == 0.0 or not str(value.value)):
                 nothing.append(value)
             elif value is not None:
-                yield Left(f"{value.name} = {value.value}", value.place, why)
+                yield not_taken(value, because(why))
     if nothing:
-        yield Left(f"{counted(len(nothing), 'value')} of the swivel data {carrier}", nothing[0].place, "0 or empty")
+        values = because("values_of_swivel_data", count=len(nothing), carrier=carrier)
+        yield Left(values, nothing[0].place, because("zero_or_empty"))
     if not chain.order:
         at = _first_of(data, carrier)
-        yield Left(f"axes of the swivel data {carrier}", at.place, "$TC_CARR21 and 22, or 35 and 36, name no two axes")
+        yield Left(because("axes_of_swivel_data", carrier=carrier), at.place, because("no_two_axes_named"))

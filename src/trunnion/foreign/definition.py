@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, Final
 
 from trunnion.controls.definition_files import load_control_table
@@ -10,11 +9,12 @@ from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
 from trunnion.definitions.toml_text import written
 from trunnion.errors import InputError, argument_problem
-from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated
+from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, because
 from trunnion.machines import AngleOutput, Axis, Machine, load_machine
 from trunnion.machines.loading import shipped_machines
 from trunnion.machines.machine import Vector
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.schemas import first_line
 
 _HEAD: Final = """\
@@ -45,6 +45,11 @@ class Difference:
     here: Any
     there: Any
     source: str
+
+    @property
+    def is_axis(self) -> bool:
+        """Whether it is a whole axis that the definition does not have."""
+        return self.key.count(".") == 1
 
 
 def nearest_machine(found: ForeignMachine) -> str:
@@ -96,15 +101,15 @@ def written_definition(found: ForeignMachine, base: str, name: str) -> Written:
     return _with_rest(lines, taken, (*found.left, *outside.values()))
 
 
-def _no_place(key: Key, machine: Machine) -> str:
-    """Return why a machine has no place for a value of an axis; empty if it has."""
+def _no_place(key: Key, machine: Machine) -> Wording | None:
+    """Return why a machine has no place for a value of an axis; None if it has."""
     axis = next((each for each in machine.axes if each.name == key[1]), None)
     if axis is None:
-        return f"{machine.key} has no axis {key[1]}"
+        return because("no_axis", machine=machine.key, axis=key[1])
     turns = key[2] in ("endless", "point_mm") or "_deg" in key[2]
     if (turns and not axis.is_rotary) or (key[2].endswith("_mm") and key[2] != "point_mm" and axis.is_rotary):
-        return f"{key[1]} of {machine.key} is a {axis.kind} axis"
-    return ""
+        return because("rotary_axis" if axis.is_rotary else "linear_axis", machine=machine.key, axis=key[1])
+    return None
 
 
 def _with_rest(lines: list[str], taken: Mapping[Key, Stated], left: tuple[Left, ...]) -> Written:
@@ -156,8 +161,10 @@ def _homes_outside(found: ForeignMachine, machine: Machine) -> Iterator[tuple[Ke
         travel = found.values.get(("axis", axis.name, f"limits_{unit}"))
         low, high = (axis.low, axis.high) if travel is None else travel.value
         if home is not None and not low <= home.value <= high:
-            why = f"home {written(home.value)} is outside of the travel of {machine.key}, {low:g} to {high:g}"
-            yield ("axis", axis.name, f"home_{unit}"), Left(f"home of {axis.name}", home.source, why)
+            why = because(
+                "home_outside", home=written(home.value), machine=machine.key, low=f"{low:g}", high=f"{high:g}"
+            )
+            yield ("axis", axis.name, f"home_{unit}"), Left(because("home_of", axis=axis.name), home.source, why)
 
 
 def _endless_against_limits(found: ForeignMachine, machine: Machine) -> Iterator[tuple[Key, Left]]:
@@ -167,8 +174,8 @@ def _endless_against_limits(found: ForeignMachine, machine: Machine) -> Iterator
     for axis in machine.axes:
         endless = found.values.get(("axis", axis.name, "endless"))
         if endless is not None and axis.has_limits:
-            why = f"{machine.key} has {axis.low:g} to {axis.high:g}, which count until you state yours"
-            yield ("axis", axis.name, "endless"), Left(f"{axis.name} without limits", endless.source, why)
+            why = because("limits_count", machine=machine.key, low=f"{axis.low:g}", high=f"{axis.high:g}")
+            yield ("axis", axis.name, "endless"), Left(because("without_limits", axis=axis.name), endless.source, why)
 
 
 def differences(found: ForeignMachine, machine: Machine) -> Iterator[Difference]:

@@ -6,7 +6,7 @@ Units:  mm and degrees, as definitions have them.
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any, Final, TypeAlias
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: A place in a definition: ``("axis", "B", "limits_deg")``, ``("control", "block_numbers", "step")``.
 Key: TypeAlias = tuple[str, ...]
@@ -58,11 +59,36 @@ class Stated:
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What no definition takes: what it is, where it stands, and why."""
+    """What no definition takes.
 
-    what: str
+    said    what it is: a wording, or the text of the file itself
+    where   file and line
+    reason  why it is not taken
+    """
+
+    said: str | Wording
     where: str
-    why: str
+    reason: Wording
+
+    @property
+    def what(self) -> str:
+        """What it is, in English."""
+        return str(self.said)
+
+    @property
+    def why(self) -> str:
+        """Why it is not taken, in English."""
+        return self.reason.what
+
+
+def because(variant: str, /, **parameters: object) -> Wording:
+    """Return a text of the catalogue ``foreign``: what is not taken, or why."""
+    return Wording("foreign", variant, **parameters)
+
+
+def not_taken(value: Stated, reason: Wording) -> Left:
+    """Return a value that no definition takes, as its file has it."""
+    return Left(f"{value.name} = {value.value}", value.place, reason)
 
 
 @dataclass(frozen=True, slots=True)

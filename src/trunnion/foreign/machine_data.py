@@ -16,14 +16,16 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.foreign.chain_data import Chain, Data, chain_of
+from trunnion.foreign.chain_data import Chain, Data, chain_of, of_value
 from trunnion.foreign.machine import (
     ForeignMachine,
     Key,
     Left,
     Stated,
+    because,
     index,
     marks_of_controls,
+    not_taken,
     number,
     place_in,
     read_text,
@@ -41,11 +43,11 @@ _MM_PER_M, _DEG_PER_TURN = 1000.0, 360.0
 
 _OF_AXES: Final = ("POS_LIMIT_MINUS", "POS_LIMIT_PLUS", "MAX_AX_VELO", "MAX_AX_ACCEL")
 
-#: A reference point is a place of its own, and no home for tool changes.
+#: Why data are not taken (texts of the catalogue ``foreign``): a reference point is no home for tool changes.
 _NOT_TAKEN: Final = {
-    "TRAFO5_ROT_AX_OFFSET_1": "a definition has no offset of an angle",
-    "TRAFO5_ROT_SIGN_IS_PLUS_1": "jog the axis: the sense of a definition is that of the tool, seen from the part",
-    "REFP_SET_POS": "a reference point is no position for a tool change",
+    "TRAFO5_ROT_AX_OFFSET_1": "no_offset_of_angle",
+    "TRAFO5_ROT_SIGN_IS_PLUS_1": "jog_for_sense",
+    "REFP_SET_POS": "reference_point",
 }
 #: Data that say which axis is which, or that are in ``chain_data``.
 _USED: Final = re.compile(
@@ -69,8 +71,7 @@ def read_machine_data(file: Path) -> ForeignMachine:
         found = _LINE.match(line)
         if not found or (found[1].startswith("TC_CARR") and not found[2]):
             if _DATUM.match(line):
-                why = "it is not NAME[INDEX] = VALUE; a number has a point, and no comma"
-                odd.append(Left(line.strip()[:80], place_in(file, line_number), why))
+                odd.append(Left(line.strip()[:80], place_in(file, line_number), because("no_datum")))
             continue
         name = re.sub(r"M[NCA]_", "", found[1]).upper()
         key = (name, (found[2] or "").replace(" ", "").upper())
@@ -78,11 +79,11 @@ def read_machine_data(file: Path) -> ForeignMachine:
         value = Stated(found[3].strip("\"'"), label, str(file), line_number)
         known = data.setdefault(key, value)
         if known is not value and known.value != value.value:
-            left.append(Left(f"{value.name} = {value.value}", value.place, f"line {known.line} counts"))
+            left.append(not_taken(value, because("line_counts", line=known.line)))
     left += odd[:_MOST_LINES]
     if len(odd) > _MOST_LINES:
         rest = odd[_MOST_LINES]
-        left.append(Left(f"{len(odd) - _MOST_LINES} more lines", f"from {rest.where} on", rest.why))
+        left.append(Left(because("more_lines", count=len(odd) - _MOST_LINES), rest.where, rest.reason))
     if not any(name in ("POS_LIMIT_MINUS", "IS_ROT_AX", "MAX_AX_VELO", "TC_CARR23") for name, _ in data):
         raise InputError(Problem(str(file), 0, Wording("DEF630", "no_data_of_axes")))
     metric = data.get(("SCALING_SYSTEM_IS_METRIC", ""))
@@ -102,8 +103,8 @@ def _with_chain(values: dict[Key, Stated], chain: Chain) -> dict[Key, Stated]:
         if known is None:
             values[key] = value
         elif known.value != value.value:
-            why = f"{known.name} counts ({known.place}): this range is for CYCLE800 alone"
-            chain.left.append(Left(f"{'.'.join(key)} = {value.value} of {value.name}", value.place, why))
+            why = because("range_of_cycle800", name=known.name, place=known.place)
+            chain.left.append(Left(of_value(key, value), value.place, why))
     return values
 
 
@@ -128,9 +129,9 @@ def _names(data: Data, left: list[Left]) -> dict[int, str]:
     for axis, value in found.items():
         if not re.fullmatch(r"[A-Za-z]\w{0,7}", str(value.value), re.ASCII):
             if value.value:
-                left.append(Left(f"{value.name} = {value.value}", value.place, "it is no name of an axis"))
+                left.append(not_taken(value, because("no_axis_name")))
         elif (name := _letter(str(value.value))) in names.values():
-            left.append(Left(f"{value.name} = {value.value}", value.place, f"another axis is {name} already"))
+            left.append(not_taken(value, because("axis_name_taken", axis=name)))
         else:
             names[axis] = name
     return names
@@ -182,13 +183,13 @@ def _left(data: Data, names: Mapping[int, str], chain: Chain) -> Iterator[Left]:
         if name in _OF_AXES and (value.file, value.line) not in taken and (axis := _AXIS.fullmatch(place)):
             partner = data.get(("POS_LIMIT_MINUS", place)) if name == "POS_LIMIT_PLUS" else None
             if int(axis[2]) not in names:
-                yield Left(f"{value.name} = {value.value}", value.place, "no name of this axis is stated")
+                yield not_taken(value, because("axis_without_name"))
             elif partner is None or (partner.file, partner.line) not in taken:
-                yield Left(f"{value.name} = {value.value}", value.place, "no value of the axis can be made of it")
+                yield not_taken(value, because("no_value_of_axis"))
     for (name, place), value in data.items():
         axis = _AXIS.fullmatch(place)
         if name in _NOT_TAKEN and (axis is None or int(axis[2]) in names):
-            yield Left(f"{value.name} = {value.value}", value.place, _NOT_TAKEN[name])
+            yield not_taken(value, because(_NOT_TAKEN[name]))
     rest = [value for (name, _), value in data.items() if not _USED.fullmatch(name)]
     if rest:
-        yield Left(f"{len(rest)} other machine data", f"from {rest[0].place} on", "a definition has no such values")
+        yield Left(because("other_machine_data", count=len(rest)), rest[0].place, because("no_such_values"))

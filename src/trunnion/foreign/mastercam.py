@@ -11,14 +11,25 @@ definition of Mastercam: they are reported, and not taken.
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, WordCounts, index, place_in, read_text
+from trunnion.foreign.machine import (
+    ForeignMachine,
+    Key,
+    Left,
+    Stated,
+    WordCounts,
+    because,
+    index,
+    not_taken,
+    place_in,
+    read_text,
+)
 from trunnion.messages import Wording
-from trunnion.wording import counted
+from trunnion.records import dataclass
 
 _SWITCH: Final = re.compile(r"([A-Za-z_]\w*)\$?\s*[:=]\s*([^\s#][^#]*?)\s*(?:#.*)?$", re.ASCII)
 _STRING: Final = re.compile(r"(s\w*)\$?\s+(?:\"([^\"]*)\"|([GM]\d+))\s*(?:#.*)?$", re.ASCII)
@@ -47,13 +58,13 @@ _TEMPLATES: Final = {
 }  # fmt: skip
 
 _WHYS: Final = (
-    (_MISC, "a setting of your own says the same, by its name"),
+    (_MISC, "own_setting"),
     (re.compile(r".*(?:rot|axis|pri_|sec_|lim|mtype|pivot|nut|head|tilt).*", re.ASCII),
-     "nothing says for all posts what it means: enter directions, senses and travel under [[axis]]"),
-    (re.compile(r"omitseq|omit_seq", re.ASCII), "the setting for numbers of blocks has it"),
-    (re.compile(r"arc\w*", re.ASCII), "[control.arcs] has how arcs are written"),
+     "enter_axes"),
+    (re.compile(r"omitseq|omit_seq", re.ASCII), "setting_of_block_numbers"),
+    (re.compile(r"arc\w*", re.ASCII), "table_of_arcs"),
 )  # fmt: skip
-_OTHER: Final = "a definition has no such value, or another way"
+_OTHER: Final = "no_such_value"
 
 #: Switches and lines of post blocks that are reported one by one; the rest is counted.
 _MOST: Final = 400
@@ -88,7 +99,9 @@ def read_mastercam_post(files: Sequence[Path]) -> ForeignMachine:
         raise InputError(Problem(str(readable[0]), 0, Wording("DEF635", "no_post")))
     values = dict(_values(post))
     encrypted = [
-        Left("encrypted part", place_in(file, 1), "nobody else can read it") for file in files if file not in readable
+        Left(because("encrypted_part"), place_in(file, 1), because("only_its_maker"))
+        for file in files
+        if file not in readable
     ]
     return ForeignMachine((), values, (*encrypted, *_left(post, values)), post.words.control)
 
@@ -105,7 +118,9 @@ def _read(file: Path, text: str, post: _Post) -> None:
                 name, count = post.blocks[block]
                 post.blocks[block] = name, count + 1
                 if block in _TEMPLATES and '"' in line:
-                    post.literals.append(Left(line.strip()[:120], place, f"template {_TEMPLATES[block]}"))
+                    post.literals.append(
+                        Left(line.strip()[:120], place, because("in_template", name=_TEMPLATES[block]))
+                    )
             continue
         if found := _FORMAT.match(line):
             post.formats.setdefault(found[1], Stated((found[2], found[3]), f"fs2 {found[1]}", str(file), line_number))
@@ -122,14 +137,14 @@ def _read(file: Path, text: str, post: _Post) -> None:
             post.blocks.setdefault(block, (place, 0))
             continue
         else:
-            post.left.append(Left(line.strip()[:120], place, "this line is not understood"))
+            post.left.append(Left(line.strip()[:120], place, because("line_not_understood")))
         block = ""
 
 
 def _note(stated: dict[str, Stated], value: Stated, post: _Post) -> None:
     known = stated.setdefault(value.name, value)
     if known is not value and known.value != value.value:
-        post.left.append(Left(f"{value.name} = {value.value}", value.place, f"{known.value} of {known.place} counts"))
+        post.left.append(not_taken(value, because("value_counts", value=str(known.value), place=known.place)))
 
 
 def _values(post: _Post) -> Iterator[tuple[Key, Stated]]:
@@ -159,19 +174,19 @@ def _left(post: _Post, values: dict[Key, Stated]) -> Iterator[Left]:
     rows = list(post.left)
     for stated in (*post.switches.values(), *post.strings.values()):
         if (stated.file, stated.line) not in taken:
-            why = next((why for pattern, why in _WHYS if pattern.fullmatch(stated.name)), _OTHER)
-            rows.append(Left(f"{stated.name} = {stated.value}"[:120], stated.place, why))
+            variant = next((why for pattern, why in _WHYS if pattern.fullmatch(stated.name)), _OTHER)
+            rows.append(Left(f"{stated.name} = {stated.value}"[:120], stated.place, because(variant)))
     for stated in post.formats.values():
         if (stated.file, stated.line) not in taken:
             shown = " ".join(each for each in stated.value if each)
-            rows.append(Left(f"{stated.name} = {shown}"[:120], stated.place, "no address of a definition has it"))
+            rows.append(Left(f"{stated.name} = {shown}"[:120], stated.place, because("no_address")))
     for address, (_, stated) in post.addresses.items():
         if address not in _ADDRESSES:
-            rows.append(Left(stated.name, stated.place, "[[control.word]] has addresses and their formats"))
+            rows.append(Left(stated.name, stated.place, because("table_of_words")))
     rows += post.literals
     for name, (place, count) in post.blocks.items():
-        why = f"template {_TEMPLATES[name]}" if name in _TEMPLATES else "nothing of a post is run"
-        rows.append(Left(f"post block {name} of {counted(count, 'line')}", place, why))
+        why = because("in_template", name=_TEMPLATES[name]) if name in _TEMPLATES else because("nothing_is_run")
+        rows.append(Left(because("post_block", name=name, count=count), place, why))
     yield from rows[:_MOST]
     if len(rows) > _MOST:
-        yield Left(f"{len(rows) - _MOST} more lines", f"from {rows[_MOST].where} on", "as those above")
+        yield Left(because("more_lines", count=len(rows) - _MOST), rows[_MOST].where, because("as_above"))

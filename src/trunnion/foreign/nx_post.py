@@ -10,13 +10,25 @@ machine with two tables carries the fifth, and so it does in a head.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
-from trunnion.foreign.machine import ForeignMachine, Key, Left, Stated, WordCounts, number, place_in, read_text
+from trunnion.foreign.machine import (
+    ForeignMachine,
+    Key,
+    Left,
+    Stated,
+    WordCounts,
+    because,
+    not_taken,
+    number,
+    place_in,
+    read_text,
+)
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 _SET: Final = re.compile(
     r"\s*set\s+(?:::)?(mom_(?:kin|sys)_\w+(?:\([\w, ]+\))?)\s+(\"[^\"$\[]*\"|[-+.\w\\#]+)\s*(?:;.*)?$"
@@ -140,9 +152,7 @@ def _read(file: Path, text: str, post: _Post) -> None:
         if not is_pui and not procedure and (found := _COMPUTED.match(line)):
             where = place_in(file, row)
             post.stated.pop(found[1], None)
-            post.left.append(
-                Left(f"{found[1]} = {found[2].strip()}", where, "it is computed, and nothing of a post is run")
-            )
+            post.left.append(Left(f"{found[1]} = {found[2].strip()}", where, because("computed")))
             continue
         post.words.count(line)
         if line.startswith("}"):
@@ -170,16 +180,14 @@ def _note(post: _Post, value: Stated, procedure: str) -> None:
     known = post.stated.get(value.name)
     if procedure:
         if value.name.startswith("mom_kin_") and (known is None or known.value != value.value):
-            why = f"it is set while the program runs, in {procedure}"
-            post.left.append(Left(f"{value.name} = {value.value}", value.place, why))
+            post.left.append(not_taken(value, because("set_while_running", procedure=procedure)))
         return
     if known is None or known.file == value.file:
         post.stated[value.name] = value
     if known is not None and known.value != value.value:
         counts = post.stated[value.name]
         other = known if counts is value else value
-        why = f"{counts.value} of {counts.place} counts"
-        post.left.append(Left(f"{other.name} = {other.value}", other.place, why))
+        post.left.append(not_taken(other, because("value_counts", value=str(counts.value), place=counts.place)))
 
 
 def _name_of(post: _Post, which: str, kind: Stated) -> str:
@@ -287,40 +295,40 @@ def _left(post: _Post, names: Sequence[str], mounts: Sequence[str], values: Mapp
     for which, mount in zip(("4th", "5th"), mounts, strict=True):
         kind = post.stated.get(f"mom_kin_{which}_axis_type")
         if kind is not None and kind.value and str(kind.value).lower() != {"part": "table", "tool": "head"}[mount]:
-            yield Left(f"{kind.name} = {kind.value}", kind.place, "mom_kin_machine_type says otherwise, and counts")
+            yield not_taken(kind, because("machine_type_counts"))
     pivot = _number(post, "mom_kin_pivot_gauge_offset")
     if pivot is not None and pivot.value and ("spindle", "gauge_point_mm") not in values:
-        yield Left(f"{pivot.name} = {pivot.value}", pivot.place, "two tables have no pivot of a head")
+        yield not_taken(pivot, because("no_pivot"))
     for which, name in zip(("4th", "5th"), names, strict=True):
         for keys, parts in _PARTS_OF_AXES:
             if not any(("axis", name, key) in values for key in keys):
                 for found in (post.stated.get(f"mom_kin_{which}_axis_{part}") for part in parts):
                     if found is not None:
-                        why = f"{keys[0]} of {name} cannot be made of it"
-                        yield Left(f"{found.name} = {found.value}", found.place, why)
+                        yield not_taken(found, because("cannot_be_made", key=keys[0], axis=name))
     for name in "xyz":
         if travel := post.stated.get(f"mom_kin_{name}_axis_limit"):
-            yield Left(
-                f"travel of {name.upper()}: {travel.value}", travel.source, "it does not say where travel begins"
-            )
+            said = because("travel_of", axis=name.upper(), value=str(travel.value))
+            yield Left(said, travel.source, because("travel_without_begin"))
     for name, why in (
-        ("mom_kin_max_dpm", "an angular feed is no rapid"),
-        ("mom_kin_linearization_tol", "the setting tolerance has it"),
-        ("mom_kin_tool_change_time", "take the time at the machine"),
+        ("mom_kin_max_dpm", "angular_feed"),
+        ("mom_kin_linearization_tol", "setting_tolerance"),
+        ("mom_kin_tool_change_time", "take_the_time"),
     ):
         if found := post.stated.get(name):
-            yield Left(f"{name} = {found.value}", found.place, why)
+            yield not_taken(found, because(why))
     if ("control", "format", "coordinate", "decimals") not in values:
         for address in _ADDRESSES:
             if found := post.formats.get(post.addresses.get(address, "")):
-                yield Left(f"{found.name} of {address}: {found.value} decimals", found.place, "a post in inches")
+                said = because("decimals_of", name=found.name, address=address, decimals=str(found.value))
+                yield Left(said, found.place, because("in_inches"))
     for found in post.stated.values():
         if found.name.startswith("mom_kin_") and not _LOOKED_AT.fullmatch(found.name):
-            yield Left(f"{found.name} = {found.value}", found.place, "a definition has no such value, or another way")
+            yield not_taken(found, because("no_such_value"))
     for event, lines in post.lines.items():
         for line in lines:
             words = _block_words(post, line)
-            yield Left(line.rpartition(" (")[0] + words, line.rpartition(" (")[2].rstrip(")"), f"template {event}")
+            place = line.rpartition(" (")[2].rstrip(")")
+            yield Left(line.rpartition(" (")[0] + words, place, because("in_template", name=event))
 
 
 def _block_words(post: _Post, line: str) -> str:

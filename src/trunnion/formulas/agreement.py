@@ -1,7 +1,7 @@
 """Formulas against the maps that programs are made and proven with, at random poses."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any, Final, TypeAlias
 
 import numpy as np
@@ -12,6 +12,7 @@ from trunnion.formulas.rotary import Tilt
 from trunnion.formulas.steps import Steps
 from trunnion.formulas.symbols import Expression, symbol, sympy
 from trunnion.machines import Machine, forward, inverse, slide_positions
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: The most that a formula may be off, mm and degrees.

@@ -1,6 +1,5 @@
 """The chain of a machine as symbols: what stands between the workpiece and the tool, in order."""
 
-from dataclasses import dataclass
 from typing import Annotated, Final
 
 import numpy as np
@@ -9,6 +8,7 @@ from trunnion.arrays import Floats
 from trunnion.formulas.symbols import Expression, Rows, Triple, exact_direction, number, rotation, symbol
 from trunnion.machines import Axis, Machine
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: Parts of an offset that are smaller are zero, mm.

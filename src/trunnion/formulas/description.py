@@ -1,7 +1,7 @@
 """All formulas of a machine, in one record."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 from typing import Annotated, ClassVar
 
@@ -14,6 +14,7 @@ from trunnion.formulas.poles import Pole, ReachedCone, SolutionRange, poles_of, 
 from trunnion.formulas.rotary import rotary_formulas, tilt_of
 from trunnion.formulas.steps import Formula, Steps, as_formula
 from trunnion.machines import Axis, Machine
+from trunnion.records import dataclass
 from trunnion.results import EXACT, Figure
 
 

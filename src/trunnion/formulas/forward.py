@@ -1,10 +1,9 @@
 """The forward map as formulas: tip and tool axis, from the tool back to the workpiece."""
 
-from dataclasses import dataclass
-
 from trunnion.formulas.chain import TIP, TOOL_AXIS, Chain, Joint
 from trunnion.formulas.steps import Steps
 from trunnion.formulas.symbols import Expression, Rows, Triple, number, plus, product, symbol, times
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

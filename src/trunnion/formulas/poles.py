@@ -1,7 +1,6 @@
 """Poles, the tool axes that rotary axes reach, and where each solution is within travel."""
 
 import math
-from dataclasses import dataclass
 from typing import Annotated, Final
 
 from trunnion.formulas.chain import Chain
@@ -9,6 +8,7 @@ from trunnion.formulas.rotary import Tilt
 from trunnion.formulas.symbols import float_of
 from trunnion.machines import Axis
 from trunnion.machines.machine import Vector
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: Angles closer than this are equal, deg.

@@ -9,7 +9,6 @@ That gives the second angle twice; the first one turns R2 s onto u.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,6 +28,7 @@ from trunnion.formulas.symbols import (
     sympy,
 )
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

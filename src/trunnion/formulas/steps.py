@@ -1,11 +1,12 @@
 """Formulas in their order, and intermediate vectors where they keep the next ones short."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.formulas.chain import TIP
 from trunnion.formulas.notation import as_latex, as_text, name_as_latex
 from trunnion.formulas.symbols import Expression, Rows, Triple, size_of, symbol, sympy, transposed, turned
+from trunnion.records import dataclass
 
 #: The longest part of a vector that is turned further as it stands.
 _LONGEST: Final = 14

@@ -1,6 +1,5 @@
 """Cubic B-spline curves, rational where they have weights."""
 
-from dataclasses import dataclass
 from math import comb
 from typing import Any, Final
 
@@ -8,6 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, distinct
 from trunnion.extras import import_extra
+from trunnion.records import dataclass
 
 #: Every curve is cubic: the lowest degree whose curvature is continuous.
 DEGREE: Final = 3

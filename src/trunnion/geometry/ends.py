@@ -1,11 +1,11 @@
 """What a curve does at its ends."""
 
 import math
-from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from trunnion.errors import InputError, argument_problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 Vector: TypeAlias = tuple[float, float, float]
 

@@ -1,7 +1,7 @@
 """A curve for points: through them, or near them with few control points; and how good it is."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from operator import attrgetter
 from typing import Annotated
 
@@ -20,6 +20,7 @@ from trunnion.geometry.point_faults import point_faults
 from trunnion.geometry.point_tables import PointTable
 from trunnion.geometry.spans import Span, spans_between
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 

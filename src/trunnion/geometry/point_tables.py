@@ -19,7 +19,7 @@ Without that line curves whose columns repeat are called ``curve_1``, ``curve_2`
 import math
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -29,6 +29,7 @@ from trunnion.arrays import Floats
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: So many bytes tell whether a file is text.
 _HEAD: Final = 1000

@@ -1,7 +1,6 @@
 """What a curve does between the points that it passes."""
 
 import math
-from dataclasses import dataclass
 from typing import Annotated, Final
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.geometry.closest import closest_parameters
 from trunnion.geometry.curves import BSplineCurve
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: Spans that are measured at once: memory does not grow with the number of points.

@@ -5,7 +5,6 @@ Out:    ``BSplineSurface`` over u and v from 0 to 1, which goes on straight beyo
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -14,6 +13,7 @@ from trunnion.arrays import Floats, distinct
 from trunnion.extras import import_extra
 from trunnion.geometry.curves import DEGREE, BSplineCurve
 from trunnion.geometry.surface_kernel import SurfaceData, surface_points
+from trunnion.records import dataclass
 
 #: Two knots nearer to each other than this are one.
 _SAME_KNOT: Final = 1e-9

@@ -11,7 +11,6 @@ mm/min or mm/rev; coordinates are those of the operation's own coordinate system
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 from trunnion.hooks.places import (
@@ -51,6 +50,7 @@ from trunnion.model.toolpath import (
     Tool,
     UnknownStatement,
 )
+from trunnion.records import dataclass
 
 __all__ = [
     "Arcs",

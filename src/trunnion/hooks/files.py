@@ -9,7 +9,6 @@ import sys
 import types
 from collections.abc import Callable, Iterable
 from contextlib import redirect_stdout
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -17,6 +16,7 @@ from trunnion.controls.places import OUTPUT_PLACES
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: The functions that a file of hooks may have, and what each is called with.
 _FUNCTIONS: Final = {

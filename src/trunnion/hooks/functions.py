@@ -9,7 +9,7 @@ import sys
 import types
 from collections.abc import Mapping, Sequence
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from typing import Any, Final
 
 from trunnion.controls.definition import Control
@@ -20,6 +20,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.hooks.files import HookFile, function_failure
 from trunnion.hooks.places import PLACE_RECORDS, OperationValues, Place, ToolValues
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.transliteration import lacking
 
 _MOST_LINES: Final = 1000

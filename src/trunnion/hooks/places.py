@@ -4,11 +4,11 @@ Lengths and feeds are in mm and mm/min, whatever the program counts in; None is 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 from trunnion.controls.words import NumberFormat
 from trunnion.model.toolpath import Kind, Phase
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

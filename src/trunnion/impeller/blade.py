@@ -13,7 +13,6 @@ The mean surface is taken over w and v from 0 to 1: w goes from the leading to t
 Beyond, it goes on straight.
 """
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, NamedTuple
 
@@ -23,6 +22,7 @@ from trunnion.arrays import Floats, Floats2, Floats3
 from trunnion.geometry.surface_kernel import SurfaceData, surface_row
 from trunnion.geometry.surfaces import BSplineSurface
 from trunnion.jit import inner, kernel
+from trunnion.records import dataclass
 
 #: Places along w and v from the nearest of which the search for the closest point begins.
 _ALONG: Final = 33

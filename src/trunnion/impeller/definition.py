@@ -5,7 +5,7 @@ Out:    ``ImpellerDefinition``, every value checked by itself.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
@@ -17,6 +17,7 @@ from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
 from trunnion.impeller.steps import MachiningStep, StepKind, read_name, read_steps
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.library.toml_library import read_tool_tables
 

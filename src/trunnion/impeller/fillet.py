@@ -6,7 +6,6 @@ Units:  mm.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,6 +15,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.profiles import Profile
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: A ball this near to the hub touches it, mm; that takes about ten steps.
 _TOUCH: Final = 1e-11

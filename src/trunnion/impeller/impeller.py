@@ -6,7 +6,7 @@ Units:  mm, axis Z.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 from typing import Annotated
 
@@ -25,6 +25,7 @@ from trunnion.impeller.faults import blade_faults, direction_faults, section_fau
 from trunnion.impeller.profiles import Profile
 from trunnion.impeller.stock_faults import stock_faults
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 #: How far blades go on beyond hub, shroud and stock, mm, besides their thickness.

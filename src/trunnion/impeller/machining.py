@@ -7,7 +7,6 @@ Units:  mm.
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -34,6 +33,7 @@ from trunnion.impeller.paths.tool_axes import SHARES, ToolAxes, Wanted, choose_a
 from trunnion.impeller.progress import Progress, silent
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.profile import Role, ToolShape
 

@@ -10,7 +10,7 @@ and the ridges between its passes.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Final
 
 import numpy as np
@@ -21,6 +21,7 @@ from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.shroud import shroud_form
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import Figure
 from trunnion.simulation.tools.profile import Role
 

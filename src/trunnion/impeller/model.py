@@ -7,7 +7,6 @@ Units:  mm.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, Final
 
@@ -23,6 +22,7 @@ from trunnion.impeller.fillet import Fillet, FilletError, root_fillet, root_stat
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.meshing import blade_mesh, fillet_mesh, solid, turned_mesh, union
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import Figure
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 

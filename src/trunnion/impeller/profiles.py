@@ -8,7 +8,6 @@ A profile goes from the inlet to the outlet. Metal of the hub is on its right, t
 to the left. Beyond its ends it goes on straight.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -18,6 +17,7 @@ from trunnion.geometry.closest import closest_parameters
 from trunnion.geometry.curves import BSplineCurve
 from trunnion.geometry.interpolation import interpolate
 from trunnion.geometry.parameters import parameters_of
+from trunnion.records import dataclass
 
 #: Points of the curve in space that make the profile.
 _SAMPLES: Final = 801

@@ -5,7 +5,6 @@ Units: mm, mm/min, rev/min, degrees.
 
 import unicodedata
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
@@ -14,6 +13,7 @@ from trunnion.definitions.messages import as_written
 from trunnion.impeller.paths.passes import Stepover, Way
 from trunnion.messages import Wording
 from trunnion.output.subprograms import DEVICE_NAME
+from trunnion.records import dataclass
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.sizes import ToolKind, ToolSizes
 from trunnion.transliteration import spelled

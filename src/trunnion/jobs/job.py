@@ -3,7 +3,6 @@
 import os
 import sys
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, BinaryIO, Final
 
@@ -11,6 +10,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
 from trunnion.options.kinds import FileIn, Setting
 from trunnion.options.option import Group, Option, flat
+from trunnion.records import dataclass
 
 #: stdin as a file.
 STDIN: Final = "-"

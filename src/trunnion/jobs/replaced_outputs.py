@@ -53,6 +53,29 @@ BY_NAME: Final[Mapping[str, re.Pattern[bytes]]] = MappingProxyType(
     }
 )
 
+#: How the data of a command's result begin behind their schema, and the commands that write such.
+RESULTS: Final[Mapping[re.Pattern[bytes], tuple[str, ...]]] = MappingProxyType(
+    {
+        re.compile(rb'\s*\{\s*"schema": \d+,\s*' + pattern): commands
+        for pattern, commands in {
+            rb'"curves": ': ("curve",),
+            rb'"dialect": ': ("info",),
+            rb'"folder": ': ("survey",),
+            rb'"machine": ("[^"]*"|null),\s*"files": ': ("place",),
+            rb'"machine": ("[^"]*"|null),\s*"workpiece_zero_mm": ': ("reach",),
+            rb'"machines": \[\s*(\]|\{\s*"machine": "[^"]*",\s*"status": )': ("fit",),
+            rb'"passed": \w+,\s*"output": ': ("convert",),
+            rb'"passed": \w+,\s*"programs": ': ("simulate", "impeller"),
+            rb'"passed": \w+,\s*"proven": ': ("verify",),
+            rb'"program": "[^"]*",\s*"machine": "': ("sensitivity",),
+            rb'"program": "[^"]*",\s*"machine": \{': ("post", "verify", "impeller"),
+            rb'"program": "[^"]*",\s*"title": ': ("post", "place", "impeller"),
+            rb'"programs": \[\s*(\]|\{\s*"output": )': ("post", "impeller"),
+            rb'"same": ': ("diff",),
+        }.items()
+    }
+)
+
 
 def check_replaced(given: Given) -> None:
     """Refuse an output that would replace what no output of its kind has written; an empty file is nobody's loss.
@@ -61,13 +84,13 @@ def check_replaced(given: Given) -> None:
     """
     named = [(each, given.values[each.name]) for each in outputs(given.job.options) if not told(each)]
     files = [(option, file) for option, file in named if isinstance(file, str) and file != "-"]
-    others = [(option, file) for option, file in files if not _is_own(option, Path(file))]
+    others = [(option, file) for option, file in files if not _is_own(option, Path(file), given.job.name)]
     if not others:
         return
     # What is read as well is told as such, whoever has written it.
     read = {file_identity(file) for file in files_read(given)}
     problems = [
-        Problem(file, 0, Wording("FIL250", "no_such_output", flag=option.flag))
+        Problem(file, 0, _refusal(option, Path(file), given.job.name))
         for option, file in others
         if file_identity(file) not in read
     ]
@@ -85,14 +108,34 @@ def beginning(option: Option, ending: str) -> re.Pattern[bytes] | None:
     return BY_NAME.get(option.name) or BEGINS.get({".step": ".stp"}.get(ending, ending))
 
 
-def _is_own(option: Option, file: Path) -> bool:
+def _is_own(option: Option, file: Path, command: str) -> bool:
     """Whether there is nothing to lose; what cannot be read or is no file is told where it is written."""
-    try:
-        if not file.is_file() or not file.stat().st_size or not os.access(file, os.R_OK):
-            return True
-        with file.open("rb") as stream:
-            head = stream.read(_HEAD)
-    except (OSError, ValueError):
+    head = _head(file)
+    if not head:
         return True
     begins = beginning(option, file.suffix.lower())
-    return begins is not None and begins.match(head) is not None
+    return begins is not None and begins.match(head) is not None and command in (writers(head) or (command,))
+
+
+def _refusal(option: Option, file: Path, command: str) -> Wording:
+    """Return why a file is not replaced: another command has written it, or none."""
+    others = writers(_head(file))
+    if others and command not in others:
+        return Wording("FIL250", "of_another_command", command=others[0])
+    return Wording("FIL250", "no_such_output", flag=option.flag)
+
+
+def writers(head: bytes) -> tuple[str, ...]:
+    """Return the commands whose data begin so; none where it is not known, as of lists."""
+    return next((commands for begins, commands in RESULTS.items() if begins.match(head)), ())
+
+
+def _head(file: Path) -> bytes:
+    """Return how a file begins; nothing where it has nothing, cannot be read or is none."""
+    try:
+        if not file.is_file() or not os.access(file, os.R_OK):
+            return b""
+        with file.open("rb") as stream:
+            return stream.read(_HEAD)
+    except (OSError, ValueError):
+        return b""

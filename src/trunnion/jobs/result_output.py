@@ -4,7 +4,7 @@ import io
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import BinaryIO, Final, TypeAlias
 
@@ -15,6 +15,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.registry import JOBS
 from trunnion.messages import Wording
 from trunnion.options.kinds import FileOut
+from trunnion.records import dataclass
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None

@@ -11,12 +11,12 @@ order anywhere shows as a difference: from the machine, or from what programs ar
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import product
 from typing import Annotated, Final
 
 from trunnion.machines.machine import Axis, Machine, Mount, PositiveDirection, PreferredSign, Vector
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: How far slides and rotary axes are jogged, mm and degrees.

@@ -19,7 +19,6 @@ joint has moved it, and e the axis about which the number turns.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
@@ -29,6 +28,7 @@ from trunnion.arrays import Floats
 from trunnion.machines.forward import KinematicChain, kinematic_chain
 from trunnion.machines.machine import Machine
 from trunnion.messages import Wording, phrase, word_said
+from trunnion.records import dataclass
 
 #: A component along a direction is left out if less than this of it lies across, where it could matter.
 _ALONG: Final = 1e-9

@@ -7,7 +7,6 @@ Frames: the part is in workpiece coordinates. Seen from the part it is the tool 
 """
 
 import math
-from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
@@ -16,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines.forward import forward
 from trunnion.machines.machine import Machine, Mount
+from trunnion.records import dataclass
 
 #: The least distance, mm, that counts as safe. It stands for what nobody states: the radius of tool and holder,
 #: clamps, and stock beyond the points of a program.

@@ -47,6 +47,7 @@ CATALOGUES: Final = {
     "TWN": "twin",
     "comparison": "comparison",
     "decision": "decisions",
+    "foreign": "foreign",
     "kinematics": "kinematics",
     "report": "report",
     "results": "results",
@@ -194,6 +195,11 @@ class Wording:
 def phrase(variant: str, /, **parameters: object) -> Wording:
     """Return a part of other sentences, of the catalogue ``phrases``: one that goes into a parameter."""
     return Wording("", variant, **parameters)
+
+
+def texts(wordings: Iterable[Wording]) -> tuple[str, ...]:
+    """Return what wordings say in English, as data have it."""
+    return tuple(map(str, wordings))
 
 
 def joined(wordings: Iterable[Wording], words: Words = LIBRARY) -> str:

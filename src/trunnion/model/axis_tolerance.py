@@ -3,7 +3,6 @@
 Units: degrees.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.model.machining_method import machining_method
 from trunnion.model.toolpath import Operation
+from trunnion.records import dataclass
 
 #: In a coarse step the tool axis may leave its great circle by this part of its turn. A control that turns its axes
 #: evenly in a coarse step of a published program that ran needs a seventh; a turn of 180 degrees at the pole in the

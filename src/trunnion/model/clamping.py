@@ -6,7 +6,6 @@ right-handed and about the workpiece zero.
 Units: degrees, mm.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.messages import Wording, phrase
 from trunnion.model.rotations import about_x, about_z
+from trunnion.records import dataclass
 
 #: Angles and lengths that differ by less are the same: they are printed in thousandths.
 SAME: Final = 2e-3

@@ -8,11 +8,11 @@ Units: degrees, mm.
 import re
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import Clamping, number
+from trunnion.records import dataclass
 
 #: How the comments begin.
 TURNED_NOTICE: Final = "PART TURNED"

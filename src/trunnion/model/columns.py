@@ -1,12 +1,12 @@
 """Columns of a run in compact form: values that change seldom, and whole numbers that increase evenly."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Ints, distinct
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

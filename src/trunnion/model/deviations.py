@@ -5,11 +5,10 @@ nothing else: verification works out by itself which of them it accepts
 (``trunnion.verification.deviations.declared_deviations``).
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

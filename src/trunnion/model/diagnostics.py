@@ -1,9 +1,8 @@
 """What readers find odd in a program."""
 
-from dataclasses import dataclass
-
 from trunnion.errors import Severity
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,8 @@
 """Modes that a program says, which another may have left otherwise."""
 
-from dataclasses import dataclass
 from typing import Final
+
+from trunnion.records import dataclass
 
 #: The mode that says where cycles end, which counts for a cycle alone.
 END_OF_CYCLES: Final = "end of cycles"

@@ -6,7 +6,7 @@ Units:  mm. Zeros shift the frame, and never turn it.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -17,6 +17,7 @@ from trunnion.machines.machine import Vector
 from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS
 from trunnion.model.run import Run
 from trunnion.model.run_setups import RunSetups
+from trunnion.records import dataclass
 
 _WORDS: Final = int(POSITION_WORDS | ROTARY_WORDS)
 

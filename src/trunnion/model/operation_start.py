@@ -1,6 +1,6 @@
 """Where an operation begins in a program, which its writer knows: what ends the one before it stands above."""
 
-from dataclasses import dataclass
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,6 @@ Units: mm and degrees as the machine shows them, rev/min; times in microseconds 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import PurePath
 from typing import Final
@@ -12,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.records import dataclass
 
 #: A time that was not stated.
 NO_TIME: Final = -1

@@ -1,12 +1,12 @@
 """Columns of a run that have no row for each motion: modal values by their changes, and surface normals."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints, make_read_only
 from trunnion.model.columns import StepColumn
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,11 +4,11 @@ Units:  mm, degrees, unit vectors.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Floats, make_read_only
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

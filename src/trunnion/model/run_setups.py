@@ -4,7 +4,6 @@ Only where tools have lengths, or work offsets have zeros, of their own: most ru
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from trunnion.arrays import Ints, distinct
 from trunnion.machines import Machine
 from trunnion.model.columns import StepColumn
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,8 +1,9 @@
 """What the spindle does in a hole besides turning: threads, oriented and stopped bores."""
 
 import math
-from dataclasses import dataclass
 from enum import StrEnum
+
+from trunnion.records import dataclass
 
 
 class SpindleTask(StrEnum):

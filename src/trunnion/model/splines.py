@@ -4,12 +4,12 @@ Lengths are in mm, in the coordinates of the points.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints, make_read_only
+from trunnion.records import dataclass
 
 
 class Spline(NamedTuple):

@@ -10,7 +10,6 @@ is a set of directions: a retract of Z leaves one, and in a tilted plane X and Y
 directions of the coordinates that it names, in the axes in which it names them.
 """
 
-from dataclasses import dataclass
 from typing import Final
 from weakref import WeakKeyDictionary
 
@@ -22,6 +21,7 @@ from trunnion.model.machine_slides import at_machine
 from trunnion.model.run import NO_OFFSET, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 from trunnion.model.unknown_setups import stated_rows
+from trunnion.records import dataclass
 
 #: Smaller rotary motion, degrees, is none; coordinates that differ by less, mm, are the same.
 _STILL: Final = 1e-3

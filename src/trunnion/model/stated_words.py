@@ -1,8 +1,7 @@
 """Words and variables whose meaning a program does not say: somebody has stated it, and nobody checks it."""
 
-from dataclasses import dataclass
-
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

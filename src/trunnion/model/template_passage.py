@@ -1,8 +1,7 @@
 """Where in a program the text of a template stands that is not Trunnion's own, which its writer knows."""
 
-from dataclasses import dataclass
-
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

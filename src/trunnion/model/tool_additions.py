@@ -9,7 +9,7 @@ along the tool axis. Machine positions stay where they are.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run, RunEvent
+from trunnion.records import dataclass
 
 #: Words that add to the length along the tool axis.
 LENGTHS: Final = frozenset({"DL", "TOFFL", "TOFFLR", "G43.2 Z"})

@@ -17,7 +17,6 @@ into eight pieces with bounds of their own, and these again.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -27,6 +26,7 @@ from trunnion.jit import kernel
 from trunnion.machines import KinematicParameters, Machine, inverse, kinematic_parameters
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.subdivision import slerp
+from trunnion.records import dataclass
 
 #: Rotary axes that turn by less stand, degrees.
 STANDS: Final = 1e-9

@@ -1,11 +1,12 @@
 """Options, and what was given of them."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 from typing import Any, Final
 
 from trunnion.options.kinds import FileOut, Kind, Setting, Switch, Text
+from trunnion.records import dataclass
 
 
 class Many(Enum):

@@ -5,7 +5,7 @@ the radius.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 from trunnion.controls.vocabulary import ENTRY_NOTICE, RADIUS_NUMBER_WORD, RADIUS_REGISTER_SETTING
@@ -15,6 +15,7 @@ from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CutterComp
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
+from trunnion.records import dataclass
 
 #: The setting for what a tool call adds to the radius, on controls that have a word for it.
 _ADDED: str = "delta_radius"

@@ -1,7 +1,7 @@
 """Texts before each motion of a kind, and the words of motions, cycles and coolants that functions have changed."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from io import BytesIO
 from typing import Final
@@ -22,6 +22,7 @@ from trunnion.output.printed_planes import with_printed_planes
 from trunnion.output.program import Program
 from trunnion.output.template_printing import TemplatePrinting
 from trunnion.planning.holes.cycles import HoleCycleError, cycle_from_event
+from trunnion.records import dataclass
 
 _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "linear", Kind.ARC: "arc"}
 

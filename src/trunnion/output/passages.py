@@ -5,7 +5,6 @@ Out:    for each motion that ends an operation, the way to the next one; heights
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import accumulate, pairwise
 from typing import Final
@@ -24,6 +23,7 @@ from trunnion.output.coordinates.extents import highest_point
 from trunnion.output.coordinates.rotary_angles import rotary_counts
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
+from trunnion.records import dataclass
 
 #: Planes whose numbers differ by less are one.
 _SAME_PLANE: Final = 1e-9

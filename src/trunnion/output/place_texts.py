@@ -6,7 +6,7 @@ Out:    the program with raw text in these places, which is tried as that of INS
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -40,6 +40,7 @@ from trunnion.output.program import Program
 from trunnion.output.template_printing import TemplatePrinting
 from trunnion.output.template_values import TemplateValues, plain_text
 from trunnion.output.tool_calls import LoadedTool
+from trunnion.records import dataclass
 
 _PLACES: Final = tuple(name for place in OUTPUT_PLACES if place.within for name in place.templates)
 

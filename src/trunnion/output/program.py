@@ -1,7 +1,7 @@
 """The input of a program: machine, control, planned motions and the settings of the run."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import NamedTuple, TypeAlias
 
 from trunnion.controls.definition import Control
@@ -12,6 +12,7 @@ from trunnion.machines import Machine
 from trunnion.model.machining_method import machining_method
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Operation
+from trunnion.records import dataclass
 from trunnion.transliteration import spelled
 
 

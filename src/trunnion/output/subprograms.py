@@ -2,12 +2,12 @@
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import BinaryIO, Final
 
 from trunnion.controls.definition import SubprogramNaming
 from trunnion.errors import InputError, argument_problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.transliteration import spelled
 
 #: Bytes of a file that are reserved for the end of an operation.

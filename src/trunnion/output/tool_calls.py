@@ -1,6 +1,5 @@
 """How a program calls its tools, and their lengths."""
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
@@ -9,6 +8,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
 from trunnion.model.toolpath import LoadTool, Operation, Tool
 from trunnion.output.program import Program
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

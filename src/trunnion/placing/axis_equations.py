@@ -6,7 +6,7 @@ Out:    for each sample and slide k a normal a and an offset o, so that the slid
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from trunnion.arrays import Floats, Floats2, Floats3, Ints, distinct
 from trunnion.jit import kernel
 from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.machines.inverse import solve_slides_cos_sin
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

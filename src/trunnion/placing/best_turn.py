@@ -5,7 +5,7 @@ path of its own, whose turns are judged as those of any other.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Final
 
 import numpy as np
@@ -19,6 +19,7 @@ from trunnion.placing.least_cost import least_cost
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath
+from trunnion.records import dataclass
 
 #: Turns whose margins differ by less are alike: of them the least one is taken, mm.
 _ALIKE: Final = 1e-6

@@ -7,7 +7,7 @@ Neighbouring samples have nearly the same normals. Blocks of them are bounded by
 off it, and their extremes at one place; only blocks whose bound is beyond what has been found are looked into.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Final
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Floats, Floats2, Floats3, Ints2
 from trunnion.jit import kernel
 from trunnion.placing.axis_equations import AxisEquations
+from trunnion.records import dataclass
 
 #: Samples of a block.
 _BLOCK: Final = 64

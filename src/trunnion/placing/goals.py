@@ -9,7 +9,6 @@ Slides are linear in the workpiece zero, so their steps from row to row are, and
 are convex. Accelerations are not in them, but in ``planned_seconds``.
 """
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
@@ -20,6 +19,7 @@ from trunnion.jit import kernel
 from trunnion.machines import Machine
 from trunnion.placing.axis_equations import axis_equations
 from trunnion.placing.path_rows import PathRows
+from trunnion.records import dataclass
 from trunnion.timing import CORNER_TOLERANCE, AxisDynamics, Path, piece_seconds
 
 

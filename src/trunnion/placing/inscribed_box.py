@@ -5,7 +5,6 @@ the box. The volume is made largest as the sum of the logarithms of its edges, e
 program.
 """
 
-from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
@@ -14,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.placing.largest_margin import linear_program
 from trunnion.placing.travel_limits import FARTHEST, CutSet
+from trunnion.records import dataclass
 
 #: Ratio of the edges at which the logarithm has tangents, and their number: down to a millionth of the extent.
 _RATIO: Final = 1.15

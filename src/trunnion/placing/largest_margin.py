@@ -6,7 +6,6 @@ for no margin.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.placing.travel_limits import FARTHEST, TABLE, Cut, CutSet, Reached
+from trunnion.records import dataclass
 
 #: More margin is not sought, mm: a slide with one limit alone would lead the part away without end.
 ENOUGH: Final = 2000.0

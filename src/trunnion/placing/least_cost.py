@@ -4,7 +4,6 @@ Each place that is tried gives a plane below the cost; the next one to be tried 
 the half-spaces known so far. Its height is a bound: no place costs less.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ from trunnion.arrays import Floats
 from trunnion.placing.goals import PlaceCost
 from trunnion.placing.largest_margin import EXACT, linear_program
 from trunnion.placing.travel_limits import FARTHEST, TABLE, CutSet
+from trunnion.records import dataclass
 
 #: The search ends when no place can cost less by more than this share.
 _SHARE: Final = 1e-3

@@ -1,12 +1,13 @@
 """The rows of a path as placing takes them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.model.arc_extremes import ArcPaths
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

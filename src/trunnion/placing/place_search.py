@@ -1,7 +1,7 @@
 """The search for the places of a part on a machine, and the placement that it finds."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -31,6 +31,7 @@ from trunnion.placing.travel_use import (
     vector,
 )
 from trunnion.placing.turns import TurnedPath, choices_of
+from trunnion.records import dataclass
 
 PathsAt: TypeAlias = Callable[[float], list[TurnedPath]]
 

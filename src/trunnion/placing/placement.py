@@ -1,7 +1,7 @@
 """What is found about the place of a part."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from operator import attrgetter
 from typing import Annotated, ClassVar
 
@@ -15,6 +15,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
 from trunnion.placing.table_limits import ClampingArea
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 

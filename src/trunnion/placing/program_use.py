@@ -1,6 +1,5 @@
 """Which rotary positions the program of a placed part takes, where they are others than those of its place."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -10,6 +9,7 @@ from trunnion.model.arc_extremes import RunArcs
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.placing.placement import Placement, RotaryUse
+from trunnion.records import dataclass
 
 #: Rotary positions that are nearer to those of the place are the same, degrees: programs are rounded.
 _SAME_DEG: Final = 0.01

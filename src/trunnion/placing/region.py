@@ -5,7 +5,6 @@ turns the part about, the true region is round, with as many faces as the path h
 it, within the tolerance. ``Region.margin`` is exact.
 """
 
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, Final
 
@@ -16,6 +15,7 @@ from trunnion.extras import import_extra
 from trunnion.placing.inscribed_box import Box, inscribed_box
 from trunnion.placing.largest_margin import BestPlace, innermost
 from trunnion.placing.travel_limits import FARTHEST, CutSet
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 #: How far corners may be outside, mm.

@@ -8,7 +8,6 @@ position, as the planner has it.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -18,6 +17,7 @@ from trunnion.jit import inner, kernel
 from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.machines.inverse import POLE, UNREACHABLE, branch_angles, solve_tilt
 from trunnion.placing.path_rows import PathRows
+from trunnion.records import dataclass
 
 #: A value beyond a limit by less prints as the limit, degrees.
 _ROUNDING: Final = 1e-5

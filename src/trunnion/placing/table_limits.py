@@ -6,7 +6,6 @@ Frames: the machine's, all axes at zero.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Final
 
@@ -16,6 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.machines.machine import Mount, Vector
 from trunnion.placing.turning import hull_points, is_upright
+from trunnion.records import dataclass
 from trunnion.results import EXACT, NOT_DATA, Figure
 from trunnion.simulation.stock.solids import StockShape
 

@@ -4,7 +4,7 @@ A cut is one of them: ``normal . z <= bound`` says that a slide stays on this si
 stands on the table inside of its edge.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 import numpy as np
@@ -13,6 +13,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine
 from trunnion.placing.extremes import Extremes
 from trunnion.placing.table_limits import EDGES, KEPT, EdgeLimit, TableLimits
+from trunnion.records import dataclass
 
 #: How far a workpiece zero may be from the machine's, mm.
 FARTHEST: Final = 1e5

@@ -1,7 +1,7 @@
 """A path at turns of the part about Z, for one choice of branches."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from functools import cached_property
 from typing import Final
@@ -27,6 +27,7 @@ from trunnion.placing.turning import (
     turned_head,
     turning_of,
 )
+from trunnion.records import dataclass
 
 #: An outline that is larger by less is as large as the table, mm.
 _ROUNDING: Final = 1e-9

@@ -1,6 +1,6 @@
 """Second stage: the axis positions of one operation, its rewinds, and what deviates from the CL file near the pole."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from trunnion.errors import Problem, Severity
 from trunnion.model.deviations import Deviations
@@ -23,6 +23,7 @@ from trunnion.planning.retracts.rewind import (
     widen_extremes,
 )
 from trunnion.planning.speed.feed_limits import limit_feeds
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

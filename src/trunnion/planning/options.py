@@ -5,7 +5,7 @@ Both are values only: nothing here knows a control by name, and nothing reads a 
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from typing import Final, TypeAlias
 
@@ -15,6 +15,7 @@ from trunnion.model.motion import MachiningMode, PoleStrategy
 from trunnion.model.splines import Spline
 from trunnion.planning.holes.cycles import Cycle, SpindleState
 from trunnion.planning.retracts.clearance import Clearance
+from trunnion.records import dataclass
 
 #: Tolerance of the tool axis between CL points without TCP, degrees, unless the user sets another.
 AXIS_TOLERANCE_WITHOUT_TCP: Final = 0.05

@@ -4,7 +4,7 @@ Units: mm, seconds, mm/min, mm/rev, rev/min. Frames: each function says which.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 import numpy as np
@@ -16,6 +16,7 @@ from trunnion.model.toolpath import CycleOff, CycleOn, Dwell, Event, Kind, Opera
 from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_feed, cycle_from_event
 from trunnion.planning.holes.hole_ends import hole_ends
 from trunnion.planning.holes.operations import axis_change_rows, hole_rows, normalize_cycles
+from trunnion.records import dataclass
 
 #: Tool axes are the same if no component differs by more than this; CL files print seven decimals or more.
 _SAME_AXIS: Final = 1e-7

@@ -10,7 +10,7 @@ they change nothing but a rapid above all cuts, from where the skipped rows end 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ from trunnion.errors import Problem
 from trunnion.messages import Wording
 from trunnion.model.toolpath import BlockSkip, CutterComp, Event, Kind, Moves, Operation, Phase
 from trunnion.planning.linearization.row_insertion import insert_rows
+from trunnion.records import dataclass
 
 #: Smaller motion is none, mm and as the length of a vector.
 _STILL: Final = 1e-3

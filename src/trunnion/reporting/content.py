@@ -9,7 +9,7 @@ Text from outside is cleaned here of characters that no file can hold.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, ClassVar, Final
@@ -23,6 +23,7 @@ from trunnion.model.arc_extremes import RunArcs
 from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
 from trunnion.reporting.recorded_content import RecordedContent, recorded_content
 from trunnion.reporting.remarks import RemarkGroup, remark_groups

@@ -9,7 +9,6 @@ tells. Teeth and peaks are cut off where they would leave it, and then drawn in 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from html import escape
 from typing import Final
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.geometry.fitting import CurveFit
+from trunnion.records import dataclass
 from trunnion.reporting.page_words import label
 
 _WIDTH: Final = 1040.0

@@ -5,11 +5,12 @@ each column is lowest and highest. They are real rows, so every point drawn has 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.records import dataclass
 from trunnion.reporting.plot_series import PlotSeries, SingleFloats
 
 #: Programs with no more points than this are drawn as they are, and so are stretches of longer ones.

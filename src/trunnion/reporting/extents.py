@@ -4,7 +4,6 @@ Units:  mm and degrees.
 """
 
 import math
-from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated
@@ -16,6 +15,7 @@ from trunnion.machines import Axis, Machine, slide_positions
 from trunnion.model.arc_extremes import Reach, RunArcs
 from trunnion.model.programmed_words import names_no_axis
 from trunnion.model.run import ProgrammedWord, Run
+from trunnion.records import dataclass
 from trunnion.reporting.text import clean
 from trunnion.results import NOT_DATA, BlockNumber, Figure
 from trunnion.verification.kinematics.unknown_approaches import unknown_approaches

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from trunnion.reporting.column_encoding import encode_column
 from trunnion.reporting.detail_levels import BUCKETS_IN_VIEW, MAX_DIRECT_POINTS, DetailLevel
 from trunnion.reporting.html_text import escape
-from trunnion.reporting.page_words import label, told, word
+from trunnion.reporting.page_words import label, said_on_page, told
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries
 
 #: Tool changes marked in the plots; more of them would be a grey wall.
@@ -36,12 +36,12 @@ def plot_section(series: PlotSeries, levels: Sequence[DetailLevel]) -> str:
     floating = any(curve.floating for curve in curves)
     limits = label("red_lines") if any(curve.limits for curve in curves) else ""
     over = label("plots_over_time") if series.timed else label("plots_over_motions")
-    title = word(series.title) if series.title else over
+    title = said_on_page(series.title) if series.title else over
     whole = label("whole_recording") if series.name else label("whole_program")
     notes = " ".join(filter(None, (label("how_to_zoom", whole=whole), limits, label("dotted") if floating else "")))
     return f"""<section id="{own}plots" class="plots">
 <h2>{escape(title)}</h2>
-<p class="note">{escape(notes)} {escape(word(series.note)) if series.note else ""}</p>
+<p class="note">{escape(notes)} {escape(said_on_page(series.note)) if series.note else ""}</p>
 <div id="{own}bar" class="bar">
 <div id="{own}point" class="point"><span class="hint">{escape(label("loading"))}</span></div>
 <div class="buttons"><button type=button data-act="left" title="{escape(label("earlier"))}">◀</button>
@@ -78,7 +78,10 @@ def _specification(series: PlotSeries, levels: Sequence[DetailLevel]) -> dict[st
         "lines": list(series.lines),
         "files": list(series.files) if "file" in series.lines else [],
         "plots": [_plot(plot) for plot in series.plots],
-        "marks": [[float(time[row]), name] for row, name in series.tool_changes[:MAX_TOOL_MARKS]],
+        "marks": [
+            [float(time[row]), name if isinstance(name, str) else told(name)]
+            for row, name in series.tool_changes[:MAX_TOOL_MARKS]
+        ],
         "markWord": "" if series.name else "T",
         "first": "" if series.name else label("before_first_motion"),
         "words": {name: label(f"plot_{name}") for name in _PLOT_WORDS},
@@ -93,14 +96,14 @@ def script_json(value: object) -> str:
 
 def _plot(plot: Plot) -> dict[str, object]:
     lines = [_curve(curve) for curve in plot.curves]
-    note = word(plot.note) if plot.note else ""
-    return {"title": word(plot.title), "unit": plot.unit, "step": plot.step, "note": note, "lines": lines}
+    note = said_on_page(plot.note) if plot.note else ""
+    return {"title": said_on_page(plot.title), "unit": plot.unit, "step": plot.step, "note": note, "lines": lines}
 
 
 def _curve(curve: Curve) -> dict[str, object]:
-    name = curve.limit_name if isinstance(curve.limit_name, str) else told(curve.limit_name)
-    limits = {"limits": list(curve.limits), "limitName": word(name) if name else "", "loose": curve.floating}
-    return {"column": curve.column, "name": word(curve.name), **limits}
+    name = said_on_page(curve.limit_name) if curve.limit_name else ""
+    limits = {"limits": list(curve.limits), "limitName": name, "loose": curve.floating}
+    return {"column": curve.column, "name": said_on_page(curve.name), **limits}
 
 
 def column_elements(group: str, series: PlotSeries) -> Iterator[bytes]:

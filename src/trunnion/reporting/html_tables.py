@@ -266,7 +266,7 @@ def _axis(axis: AxisExtent) -> str:
         limits = escape(label("travel", length=format_number(axis.high_limit - axis.low_limit)))
     state = "bad" if axis.margin is not None and axis.margin < 0.0 else ""
     margin = "" if axis.margin is None else f"{axis.margin:.3f}".replace("-", "−")
-    name = f"{escape(axis.name)} <small>{axis.unit}</small>"
+    name = f"{escape(word(axis.name))} <small>{axis.unit}</small>"
     return (
         f'<tr class="{state}"><th scope=row>{name}</th>{_extremes(axis.extremes)}'
         f"<td class=n>{limits}</td><td class=n><strong>{margin}</strong></td></tr>"

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from trunnion.reporting.page_words import label, language_tag, verdict_word
+from trunnion.reporting.page_words import label, language_tag, verdict_word, word
 from trunnion.verification import Verdict
 
 #: A negative number with the letter before it, and where a cell of a row begins.
@@ -125,7 +125,7 @@ def format_limit(value: float | None) -> str:
 def with_unit(value: float | None, unit: str) -> str:
     """Return a number and its unit; nothing for None."""
     digits = format_number(value)
-    return f"{digits} <small>{escape('°' if unit == 'deg' else unit)}</small>" if digits and unit else digits
+    return f"{digits} <small>{escape('°' if unit == 'deg' else word(unit))}</small>" if digits and unit else digits
 
 
 def capitalised(title: str) -> str:

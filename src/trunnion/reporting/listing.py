@@ -8,7 +8,6 @@ Rows are written a chunk at a time, so that a program of any length takes little
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -17,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Bytes, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.reporting.extents import at_workpiece_zero
 from trunnion.reporting.known_tips import KnownTips
 from trunnion.reporting.text import clean

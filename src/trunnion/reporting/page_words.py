@@ -65,6 +65,11 @@ def word(text: str) -> str:
     return told(word_said(text))
 
 
+def said_on_page(text: str | Wording) -> str:
+    """Return a wording, or a word of the library."""
+    return word(text) if isinstance(text, str) else told(text)
+
+
 def verdict_word(verdict: Verdict) -> str:
     """Return a verdict as it is read."""
     return told(Wording("", verdict.value))

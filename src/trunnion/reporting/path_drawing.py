@@ -5,7 +5,6 @@ Out:    SVG of a bounded size, however long the program: lines that fall on each
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -14,6 +13,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.reporting.html_text import escape
 from trunnion.reporting.known_tips import KnownTips
 from trunnion.reporting.page_words import label

@@ -8,7 +8,6 @@ neighbours are left out where a path has more than can be drawn.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,6 +18,7 @@ from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.planning.holes.cycles import HoleCycleError, cycle_from_event
 from trunnion.planning.holes.operations import hole_rows
 from trunnion.planning.linearization.arc_chords import lines_for_arcs
+from trunnion.records import dataclass
 from trunnion.reporting.text import clean
 
 #: Points that a page can hold and a browser can turn.

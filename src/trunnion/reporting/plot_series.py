@@ -7,7 +7,6 @@ Units:  seconds, mm, degrees, mm/min, deg/min.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from trunnion.arrays import Floats, Lines
 from trunnion.machines import Axis
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.reporting.extents import is_zero_known, travel_rows
 from trunnion.reporting.text import clean
 from trunnion.verification.results import Verification, durations
@@ -31,7 +31,7 @@ class Curve:
     """
 
     column: str
-    name: str
+    name: str | Wording
     limits: tuple[float, ...] = ()
     limit_name: str | Wording = "limits"
     floating: bool = False
@@ -41,7 +41,7 @@ class Curve:
 class Plot:
     """Curves in one plot; with ``step`` a value holds for the whole motion and is drawn as a step."""
 
-    title: str
+    title: str | Wording
     unit: str
     curves: tuple[Curve, ...]
     step: bool = False
@@ -66,11 +66,11 @@ class PlotSeries:
     lines: dict[str, Lines]
     plots: tuple[Plot, ...]
     files: tuple[str, ...]
-    tool_changes: tuple[tuple[int, str], ...]
+    tool_changes: tuple[tuple[int, str | Wording], ...]
     timed: bool
     name: str = ""
-    title: str = ""
-    note: str = ""
+    title: str | Wording = ""
+    note: str | Wording = ""
 
     def __len__(self) -> int:
         return len(self.seconds)

@@ -7,10 +7,10 @@ Out:    the text of the picture: to the left the sphere of tool axes as seen alo
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from html import escape
 from typing import Final
 
+from trunnion.records import dataclass
 from trunnion.reporting.page_words import label
 
 _WIDTH: Final = 1040.0

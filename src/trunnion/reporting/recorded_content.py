@@ -7,7 +7,6 @@ Units:  seconds, mm, degrees, rev/min.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
 from typing import Annotated, Final
@@ -16,7 +15,9 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints, Lines
 from trunnion.machines import Axis
+from trunnion.messages import Wording
 from trunnion.model.recording import SPINDLE, TIP, Mark
+from trunnion.records import dataclass
 from trunnion.reporting.extents import AxisExtent, extent_of, extremes_of, is_zero_known
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, finite_values
 from trunnion.reporting.text import clean
@@ -25,13 +26,11 @@ from trunnion.verification.recorded import RecordedComparison
 from trunnion.verification.results import Verification
 
 #: What is marked where the connection was broken, and where it was there again.
-_GAP, _AFTER_GAP = "gap", "connected again"
+_GAP: Final = Wording("report", "recorded_gap")
+_AFTER_GAP: Final = Wording("report", "recorded_again")
 
 #: Recorded columns beside those of the axes, NAME_velocity, and their units of time.
 RATES: Final = {"velocity": "s", "acceleration": "s²"}
-
-_NOTE: Final = """Between two positions the machine was not looked at. Dotted upright lines are where operations
-begin, and where the connection was broken."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +88,7 @@ def _series(verification: Verification, found: RecordedComparison, elapsed: Floa
     rates = dict(_rates(verification, found))
     needed = [*(column for _, column in curves.values()), *(column for _, column in rates.values())]
     shown = np.flatnonzero(np.isfinite(np.column_stack(needed)).all(axis=1))
-    marks = []
+    marks = list[tuple[int, str | Wording]]()
     for gap in np.flatnonzero(recording.marked(Mark.GAP)).tolist():
         after = int(np.searchsorted(shown, gap))
         marks += [(max(after - 1, 0), _GAP), *([(after, _AFTER_GAP)] if after < len(shown) else [])]
@@ -115,8 +114,8 @@ def _series(verification: Verification, found: RecordedComparison, elapsed: Floa
         tool_changes=tuple(marks),
         timed=True,
         name="recorded",
-        title=f"As recorded in {clean(recording.name)}: axes and spindle over time",
-        note=_NOTE,
+        title=Wording("report", "as_recorded", file=clean(recording.name)),
+        note=Wording("report", "recorded_note"),
     )
 
 
@@ -176,7 +175,8 @@ def _rates(verification: Verification, found: RecordedComparison) -> Iterator[tu
             column = columns.get(f"{machine.names[k]}_{what}".casefold())
             if column is not None and np.isfinite(column).any():
                 key = f"{what}{k}"
-                yield key, (Plot(f"{name} {what}", f"{unit}/{per}", (Curve(key, f"{name} {what}"),)), column)
+                said = Wording("report", f"rate_{what}", axis=name)
+                yield key, (Plot(said, f"{unit}/{per}", (Curve(key, said),)), column)
 
 
 def _plots(

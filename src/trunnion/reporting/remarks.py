@@ -7,12 +7,12 @@ Text from outside is cleaned here of characters that no file can hold.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 from trunnion.errors import Problem
 from trunnion.messages import LIBRARY, Part, Wording, Words, phrase
+from trunnion.records import dataclass
 from trunnion.reporting.text import clean
 from trunnion.results import NOT_DATA, OptionalLine, OptionalText, to_data
 

@@ -5,9 +5,9 @@ Out:    UTF-8 HTML that needs nothing else, with all text from outside escaped.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from trunnion.messages import LIBRARY, Words
+from trunnion.records import dataclass
 from trunnion.reporting.html_page import plot_page
 from trunnion.reporting.html_text import escape, format_number, note_lines, said_table
 from trunnion.reporting.page_words import in_language, label

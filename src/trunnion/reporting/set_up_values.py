@@ -6,7 +6,6 @@ Units:  mm.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from trunnion.machines.machine import Vector
 from trunnion.model.run import NO_OFFSET, Run
 from trunnion.model.run_setups import Setup
+from trunnion.records import dataclass
 from trunnion.reporting.html_text import format_fixed
 from trunnion.reporting.page_words import label
 from trunnion.reporting.text import clean

@@ -9,7 +9,7 @@ Text from outside is cleaned here of characters that no file can hold.
 
 from bisect import bisect_left
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 from typing import Annotated, ClassVar, Final
 
@@ -19,6 +19,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Axis
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, block_reference
 from trunnion.reporting.text import clean

@@ -4,9 +4,9 @@ Units:  mm, mm², mm³, seconds.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from trunnion.messages import Wording, Words
+from trunnion.records import dataclass
 from trunnion.simulation.setup_findings import NearMiss, SimulatedOperation, SimulationFinding
 from trunnion.verification import Verdict
 
@@ -52,7 +52,7 @@ class SimulationContent:
     facts    names and values of what it is about
     remarks  returns what was taken for granted or broken off, each thing once with its count, in words
     not_checked  what was not judged, and why
-    stated   what somebody has stated that it stands on
+    grounds  what it stands on besides the programs
     data     all of it, as the command prints it as data
     """
 
@@ -66,7 +66,7 @@ class SimulationContent:
     remarks: Callable[[Words], tuple[str, ...]]
     data: Mapping[str, object]
     not_checked: tuple[Wording, ...] = ()
-    stated: tuple[Wording, ...] = ()
+    grounds: tuple[Wording, ...] = ()
 
     @property
     def passed(self) -> bool:

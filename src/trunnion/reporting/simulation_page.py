@@ -92,7 +92,7 @@ def _said(content: SimulationContent) -> str:
         found = Wording("report", "findings_must_not_run", count=len(content.findings))
     else:
         found = Wording("report", "see_below_must_not_run")
-    return joined((found, *content.not_checked, *content.stated), page_words())
+    return joined((found, *content.not_checked, *content.grounds), page_words())
 
 
 def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:

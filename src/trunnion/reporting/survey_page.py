@@ -5,9 +5,9 @@ Out:    UTF-8. All text from outside is escaped.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 
+from trunnion.records import dataclass
 from trunnion.reporting.html_text import escape, page_head, source_hash
 from trunnion.reporting.page_words import on_survey
 from trunnion.reporting.text import clean

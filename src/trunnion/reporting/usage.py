@@ -5,12 +5,12 @@ Units:  seconds, rev/min, mm/min.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.reporting.extents import BlockReference, block_reference
 from trunnion.reporting.text import clean
 from trunnion.results import OptionalText

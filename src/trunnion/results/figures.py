@@ -1,9 +1,11 @@
 """How the fields and properties of a record stand in data."""
 
 from collections.abc import Callable, Hashable, Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from functools import cache
 from typing import Annotated, Any, Final, TypeVar, cast, get_args, get_origin
+
+from trunnion.records import dataclass
 
 #: Annotation of a field that is not in data; those that begin with an underscore are not either.
 NOT_DATA: Final = object()

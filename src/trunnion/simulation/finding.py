@@ -1,8 +1,9 @@
 """What a simulation and a check of collisions find: one record for both."""
 
 import math
-from dataclasses import dataclass
 from enum import StrEnum
+
+from trunnion.records import dataclass
 
 
 class What(StrEnum):

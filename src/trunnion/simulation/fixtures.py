@@ -10,7 +10,6 @@ Out:    convex meshes: one for each solid piece. The grammar is in ``docs/simula
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,6 +18,7 @@ from trunnion.arrays import Floats
 from trunnion.definitions.messages import meant_word
 from trunnion.errors import InputError, argument_problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh
 from trunnion.simulation.stock.solids import stock_shape
 

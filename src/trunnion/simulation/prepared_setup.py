@@ -1,6 +1,6 @@
 """A set-up that has been read, and what of it is cut."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
@@ -14,6 +14,7 @@ from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.simulator import SimulatedProgram
 from trunnion.simulation.stock.turning import Pose

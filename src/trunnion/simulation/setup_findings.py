@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Annotated, Any, Final, TypeVar
 
 import numpy as np
@@ -11,6 +11,7 @@ from trunnion.arrays import Floats, Lines
 from trunnion.messages import Wording, phrase, word_said
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, BlockNumber, CubicMillimetres, Figure, Millimetres, OptionalLine, OptionalText
 from trunnion.simulation.contact_times import reached
 from trunnion.simulation.finding import Finding, What

@@ -7,7 +7,7 @@ Units:  mm, seconds, workpiece frame.
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.messages import Wording
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.simulation.cutting.measurements import Chunk, RowsCut, rows_cut
 from trunnion.simulation.cutting.removal import CutRows, Cutter, measure
 from trunnion.simulation.cutting.shares import JoinedShares, Share, ShareWriter, tiles_of

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import chain
 from typing import Protocol
 
 from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.collisions import Body, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.cutting.shares import JoinedShares, Share
 from trunnion.simulation.finding import Finding

@@ -10,7 +10,7 @@ beside the programmed path (``trunnion.compensation``).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 from trunnion.arrays import Ints
@@ -22,6 +22,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import LENGTHS, SIZES, ToolAddition, tool_additions, with_added_lengths
+from trunnion.records import dataclass
 from trunnion.simulation.tools.profile import ToolShape, cutting_width
 
 #: Words that add to the radius, which counts only where the control compensates it.

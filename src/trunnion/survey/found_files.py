@@ -7,7 +7,6 @@ Out:    ``FoundFile`` of each file in it and below.
 import os
 import stat
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import Final
@@ -18,6 +17,7 @@ from trunnion.cl.sources import cl_sources
 from trunnion.errors import InputError
 from trunnion.messages import Wording, foreign, word_said
 from trunnion.readers.program.kinds import recognize
+from trunnion.records import dataclass
 
 #: Larger files are not tried, bytes: a program of so many has some five million blocks.
 MOST_BYTES: Final = 200_000_000

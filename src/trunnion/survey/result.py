@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from typing import Annotated, ClassVar, Final
@@ -10,6 +9,7 @@ from typing import Annotated, ClassVar, Final
 from trunnion.batch.worker_task import Outcome, Status
 from trunnion.errors import Problem, Severity
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import Figure, OptionalText
 from trunnion.survey.found_files import FileKind, FoundFile
 from trunnion.survey.trying import KEYS, SETTINGS, STEP, Step

@@ -4,16 +4,16 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Final, TypedDict, Unpack
+from typing import Final, Unpack
 
 from trunnion.batch.local import LocalWorkers
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES
 from trunnion.files import check_outputs
-from trunnion.jobs.arguments import taken
+from trunnion.jobs.arguments import ReadingArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, check_path
-from trunnion.jobs.inputs.reading import FilePath, as_machine
+from trunnion.jobs.inputs.reading import FilePath, as_machine, stated_reading
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine, shipped_machines
 from trunnion.messages import Wording
@@ -41,7 +41,7 @@ STEPS: Final[Mapping[FileKind, tuple[Step, ...]]] = {
 }
 
 
-class SurveyArguments(TypedDict, total=False):
+class SurveyArguments(ReadingArguments, total=False):
     """Arguments of ``take_survey``."""
 
     machine: Sequence[FilePath]
@@ -69,6 +69,12 @@ def take_survey(
         Receives the progress, in files.
     machine
         Names of shipped machines, or TOML files; by default one shipped machine for each control, and for programs all.
+    units
+        Length unit of the CL files, ``mm`` or ``inch``, whatever they state; by default each file's own, else mm.
+    dialect
+        What the CL files are written in; by default what is recognized.
+    strict
+        Unknown CL statements are errors, even if a machine's definition says what becomes of them.
     timeout
         Seconds that a file has on each machine; by default 60.
     workers
@@ -96,7 +102,9 @@ def take_survey(
     others = [] if machine else [name for name in shipped_machines() if name not in MACHINES]
     asked = [_absolute(name) for name in machine or [*MACHINES, *others]]
     seconds = TIMEOUT if timeout is None else timeout
-    team = _Team(tuple(zip(asked, map(as_machine, asked), strict=True)), len(others), steps)
+    reading = ReadingArguments(units=found["units"], dialect=found["dialect"], strict=found["strict"])
+    stated_reading({}, found["strict"], cl_units=found["units"], dialect=found["dialect"])  # which refuses wrong ones
+    team = _Team(tuple(zip(asked, map(as_machine, asked), strict=True)), len(others), steps, reading)
     count = max(1, workers or os.cpu_count() or 1)
     with (
         observer.progress("survey", count_files(root), "files") as advance,
@@ -126,9 +134,13 @@ class _Team:
     """
 
     def __init__(
-        self, loaded: Sequence[tuple[str, Machine]], others: int, steps: Mapping[FileKind, tuple[Step, ...]]
+        self,
+        loaded: Sequence[tuple[str, Machine]],
+        others: int,
+        steps: Mapping[FileKind, tuple[Step, ...]],
+        reading: ReadingArguments,
     ) -> None:
-        self._names, self._steps = [name for name, _ in loaded], steps
+        self._names, self._steps, self._reading = [name for name, _ in loaded], steps, reading
         self._languages = [_language(machine) for _, machine in loaded]
         self._definitions = [machine.control.text("extends", "") for _, machine in loaded]
         self._readers = {
@@ -189,7 +201,7 @@ class _Team:
                 if found.became is Became.REFUSED:
                     best.setdefault(self._languages[on], on)
             for on in best.values():
-                yield (number, on), Trial(file.name, file.path, self._names[on], steps)
+                yield (number, on), Trial(file.name, file.path, self._names[on], steps, self._reading)
 
     def keep(self, number: int, on: int, found: Trying) -> None:
         """Keep what became of a file on a machine: of two rounds the better."""
@@ -216,7 +228,7 @@ class _Team:
 
     def _trial(self, file: FoundFile, on: int) -> Trial:
         steps = tuple(each for each in self._steps[file.kind] if each is not Step.KEYS)
-        return Trial(file.name, file.path, self._names[on], steps)
+        return Trial(file.name, file.path, self._names[on], steps, self._reading)
 
     def _went_through(self, number: int) -> bool:
         # A program that is read and cannot be converted is read no better elsewhere.

@@ -7,7 +7,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from functools import cache
 from pathlib import Path, PurePosixPath
@@ -19,12 +19,14 @@ from trunnion.batch.worker_task import FILES, Action, Outcome, Status, Task
 from trunnion.batch.workers import hindered, hindrance
 from trunnion.controls import load_control
 from trunnion.errors import Severity, TrunnionError
+from trunnion.jobs.arguments import ReadingArguments
 from trunnion.jobs.describe.cl_files import describe_cl
 from trunnion.jobs.describe.reading_keys import Value, proposed_reading
 from trunnion.jobs.inputs.reading import as_machine
 from trunnion.machines import Machine
 from trunnion.options.words import PROOF_SETTINGS
 from trunnion.readers import reader_of, with_reading
+from trunnion.records import dataclass
 from trunnion.survey.found_files import MOST_BYTES, is_touchable
 from trunnion.survey.stand_ins import stand_ins
 
@@ -67,12 +69,14 @@ class Trial:
     steps    in their order; ``SETTINGS`` posts again where errors ask for settings, with stand-ins for them;
              ``KEYS`` reads a program again with the keys under which it reads best, if it fails without;
              ``VERIFY`` and ``CONVERT`` of a CL file are of the program that was posted
+    reading  how CL files are read
     """
 
     file: str
     path: Path
     machine: str
     steps: tuple[Step, ...]
+    reading: ReadingArguments = field(default_factory=ReadingArguments)
 
 
 @dataclass(slots=True)
@@ -161,7 +165,7 @@ def _limit_memory() -> None:
 def _info(subject: _Subject) -> Outcome:
     trial = subject.trial
     try:
-        describe_cl(trial.path)
+        describe_cl(trial.path, **trial.reading)
     except TrunnionError as error:
         if (why := hindrance(error)) is not None:
             return Outcome(Status.HINDERED, (hindered(trial.file, why),))
@@ -189,7 +193,11 @@ def _with_keys(subject: _Subject, outcome: Outcome) -> Outcome:
 
 def _post(subject: _Subject) -> Outcome:
     machine = subject.trial.machine
-    arguments: dict[str, Any] = {"machine": machine, "settings": dict(subject.settings)}
+    # ``strict`` would ask for all that a proof stands on as well; unknown statements were refused by ``INFO``.
+    reading = subject.trial.reading
+    stated = {"cl_units": reading.get("units"), "dialect": reading.get("dialect")}
+    settings = {**subject.settings, **{name: value for name, value in stated.items() if value is not None}}
+    arguments: dict[str, Any] = {"machine": machine, "settings": settings}
     outcome = _worked(subject, Action.POST, subject.cl, arguments, _NAME + _extension(machine))
     programs = {FILES + name: data for name, data in outcome.files.items()}
     if programs:
@@ -226,6 +234,7 @@ def _verified(subject: _Subject) -> Outcome:
     if subject.cl:
         proven = {name: value for name, value in subject.settings.items() if name in PROOF_SETTINGS}
         arguments |= {"cl": [subject.cl], "settings": proven}
+        arguments |= {name: value for name, value in subject.trial.reading.items() if name != "strict"}
         arguments |= {_FRAME: subject.settings[_FRAME]} if _FRAME in subject.settings else {}
     return _worked(subject, Action.VERIFY, subject.program, arguments, "")
 

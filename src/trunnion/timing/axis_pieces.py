@@ -10,7 +10,6 @@ The slides stand where the real tool length puts them: a run was read with one l
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -23,6 +22,7 @@ from trunnion.model.machine_slides import at_machine
 from trunnion.model.run import Run
 from trunnion.model.stated_tips import StatedTips, turns_without_tcp
 from trunnion.model.unknown_setups import stated_rows
+from trunnion.records import dataclass
 from trunnion.timing.row_interpolation import RowInterpolation
 
 #: Pieces of a program that is kept whole, as who keeps it says: some 2 GB of motion in time. A loop of ten lines may

@@ -4,12 +4,12 @@ Units: mm and degrees, seconds. What a definition does not state sets no limit a
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

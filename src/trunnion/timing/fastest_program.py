@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.extras import import_extra
+from trunnion.records import dataclass
 
 #: Degree of the square of the rate as a spline of the place.
 DEGREE: Final = 3

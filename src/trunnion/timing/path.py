@@ -4,12 +4,11 @@ Rows are added chunk after chunk. Where no row is cut, pieces are rows.
 Units: mm and degrees; mm/min and deg/min.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.timing.path_modes import corner_tolerances, exact_stop_rows
 from trunnion.timing.row_feeds import FeedRow
 

@@ -4,12 +4,12 @@ Without jerks speeds change evenly (``speed_kernel``); where a jerk is stated th
 Units: mm and degrees, seconds.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.records import dataclass
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.jerk_kernel import fill_stretches, lower_nodes
 from trunnion.timing.path import Path

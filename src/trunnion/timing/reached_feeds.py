@@ -5,7 +5,6 @@ Out:    seconds and the highest feed of each row.
 Units:  mm/min; where the tip rests, degrees/min of the rotary axis that turns farther. Seconds.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.model.feed_path import NO_ROTATION, FeedPath
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.timing.row_feeds import FeedRow, RowFeeds
 from trunnion.timing.run_timer import RunTimer
 

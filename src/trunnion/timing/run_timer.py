@@ -4,12 +4,11 @@ A row at feed takes its length at its feed, and a rapid what its slowest axis ne
 look ahead over corners. Dwells, tool changes and waits for the spindle belong to the row at whose end the axes wait.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.run import PositionChunk, Run
+from trunnion.records import dataclass
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.path import PathBuilder, steady
 from trunnion.timing.planner import piece_seconds, timed_pieces

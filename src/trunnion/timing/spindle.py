@@ -5,11 +5,11 @@ Units: seconds, rev/min; negative speeds are counter-clockwise (M4).
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

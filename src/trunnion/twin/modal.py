@@ -7,7 +7,7 @@ Out:    a ``BlockState`` for a row, or for an event between two rows.
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import PurePath
 from typing import Final
@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.timing import TimedRun
 from trunnion.twin.switches import SWITCHES, switched
 

@@ -8,13 +8,13 @@ Nothing here looks at a clock: the caller says what time it is.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.records import dataclass
 from trunnion.timing import TimedRun
 
 #: Ends of blocks in one call of ``advance``: where more would come, the program goes slower than was asked for.

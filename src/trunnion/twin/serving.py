@@ -3,13 +3,14 @@
 import asyncio
 import socket
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
 
+from trunnion.records import dataclass
 from trunnion.twin.mtconnect.adapter import MTConnectAdapter
 from trunnion.twin.mtconnect.agent import MTConnectAgent
 from trunnion.twin.opcua.outlet import OpcUaOutlet
 from trunnion.twin.opcua.server import Security, TwinServer
 from trunnion.twin.running import Twin
+from trunnion.verification.grounds import NO_GROUNDS, Grounds
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,14 +21,14 @@ class TwinAddresses:
     mtconnect    host and port of the MTConnect adapter; empty: there is none
     agent        host and port of the MTConnect agent; empty: there is none
     fingerprint  of the server's certificate (SHA-1, as clients show it); empty: there is none
-    not_measured  values of the definition that positions and times stand on, though nobody has measured them
+    grounds      what positions and times stand on besides the program
     """
 
     opcua: str
     mtconnect: str
     agent: str
     fingerprint: str
-    not_measured: tuple[str, ...] = ()
+    grounds: Grounds = NO_GROUNDS
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,7 @@ async def serve_program(
         for each in told:
             await each.begin()
         shdr, documents = adapter.address if adapter else "", agent.address if agent else ""
-        ready(TwinAddresses(server.address, shdr, documents, server.fingerprint, program.not_measured))
+        ready(TwinAddresses(server.address, shdr, documents, server.fingerprint, program.grounds))
         await twin.run(started=started)
     finally:
         for each in told:

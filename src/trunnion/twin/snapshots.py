@@ -7,7 +7,6 @@ Units:  mm and degrees, mm/min, rev/min, seconds of the program.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
 from typing import Final
@@ -19,8 +18,10 @@ from trunnion.machines import Machine, forward
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
 from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
+from trunnion.records import dataclass
 from trunnion.timing import TimedEvent, TimedRun
 from trunnion.twin.modal import Blocks, BlockState
+from trunnion.verification.grounds import Grounds, grounds_of
 
 #: How far beyond its travel an axis may stand before it is an alarm, mm or degrees.
 _TRAVEL_TOLERANCE = 1e-6
@@ -99,9 +100,9 @@ class TwinProgram:
         return tuple(PurePath(name).name for name in self.run.files) or (self.name,)
 
     @property
-    def not_measured(self) -> tuple[str, ...]:
-        """Values of the definition that positions and times stand on, though nobody has measured them."""
-        return tuple(map(str, unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run))))
+    def grounds(self) -> Grounds:
+        """What positions and times stand on besides the program."""
+        return grounds_of((self.run,), unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run)))
 
     @cached_property
     def tools(self) -> tuple[str, ...]:

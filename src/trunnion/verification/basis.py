@@ -9,7 +9,6 @@ may demand a basis (``[proof] require``), and ``--strict`` demands them all: wha
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -23,6 +22,7 @@ from trunnion.model.run import Run
 from trunnion.model.run_samples import joint_samples
 from trunnion.model.stated_words import StatedWord
 from trunnion.model.unknown_setups import offsets_without_zero, tools_without_length
+from trunnion.records import dataclass
 from trunnion.verification.axes_from_home import axes_from_home
 from trunnion.verification.block_names import block_name_of
 

@@ -5,7 +5,7 @@ Out:    the same columns, rows and places for the rows of that run: what is inse
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.verification.results import OperationRows
 
 

@@ -18,9 +18,8 @@ from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
-from trunnion.verification.axes_from_home import axes_from_home
-from trunnion.verification.basis import assumed_modes, stated_texts, turns_before_offset
 from trunnion.verification.block_names import block_name
+from trunnion.verification.grounds import grounds_of
 from trunnion.verification.standing import Standing
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -257,11 +256,7 @@ class Verification:
             failed=states.count(State.FAIL),
             not_checked=states.count(State.NOT_CHECKED),
             warnings=severities.count(Severity.WARNING),
-            not_measured=tuple(dict.fromkeys(str(value) for check in self.checks for value in check.stands_on)),
-            assumed=assumed_modes(self.run),
-            stated=stated_texts(self.run),
-            turns_before_offset=str(turns_before_offset(self.run) or ""),
-            axes_from_home=str(axes_from_home(self.run) or ""),
+            grounds=grounds_of((self.run,), (value for check in self.checks for value in check.stands_on)),
             assumed_unit="mm" if self.assumes_unit else "",
             moves=len(self.run) > 0,
         )

@@ -1,11 +1,11 @@
 """Many increasing row numbers, stored as the unbroken ranges that they form: most programs have few."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.records import dataclass
 
 #: Rows that are worked on at a time, so that their columns stay in the processor's cache.
 CHUNK = 8192

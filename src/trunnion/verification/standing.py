@@ -1,16 +1,17 @@
 """What the word "passed" stands on: one record, from which every front says it.
 
-In:     how many checks have which state, the warnings, and what nobody has measured.
+In:     how many checks have which state, the warnings, and what the answers stand on.
 Out:    ``Standing``, as data and in words.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
 from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
+from trunnion.verification.grounds import NO_GROUNDS, Grounded, Grounds
 
 
 class Verdict(StrEnum):
@@ -28,7 +29,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class Standing(Grounded):
     """How a program stands.
 
     passed        no check failed, and nothing was overruled
@@ -36,11 +37,7 @@ class Standing:
     failed        how many found something
     not_checked   how many were not made, or only in part
     warnings      that were given
-    not_measured  values that answers of checks stand on although nobody has measured them
-    assumed       modes that the control is taken to start with: neither the program nor the definition states them
-    stated        words and variables that the program relies on, with what somebody has stated of them
-    turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force
-    axes_from_home  the axes that the first cut takes to be at home: nothing states them before it
+    grounds       what the answers of the checks stand on besides the program
     assumed_unit  length unit that a CL file is taken to have: nothing says it
     moves         whether there is a motion: without one nothing of a path was checked
     """
@@ -50,11 +47,7 @@ class Standing:
     failed: int
     not_checked: int
     warnings: int = 0
-    not_measured: tuple[str, ...] = ()
-    assumed: tuple[str, ...] = ()
-    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
-    turns_before_offset: str = ""
-    axes_from_home: Annotated[str, Figure(is_optional=True, none="")] = ""
+    grounds: Annotated[Grounds, Figure(is_flat=True)] = NO_GROUNDS
     assumed_unit: Annotated[str, Figure(is_optional=True, none="")] = ""
     moves: Annotated[bool, NOT_DATA] = True
 
@@ -87,16 +80,7 @@ class Standing:
             yield phrase("standing_not_checked", count=self.not_checked)
         if self.warnings:
             yield phrase("standing_warnings", count=self.warnings)
-        if self.not_measured:
-            yield phrase("standing_not_measured", count=len(self.not_measured))
-        if self.stated:
-            yield phrase("stands_on_stated", words=self.stated)
-        if self.assumed:
-            yield phrase("assumed_modes", words=self.assumed)
-        if self.turns_before_offset:
-            yield phrase("assumed_offset", block=self.turns_before_offset)
-        if self.axes_from_home:
-            yield phrase("assumed_home", axes=self.axes_from_home)
+        yield from self.grounds.wordings()
         if self.assumed_unit:
             yield phrase("assumed_unit", unit=self.assumed_unit)
 

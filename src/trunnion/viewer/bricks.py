@@ -14,13 +14,13 @@ it), the number of bricks; then number and length of each, and their bytes.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
+from trunnion.records import dataclass
 from trunnion.simulation.stock.surface import SurfaceGrid
 
 #: Cubes of a brick along each side.

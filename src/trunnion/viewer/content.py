@@ -7,7 +7,7 @@ Units:  mm, degrees, seconds, mm/min.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -19,6 +19,7 @@ from trunnion.machines.links import link_chain
 from trunnion.messages import LIBRARY, Words
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.bodies import Body, BodyKind, machine_bodies, tool_bodies
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool

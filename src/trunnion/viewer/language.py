@@ -6,10 +6,10 @@ Out:    ``Words``, and the texts of a page by their keys, as its modules take th
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Final
 
 from trunnion.messages import ENGLISH, LANGUAGES, Words, catalogue, library_words, said_in
+from trunnion.records import dataclass
 
 #: What HTML calls a language where that is not its key.
 _TAGS: Final = {"zh": "zh-Hans"}

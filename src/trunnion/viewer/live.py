@@ -8,8 +8,9 @@ Units:  mm and degrees as the machine shows them.
 import asyncio
 import json
 from collections.abc import AsyncGenerator, AsyncIterator, Sequence
-from dataclasses import dataclass
 from typing import Final, Protocol
+
+from trunnion.records import dataclass
 
 #: Seconds between two poses that a page is sent, and between two signs of life where nothing moves.
 _PERIOD: Final = 0.04

@@ -6,13 +6,13 @@ Units:  mm, degrees, seconds.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.timing import MOST_PIECES, axis_pieces
 
 #: One count of an axis value, mm or degrees: a fiftieth of what the smallest printed digit is worth at a table's rim.

@@ -12,12 +12,12 @@ import re
 import secrets
 import socket
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 _LOOPBACK_NAMES: Final = ("127.0.0.1", "localhost", "[::1]")
 

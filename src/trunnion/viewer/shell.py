@@ -6,10 +6,10 @@ script and the vendored library run, by their hashes.
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from importlib.resources import files
 from typing import Final
 
+from trunnion.records import dataclass
 from trunnion.reporting.html_plots import script_json
 from trunnion.reporting.html_text import escape, source_hash
 from trunnion.viewer.language import language_tag

@@ -1,7 +1,7 @@
 """Records that pages of the viewer and the builder show as lines, and what is said of them in the words of who asks."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
@@ -9,6 +9,7 @@ from trunnion.errors import Problem
 from trunnion.machines.machine import Vector
 from trunnion.messages import Wording, Words
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.results import Figure, to_data
 from trunnion.verification.results import Check
 

@@ -107,8 +107,11 @@ def test_what_is_not_known_is_told(capfd: Capture) -> None:
     assert main(["sensitivity", str(BLADE), "--machine", "yl569"]) == 0
     out, err = capfd.readouterr()
     assert [line.rpartition(" ")[2] for line in err.splitlines() if "warning" in line] == ["[RCH130]", "[RCH140]"]
-    assert "C point Z" in out.splitlines()[-1]
-    assert out.splitlines()[-1].startswith("without effect: ")
+    *_, idle, grounds = out.splitlines()
+    assert "C point Z" in idle
+    assert grounds.startswith("not measured: C point_mm (yl569.toml:35), ")
+    assert grounds.endswith("; assumed: no work offset is in force at N400")
+    assert idle.startswith("without effect: ")
     assert "(at), and the root of the mean square over all motions (rms)" in out.splitlines()[1]
     assert sum(line.startswith("C point X ") for line in out.splitlines()) == 1
 

@@ -125,7 +125,7 @@ ALLOWED: dict[str, list[Settings]] = {
     ],
     "dmu65": [{"hsc_mode": "1", "rotary_tolerance": 0.05, "tolerance": 0.02, "tool": "MILL 10", "delta_radius": -0.05}],
     "matsuura_mx330": [{"rigid_tap": "", "tool": 7}, {"rigid_tap": "M135"}],
-    "hs664rt": [{"rapid_feed": 5000, "tcp_on": "G96", "tcp_off": "G97"}],
+    "hs664rt": [{"rapid_feed": 5000, "tcp_on": "G196", "tcp_off": "G197"}],
 }
 
 

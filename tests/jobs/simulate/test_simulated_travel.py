@@ -1,10 +1,12 @@
 """A simulation judges the travel of its programs, where zero and tool length are known."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from tests.support.locations import ROOT
 from trunnion.cli import main
 
 #: Z of the workpiece zero -> whether the program keeps Z within its travel.
@@ -31,3 +33,33 @@ def test_travel_is_judged_in_text_and_data(
         assert (code, found["passed"]) == (1, False)
         assert not found["collisions"]
     assert travel["state"] == ("not checked" if zero is None else "ok" if within else "FAIL")
+
+
+def test_the_verdict_says_what_it_stands_on_and_what_was_not_checked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tables = re.split(r"(?m)^(?=\[)", (ROOT / "src/trunnion/machines/library/yl569.toml").read_text(encoding="utf-8"))
+    bare = "".join(table for table in tables if not table.startswith("[[body]]"))
+    machine, program = tmp_path / "bare.toml", tmp_path / "a.mpf"
+    page, data = tmp_path / "a.html", tmp_path / "a.json"
+    machine.write_text(bare.replace("[-250, 250]\n", "[-250, 250] # measure:\n", 1), encoding="utf-8")
+    program.write_text(_PROGRAM, encoding="utf-8")
+    stock = ["--stock", "box:40,40,9,200,200,-9.5", "--cell", "2", "--tool", "1=flat:10,length=60,flutes=30"]
+    asked = ["simulate", str(program), "--machine", str(machine), *stock]
+    known = ["--zero", "0,0,-100", "--tool-length", "110"]
+    assert main([*asked, *known, "--report", str(page), "--json", str(data)]) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    grounds = (
+        "stands on 2 values nobody measured; assumed: the control starts with TRAFOOF, CYCLE800(); "
+        "assumed: B and C at home at line 6"
+    )
+    why = "collisions with the machine: not checked (the definition of the machine states no bodies)"
+    assert last == f"Passed in part: nothing found; {why}; {grounds}"
+    assert grounds in page.read_text(encoding="utf-8")
+    found = json.loads(data.read_text(encoding="utf-8"))
+    assert found["not_checked"] == ["the definition of the machine states no bodies"]
+    assert [len(found["not_measured"]), *found["assumed"]] == [2, "TRAFOOF", "CYCLE800()"]
+    assert found["axes_from_home"] == "B and C at home at line 6"
+    assert main(asked) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert "travel of the axes: not checked (no workpiece zero stated, no tool length stated)" in last

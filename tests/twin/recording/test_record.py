@@ -147,7 +147,7 @@ def test_one_recording_over_all_programs_of_a_part_is_in_the_report(tmp_path: Pa
         "--subprograms",
         *(str(program) for program, _ in IMPELLER.values()),
         "--zero",
-        "0,0,-200",
+        "0,0,0",
         "--tool-length",
         "150",
     ]
@@ -165,7 +165,7 @@ def test_one_recording_over_all_programs_of_a_part_is_in_the_report(tmp_path: Pa
     assert all(count or rest for count, rest in zip(told["columns"]["recorded_positions"], rests(told), strict=True))
     used = {each["name"]: each for each in told["recorded"]["extents"]}
     assert used["X"]["limits"] == [-250.0, 250.0]
-    assert used["X"]["margin"] == pytest.approx(36.802, abs=1e-3)
+    assert used["X"]["margin"] == pytest.approx(188.700, abs=1e-3)
     assert used["Spindle"]["whole"]["high"] == 2500.0
 
 

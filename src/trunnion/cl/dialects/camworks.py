@@ -2,7 +2,6 @@
 
 import math
 import re
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.cl.builder import NoAxis
@@ -14,6 +13,7 @@ from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements import events, motion, operations
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 _AXES: Final = ("AAXIS", "BAXIS", "CAXIS")
 #: Angles, radians, and unit vectors are printed with six decimals.

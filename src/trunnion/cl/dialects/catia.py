@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -18,6 +17,7 @@ from trunnion.cl.statements import apt_motion, apt_refused, events, motion
 from trunnion.messages import Wording, phrase
 from trunnion.model.frames import frame_from_vectors, relative_frame
 from trunnion.model.toolpath import Frame
+from trunnion.records import dataclass
 
 _NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
 _MATRIX: Final = re.compile(r"\*CATIA(\d)\s*", re.IGNORECASE)

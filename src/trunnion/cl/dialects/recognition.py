@@ -1,12 +1,12 @@
 """Recognizes the dialect of a CL file by its lines, never by its name."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from operator import itemgetter
 from typing import Final
 
 from trunnion.cl.dialect import Dialect
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: Bytes of a line that marks are looked for in: the same line comes often.
 _COMPARED: Final = 48

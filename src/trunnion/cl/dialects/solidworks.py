@@ -1,7 +1,6 @@
 """SolidWorks CAM and CAMWorks APT."""
 
 import re
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,6 +15,7 @@ from trunnion.cl.statement import Statement
 from trunnion.cl.statements import apt_tools, events, motion, operations
 from trunnion.cl.statements.cycles import cycle
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: How far columns of a CSYS may be off unit length and off square: they are printed with six decimals or more.
 _SQUARE: Final = 1e-3

@@ -1,6 +1,6 @@
 """Tools of APT dialects: CUTTER with its seven parameters, LOADTL in its forms, names."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Final
 
 from trunnion.cl.diagnostics import StatementError
@@ -10,6 +10,7 @@ from trunnion.cl.statements import events
 from trunnion.messages import Wording, phrase
 from trunnion.model.apt_cutter import stated_centre
 from trunnion.model.toolpath import SelectTool, Tool
+from trunnion.records import dataclass
 
 #: A tip flatter than this, degrees from the horizontal, is that of a mill.
 _FLATTEST_DRILL: Final = 1.0

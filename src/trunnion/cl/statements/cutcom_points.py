@@ -1,12 +1,11 @@
 """What points under CUTCOM are: those of the tool's centre, or of the contour, where the control adds the radius."""
 
-from dataclasses import dataclass
-
 from trunnion.cl.builder import StatedPoints
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)

@@ -1,7 +1,6 @@
 """Statements of motion: points, circles, and motion that cannot be read."""
 
 import math
-from dataclasses import dataclass
 
 from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis, SplineStatement
 from trunnion.cl.diagnostics import StatementError
@@ -9,6 +8,7 @@ from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole, numbers
 from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import GoHome
+from trunnion.records import dataclass
 
 #: Points no farther from each other, in units of the file, are the same: they are printed with three decimals or more.
 _SAME_POINT = 2e-3

@@ -5,7 +5,6 @@ within a twentieth of a degree of X, Y or Z, where the direction in which the to
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import BinaryIO
 
@@ -15,6 +14,7 @@ from trunnion.arrays import Bytes, Floats, Floats2
 from trunnion.decimal_bytes import MAX_EXACT, POWERS_OF_TEN
 from trunnion.jit import inner, kernel
 from trunnion.model.toolpath import Moves
+from trunnion.records import dataclass
 
 #: Rows that the kernel writes at a time, and the most bytes that one of them can take.
 CHUNK = 1 << 15

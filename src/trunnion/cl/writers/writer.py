@@ -10,7 +10,7 @@ import codecs
 from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import BinaryIO, ClassVar
 
 import numpy as np
@@ -45,6 +45,7 @@ from trunnion.model.toolpath import (
     Toolpath,
     UnknownStatement,
 )
+from trunnion.records import dataclass
 
 #: A line of a statement is no longer, where a dialect divides its statements.
 _LINE = 72

@@ -9,7 +9,7 @@ from trunnion.cli.controls import control_lines
 from trunnion.cli.machine.machine_text import machine_data, machine_lines, machine_list
 from trunnion.cli.printing import print_result, tell_problem
 from trunnion.cli.results import show
-from trunnion.cli.wording import line, problem_line
+from trunnion.cli.wording import line, problem_line, spoken
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
@@ -42,12 +42,12 @@ def machines(given: Given) -> int:
     if given.name and given.json is not None:
         load_machine(given.name)
         definition = with_control(load_table(given.name, machine_library(), kind="machine"))
-        show(given, lambda: _plain_data(definition), [resolved_text(definition)])
+        show(given, lambda: _plain_data(definition), [resolved_text(definition, spoken())])
         return 0
     if given.resolved:
         load_machine(given.name)
         table = load_table(given.name, machine_library(), kind="machine")
-        print_result(resolved_text(with_control(table)), end="")
+        print_result(resolved_text(with_control(table), spoken()), end="")
         return 0
     if given.name:
         load_machine(given.name)
@@ -95,7 +95,7 @@ def check(given: Given) -> int:
     from trunnion.jobs.describe.reading_keys import proposed_reading  # few definitions are checked with a program
 
     proposal = proposed_reading(check_path("program", given.program), load_machine(given.file))
-    show(given, lambda: machine_data(found) | {"reading": proposal.keys}, [good, "", *proposal.lines()])
+    show(given, lambda: machine_data(found) | {"reading": proposal.keys}, [good, "", *proposal.lines(spoken())])
     return 0
 
 

@@ -1,17 +1,18 @@
 """``trunnion import``."""
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from trunnion.builder.saved_file import is_file_name
 from trunnion.cli.results import show
+from trunnion.cli.wording import in_words, line
 from trunnion.definitions.value_marks import marked_values
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
 from trunnion.foreign.definition import Difference, Written, differences, nearest_machine, written_definition
-from trunnion.foreign.machine import ForeignMachine
+from trunnion.foreign.machine import ForeignMachine, Left, because
 from trunnion.foreign.machine_data import read_machine_data
 from trunnion.foreign.mastercam import read_mastercam_post
 from trunnion.foreign.nx_post import read_nx_post
@@ -21,7 +22,6 @@ from trunnion.machines.loading import check_is_shipped, shipped_machines
 from trunnion.messages import Wording
 from trunnion.results import to_data
 from trunnion.schemas import file_name, put_beside
-from trunnion.wording import counted
 
 #: Endings of the files of a post of NX Post Builder, of Mastercam, and of posts that are not read.
 _NX = (".tcl", ".def", ".pui")
@@ -55,7 +55,7 @@ def run(given: Given) -> int:
         "schema": 1, "file": str(file), "extends": base, "numbers_to_measure": marks,
         "taken": [{"key": ".".join(key), "value": value.value, "source": value.source}
                   for key, value in written.taken.items()],
-        "left": [to_data(each) for each in written.left],
+        "left": _left_data(written.left),
     }  # fmt: skip
     show(given, lambda: data, _lines(written, file, base, marks))
     return 0
@@ -75,13 +75,20 @@ def _read(files: list[Path]) -> ForeignMachine:
 
 def _lines(found: Written, file: Path, base: str, marks: int) -> Iterator[str]:
     for key, value in found.taken.items():
-        yield f"taken: {'.'.join(key)} = {value.value}  ({value.source})"
+        yield in_words(because("taken", key=".".join(key), value=str(value.value), source=value.source))
     for each in found.left:
-        yield f"not taken: {each.what}  ({each.where}): {each.why}"
-    left = counted(len(found.left), "value")
-    kind = f"extends {base}" if base else "a definition of its own"
-    yield f"{file}: {kind}, {counted(marks, 'number')} to measure, {left} not taken"
-    yield f"next: trunnion check {shlex.quote(str(file))}"
+        yield in_words(because("not_taken", said=each.said, where=each.where, reason=each.reason))
+    counts = {"marks": marks, "left": len(found.left)}
+    if base:
+        yield in_words(because("written_extending", file=str(file), base=base, **counts))
+    else:
+        yield in_words(because("written_alone", file=str(file), **counts))
+    yield line("next_check", file=shlex.quote(str(file)))
+
+
+def _left_data(left: Sequence[Left]) -> list[dict[str, str]]:
+    """Return what is not taken as data, which are English."""
+    return [{"what": each.what, "where": each.where, "why": each.why} for each in left]
 
 
 def _compared(given: Given, found: ForeignMachine) -> int:
@@ -91,7 +98,7 @@ def _compared(given: Given, found: ForeignMachine) -> int:
     compared = len([key for key in found.values if key[0] != "spindle"])
     data: dict[str, Any] = {
         "schema": 1, "machine": machine.key, "compared": compared, "differences": [to_data(each) for each in other],
-        "left": [to_data(each) for each in found.left],
+        "left": _left_data(found.left),
     }  # fmt: skip
     show(given, lambda: data, _differences(found, other, machine.key, compared))
     return 1 if other else 0
@@ -99,8 +106,13 @@ def _compared(given: Given, found: ForeignMachine) -> int:
 
 def _differences(found: ForeignMachine, other: list[Difference], machine: str, compared: int) -> Iterator[str]:
     for each in other:
-        here = "not stated" if each.here is None else each.here
-        yield f"{each.key}: {here} in {machine}, {each.there} there  ({each.source})"
+        values = {"key": each.key, "machine": machine, "source": each.source}
+        if each.here is not None:
+            yield in_words(because("differs", here=str(each.here), there=str(each.there), **values))
+        elif each.is_axis:
+            yield in_words(because("differs_axis_missing", **values))
+        else:
+            yield in_words(because("differs_not_stated", there=str(each.there), **values))
     for left in found.left:
-        yield f"not compared: {left.what}  ({left.where}): {left.why}"
-    yield f"{counted(len(other), 'difference')} in {counted(compared, 'value')}; {len(found.left)} not compared"
+        yield in_words(because("not_compared", said=left.said, where=left.where, reason=left.reason))
+    yield in_words(because("differences_in_all", count=len(other), compared=compared, left=len(found.left)))

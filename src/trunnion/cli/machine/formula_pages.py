@@ -1,13 +1,13 @@
 """A page of formulas as text, Markdown or LaTeX, from blocks that say nothing of how they look."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from trunnion.cli.columns import columns_of, padded
 from trunnion.formulas.notation import name_as_latex
 from trunnion.formulas.steps import Formula
 from trunnion.messages import ENGLISH
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from trunnion.builder.likeness import definition_like
 from trunnion.builder.saved_file import is_file_name
 from trunnion.cli.printing import print_result
 from trunnion.cli.results import show
+from trunnion.cli.wording import line
 from trunnion.definitions.value_marks import marked_values
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file, check_outputs
@@ -15,7 +16,6 @@ from trunnion.machines import load_machine
 from trunnion.machines.loading import check_is_shipped, shipped_machines
 from trunnion.messages import Wording
 from trunnion.schemas import file_name, put_beside, schema_text
-from trunnion.wording import counted
 
 
 def new(given: Given) -> int:
@@ -36,9 +36,9 @@ def new(given: Given) -> int:
     schema = put_beside(file, "machine")
     marks = len(marked_values(text))
     lines = (
-        f"{file}: extends {given.like}, {counted(marks, 'number')} to measure",
-        *([f"{schema}: for editors that complete and check TOML"] if schema else []),
-        f"next: trunnion check {shlex.quote(str(file))}",
+        line("extends_to_measure", file=str(file), base=given.like, marks=marks),
+        *([line("schema_for_editors", file=str(schema))] if schema else []),
+        line("next_check", file=shlex.quote(str(file))),
     )
     data = {"schema": 1, "file": str(file), "extends": given.like, "numbers_to_measure": marks}
     show(given, lambda: data, lines)

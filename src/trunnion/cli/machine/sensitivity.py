@@ -17,6 +17,7 @@ from trunnion.jobs.capability.sensitivity_report import (
     write_sensitivity_report,
 )
 from trunnion.jobs.job import Given
+from trunnion.messages import joined
 
 
 def run(given: Given) -> int:
@@ -44,6 +45,8 @@ def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     yield from table([titles, *(_cells(each, found) for each in found.numbers)], width_of(sys.stdout), numbers)
     if found.idle:
         yield line("without_effect", names=tuple(number.said for number in found.idle))
+    if grounds := joined(found.grounds.wordings(named=True), spoken()):
+        yield grounds
 
 
 def _cells(each: NumberSensitivity, found: Sensitivity) -> tuple[str, ...]:

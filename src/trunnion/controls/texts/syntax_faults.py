@@ -10,11 +10,11 @@ that people make within them. Jinja's own words never reach the user.
 import re
 import unicodedata
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.controls.texts.values import Fault
 from trunnion.definitions.messages import meant_word
+from trunnion.records import dataclass
 
 #: What tags begin and end with.
 _ENDS: Final = {"{%": "%}", "{{": "}}", "{#": "#}"}

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final, NoReturn
 
 import jinja2
@@ -16,6 +16,7 @@ from trunnion.controls.texts.values import ABSENT, MOST_CHARACTERS, Fault, Lengt
 from trunnion.controls.words import WordRangeError
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: What Python says of an expression whose values do not fit.
 _FAULTS: Final = (jinja2.TemplateError, TypeError, ValueError, ArithmeticError, RecursionError, LookupError)

@@ -6,12 +6,12 @@ An absent value is None: what is made of it is absent too, and a line that print
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
 from trunnion.controls.template import Printing
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: Stands in a printed line for an absent value.
 ABSENT: Final = "\0"

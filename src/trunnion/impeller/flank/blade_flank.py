@@ -8,7 +8,6 @@ The flank begins where a ball touches blade and hub: the ball at the cutter's en
 larger. It ends at the tip. Where the fillet takes up nearly all of a low blade, it is not milled with the flank.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -24,6 +23,7 @@ from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.paths.passes import Pass
 from trunnion.impeller.progress import Progress, silent
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: A flank ends where the fillet takes up more than this part of the blade's height.
 _LOW: Final = 0.75

@@ -4,10 +4,10 @@ Units: mm.
 """
 
 import math
-from dataclasses import dataclass
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 Units: mm.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.impeller.flank.deviation_kernel import least_distances
 from trunnion.impeller.flank.path import FlankPath, basis
+from trunnion.records import dataclass
 
 #: Parameters between which minima are looked for, and rounds of golden section: 1e-7 of the path.
 _SAMPLES: Final = 241

@@ -7,7 +7,6 @@ by the trust region at most; a step that does not improve what is really left is
 Units: mm.
 """
 
-from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ from trunnion.impeller.flank.deviations import Deviations, deviations_of, slopes
 from trunnion.impeller.flank.path import FlankPath, basis
 from trunnion.impeller.linear_program import SIMPLEX, solve_linear_program
 from trunnion.impeller.progress import Advance, ignore
+from trunnion.records import dataclass
 
 #: Local minima along the path of which each must not cut too much: the least is not always the same one.
 _MINIMA: Final = 3

@@ -3,11 +3,10 @@
 Units: mm.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,7 +9,7 @@ than at these points, the worst ones are added and the fit goes on.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -22,6 +22,7 @@ from trunnion.impeller.flank.measure import measured_deviations
 from trunnion.impeller.flank.path import FlankPath
 from trunnion.impeller.flank.start import start_path
 from trunnion.impeller.progress import Progress, silent
+from trunnion.records import dataclass
 
 #: Points along and across that are fitted, and on which the result is told.
 _FITTED: Final = (101, 21)

@@ -3,7 +3,6 @@
 Units: mm.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.impeller.flank.cutter import FlankCutter
+from trunnion.records import dataclass
 
 DEGREE: Final = 3
 

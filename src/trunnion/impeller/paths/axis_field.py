@@ -9,7 +9,6 @@ rate of change is the least that the cones allow (one linear program), and among
 bends least is taken (a second one). The coefficients of a spline's derivative bound the derivative.
 """
 
-from dataclasses import dataclass
 from functools import reduce
 from typing import Any, Final
 
@@ -19,6 +18,7 @@ from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.impeller.linear_program import INTERIOR_POINT, solve_linear_program
 from trunnion.impeller.paths.axis_regions import Regions
+from trunnion.records import dataclass
 
 #: Degrees of the splines: along, across, layer.
 _DEGREES: Final = (3, 2, 2)

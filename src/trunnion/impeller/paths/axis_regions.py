@@ -9,7 +9,6 @@ from place to place, each from the middle of its neighbour's, so that all of the
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.extras import import_extra
 from trunnion.impeller.progress import Advance, ignore
+from trunnion.records import dataclass
 
 #: How far directions (n, 3) at places (n,) are from being forbidden, (n,): below 0 they are. Below the third argument,
 #: it may be less than what is told.

@@ -4,7 +4,6 @@ A ball that is no smaller than the fillet and clear of blades and hub is clear o
 of a ball as large as the fillet that touches the surface at the same point: if that one is clear, so is it.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -15,6 +14,7 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.paths.passes import PassFamily
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Halvings of the interval in which the largest ball is.
 _HALVINGS: Final = 40

@@ -1,7 +1,5 @@
 """Blade finish: a ball goes round the blade, row by row from the shroud down to the hub or the fillet."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Floats
@@ -11,6 +9,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.around import dense_stations, lay_passes, row_depths, side_end, stations_at
 from trunnion.impeller.paths.ball_clearance import prove_room, surroundings_of
 from trunnion.impeller.paths.passes import PassFamily, Stepover, Way
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ Out:    cells from the whole surface down to the smallest, each with its parts.
 Units:  mm.
 """
 
-from dataclasses import dataclass
 from itertools import accumulate
 from typing import Final
 
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.records import dataclass
 
 #: A smallest cell is measured at so many steps along each side.
 STEPS: Final = 4

@@ -10,7 +10,7 @@ not begun yet, or has ended, channels part at the angle at which the ball would 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -18,6 +18,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.impeller import Impeller, rotated
+from trunnion.records import dataclass
 
 #: Of rows and their angles.
 _Function: TypeAlias = Callable[[Ints, Floats], Floats]

@@ -7,7 +7,7 @@ Units:  mm; angles in radians about Z.
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -19,6 +19,7 @@ from trunnion.impeller.paths.channel import Channel, Extent, turned
 from trunnion.impeller.paths.channel_sheets import Ball, Sheet, problem, sheets_of
 from trunnion.impeller.progress import Progress, silent
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: How often the ball's way in before an edge is laid, and moved off the blade where it is too near.
 _SWINGS: Final = 3

@@ -13,7 +13,6 @@ from the open end, turns in the middle, and leaves again.
 import math
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Final
 
@@ -24,6 +23,7 @@ from trunnion.impeller.paths.channel import turned
 from trunnion.impeller.paths.channel_layers import Layer, eased
 from trunnion.impeller.paths.passes import Pass, Stepover
 from trunnion.jit import inner, kernel
+from trunnion.records import dataclass
 
 #: Share of the tolerance within which points are left out, and the longest chord that it may make, mm: tool axes turn
 #: with the place.

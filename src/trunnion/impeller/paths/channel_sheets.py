@@ -9,7 +9,6 @@ u = constant of the mean surface, a step-down apart in the plane of radius and h
 apart. Beyond the ends of the blade's curves a sheet goes on straight in that plane, and keeps its angle to it.
 """
 
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -19,6 +18,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.impeller import Impeller
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: How far a ball is off shroud and stock where its passes begin and end, mm.
 CLEAR: Final = 0.5

@@ -11,7 +11,7 @@ import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import accumulate, pairwise
 from typing import Final
 
@@ -24,6 +24,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.cell_trees import STEPS, Cells, cell_tree, joined
 from trunnion.impeller.paths.clearance_kernel import BodyData, ToolData, least_margins, part_distances
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.tools.pieces import revolved_pieces
 from trunnion.simulation.tools.profile import Role, ToolShape
 

@@ -6,7 +6,6 @@ Units:  mm.
 """
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from typing import Annotated, Final
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.impeller.paths.clearance import Obstacles, ToolBody, distances_of
 from trunnion.messages import Wording, phrase, word_said
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.tools.profile import Role
 

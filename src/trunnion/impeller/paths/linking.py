@@ -10,7 +10,6 @@ stock, whatever its tilt, then across and down. Inside it moves at feed, where e
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -24,6 +23,7 @@ from trunnion.impeller.paths.thinning import thinned
 from trunnion.impeller.progress import Progress, silent
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Kind, Phase
+from trunnion.records import dataclass
 
 #: Whether the ball and the rest of the tool are clear at poses: centres (n, 3), axes (n, 3) -> (n,).
 IsClear = Callable[[Floats, Floats], Flags]

@@ -4,12 +4,12 @@ Frame: that of the impeller, for its first blade or channel; the others are copi
 """
 
 import math
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.records import dataclass
 
 
 class Way(StrEnum):

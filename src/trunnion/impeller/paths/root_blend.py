@@ -5,7 +5,7 @@ blade beside begins.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -20,6 +20,7 @@ from trunnion.impeller.paths.ball_clearance import Surroundings, prove_room, sur
 from trunnion.impeller.paths.blade_finish import root_heights, tip_heights
 from trunnion.impeller.paths.passes import PassFamily, Stepover, Way
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Strips go on beyond what was not reached, as a part of the ball's radius.
 _OVERLAP: Final = 0.25

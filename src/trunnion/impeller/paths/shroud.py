@@ -8,7 +8,6 @@ Roughing is with the end of a flat mill, one turn below the other; finishing wit
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -18,6 +17,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.passes import Pass, Stepover
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Heights at which the form is looked at, per mm of it.
 _PER_MM: Final = 20.0

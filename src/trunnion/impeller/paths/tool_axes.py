@@ -10,7 +10,6 @@ one is not clear, its place joins the others, without the direction that was wro
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -25,6 +24,7 @@ from trunnion.impeller.paths.least_clearances import FAR, PartClearance, least_c
 from trunnion.impeller.paths.passes import PassFamily, Way
 from trunnion.impeller.progress import Advance, Progress, silent
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Places from which the search begins.

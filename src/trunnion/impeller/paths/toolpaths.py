@@ -5,7 +5,6 @@ Out:    an ``Operation``.
 Units:  mm, rev/min, mm/min.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -25,6 +24,7 @@ from trunnion.model.toolpath import (
     SpindleOn,
     Tool,
 )
+from trunnion.records import dataclass
 
 #: Decimals of tips, mm: those that CL files have, so that they say what is meant in as many digits.
 _DECIMALS: Final = 6

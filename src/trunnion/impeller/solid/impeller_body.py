@@ -9,7 +9,6 @@ the outlet; splitters are holes in them. So no face goes all round the axis, and
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -35,6 +34,7 @@ from trunnion.impeller.solid.shapes import (
 from trunnion.impeller.solid.splines import spline_through
 from trunnion.impeller.solid.turned import Meridian, ends_of, profile_parameters
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: How far the body reaches beyond the stock, mm.
 _BEYOND: Final = 2.0

@@ -11,7 +11,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Final
@@ -30,6 +29,7 @@ from trunnion.impeller.solid.impeller_body import impeller_body
 from trunnion.impeller.solid.order import Made, Order, Refusal
 from trunnion.impeller.solid.root_loop import Density, carried_on
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 

@@ -1,10 +1,9 @@
 """What a CAD kernel is asked for, and what it answers."""
 
-from dataclasses import dataclass
-
 from trunnion.arrays import Floats
 from trunnion.impeller.definition import StockSize
 from trunnion.impeller.solid.shapes import Body
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

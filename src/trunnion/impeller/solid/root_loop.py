@@ -10,7 +10,7 @@ trailing edge in two parts. The edges are divided where the fillet's foot reache
 the borders between channels begin. A blade that the stock cuts has its round edge outside of the stock.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -25,6 +25,7 @@ from trunnion.impeller.solid.shapes import SplineSurface
 from trunnion.impeller.solid.splines import surface_through
 from trunnion.impeller.solid.turned import profile_parameters
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.wording import position
 
 #: Parts of a loop.

@@ -9,12 +9,13 @@ surface, which goes with the curve in space: the same parameter is the same plac
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias
 
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,7 +5,6 @@ Out:    ``Meridian``: the curve that is turned.
 Units:  mm and rad.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -15,6 +14,7 @@ from trunnion.impeller.impeller import rotated
 from trunnion.impeller.profiles import Profile
 from trunnion.impeller.solid.shapes import Spline
 from trunnion.impeller.solid.splines import spline_of_slopes
+from trunnion.records import dataclass
 
 #: Intervals of the spline along a profile: it is off by less than 1e-5 mm on parts of 100 mm.
 _INTERVALS: Final = 160

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Final, Unpack
@@ -26,9 +26,10 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine, shipped_machines
 from trunnion.machines.loading import is_example, machine_library
 from trunnion.machines.machine import Vector
-from trunnion.messages import Wording, phrase
+from trunnion.messages import Wording, phrase, texts
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
+from trunnion.records import dataclass
 from trunnion.results import Figure
 from trunnion.verification.results import durations
 
@@ -43,10 +44,6 @@ _LENGTH: Final = "give_its_length"
 
 #: Problems of a machine that are told.
 _MOST: Final = 3
-
-
-def _sentences(why: Iterable[Wording]) -> tuple[str, ...]:
-    return tuple(map(str, why))
 
 
 class FitStatus(StrEnum):
@@ -83,7 +80,7 @@ class MachineFit:
 
     key: Annotated[str, Figure("machine", take=lambda key: Path(key).as_posix() if key.endswith(".toml") else key)]
     status: FitStatus
-    why: Annotated[tuple[Wording, ...], Figure("reasons", take=_sentences)] = ()
+    why: Annotated[tuple[Wording, ...], Figure("reasons", take=texts)] = ()
     seconds: Annotated[float | None, Figure(decimals=3)] = None
     margins: Annotated[tuple[AxisMargin, ...], Figure(after="missing_mm")] = ()
     missing: Annotated[float | None, Figure(unit="mm", decimals=6, after="turn_deg")] = None
@@ -94,7 +91,7 @@ class MachineFit:
     @property
     def reasons(self) -> tuple[str, ...]:
         """Why not, or what is left open, in sentences."""
-        return _sentences(self.why)
+        return texts(self.why)
 
     @property
     @Figure(after="status")
@@ -393,4 +390,4 @@ def _seconds(posted: PostResult) -> float | None:
 def _reasons(error: TrunnionError) -> tuple[Wording, ...]:
     """Return what was wrong, in sentences; errors before warnings, and not what only sums them up."""
     errors = [each for each in error.problems if each.severity is Severity.ERROR and each.code != "CTL940"]
-    return tuple(phrase("said", text=str(each)) for each in (errors or list(error.problems))[:_MOST])
+    return tuple(each.said for each in (errors or list(error.problems))[:_MOST])

@@ -15,8 +15,11 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_r
 from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
+from trunnion.machines.unmeasured import POSITIONS, unmeasured_values
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
+from trunnion.model.run_samples import joint_samples
+from trunnion.verification.grounds import grounds_of
 
 #: The most that they may be off: derivatives tell small errors only.
 _MOST: Final = {"length": 10.0, "angle": 3600.0}
@@ -84,7 +87,7 @@ def sensitivity(
         found = program_sensitivity(run, pose, *off, tuple(_remarks(run)), advance)
     if not found.motions:
         raise InputError(Problem(run.files[0] if run.files else "nc", 0, Wording("RCH110", "nothing_cut")))
-    return found
+    return replace(found, grounds=grounds_of((run,), unmeasured_values(run.machine, POSITIONS, joint_samples(run))))
 
 
 def _check_amount(name: str, value: object) -> None:

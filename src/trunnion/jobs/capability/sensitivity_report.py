@@ -98,6 +98,7 @@ def _content(found: Sensitivity) -> SensitivityContent:
     idle = tuple(number.said for number in found.idle)
     notes = [clean(told(remark.wording.with_cure())) for remark in found.remarks]
     notes += [clean(label("without_effect", names=idle))] if idle else []
+    notes += [clean(told(each)) for each in found.grounds.wordings(named=True)]
     return SensitivityContent(clean(Path(run.files[0]).name), facts, rows, notes)
 
 

@@ -2,7 +2,6 @@
 
 import io
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -10,6 +9,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.result_output import written_text
 from trunnion.model.toolpath import Toolpath
+from trunnion.records import dataclass
 from trunnion.reporting.remarks import remark_data
 from trunnion.results import FIRST, Figure
 from trunnion.wording import counted

@@ -4,7 +4,7 @@ from typing import Final
 
 from trunnion.jobs.job import Job, job
 from trunnion.messages import phrase
-from trunnion.options.groups import JSON, MACHINE, OTHER_MACHINE, SETTINGS, STOCK, TOOLS
+from trunnion.options.groups import JSON, MACHINE, OTHER_MACHINE, READING, SETTINGS, STOCK, TOOLS
 from trunnion.options.kinds import Choice, FileIn, FileOut, Measure, Switch, Text, seconds, whole
 from trunnion.options.option import Many, Option
 from trunnion.options.words import ACTIONS, MOST_TILES, PREPARED, SCHEMAS, SHELLS
@@ -78,6 +78,7 @@ _SURVEY: Final = job(
         help="shipped machine, or a TOML file; may be repeated; by default one for each control", many=Many.REPEAT,
         key="",
     ),
+    READING.but(strict={"key": ""}),
     Option("timeout", "--timeout", seconds(1e6), "how long a file may take on each machine; by default 60 s"),
     _WORKERS,
     Option(

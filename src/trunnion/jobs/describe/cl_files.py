@@ -1,7 +1,6 @@
 """What CL files hold, for a person or a program that has no machine yet."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Annotated, ClassVar, Final
 
 import numpy as np
@@ -29,6 +28,7 @@ from trunnion.model.toolpath import (
 from trunnion.planning.holes.cycles import SpindleState
 from trunnion.planning.holes.operations import hole_rows
 from trunnion.planning.path_measures import Range, extents, kind_and_planes, measure
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 Vector = tuple[float, float, float]

@@ -1,7 +1,6 @@
 """What the definition of a control means, as records: what it can do, its words, its texts and its settings."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -26,6 +25,7 @@ from trunnion.messages import Wording, declared, foreign, phrase
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import Sense
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: What F counts without TCP while rotary axes turn.

@@ -1,6 +1,5 @@
 """What the definition of a machine means, for a person beside the machine."""
 
-from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated
@@ -16,6 +15,7 @@ from trunnion.machines import Machine
 from trunnion.machines.jog_table import JogTable, jog_table
 from trunnion.machines.loading import machine_library
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 

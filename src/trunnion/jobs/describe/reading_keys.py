@@ -6,7 +6,6 @@ Out:    the keys that the text can tell apart and with which it has fewer errors
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TypeAlias
 
@@ -15,9 +14,10 @@ import numpy as np
 from trunnion import readers
 from trunnion.errors import InputError
 from trunnion.machines import Machine
-from trunnion.messages import Wording, phrase
+from trunnion.messages import LIBRARY, Wording, Words, phrase
 from trunnion.readers.program.forms import keys_of
 from trunnion.readers.program.settings import family_of, reading_of
+from trunnion.records import dataclass
 
 #: A word of a key, or a list of one.
 Value: TypeAlias = str | list[str]
@@ -78,19 +78,19 @@ class Proposal:
     role: Wording | None = None
     kind: Wording | None = None
 
-    def lines(self) -> Iterator[str]:
+    def lines(self, words: Words = LIBRARY) -> Iterator[str]:
         """Yield the proposal as TOML to copy, with why as comments."""
         for said in (self.kind, self.role):
             if said is not None:
-                yield said.with_cure().what
+                yield said.with_cure().text("what", words)
         if not self.keys:
-            yield str(phrase("reads_best_so", errors=self.before[0]))
+            yield phrase("reads_best_so", errors=self.before[0]).text("what", words)
             return
-        yield str(phrase("reads_better", errors=self.before[0], left=self.after[0]))
+        yield phrase("reads_better", errors=self.before[0], left=self.after[0]).text("what", words)
         yield "[control.reading]"
         for (key, value), why in zip(self.keys.items(), self.why, strict=True):
             written = f'"{value}"' if isinstance(value, str) else "[" + ", ".join(f'"{each}"' for each in value) + "]"
-            yield f"{key} = {written}  # {why}"
+            yield f"{key} = {written}  # {why.text('what', words)}"
 
 
 def proposed_reading(program: Path, machine: Machine) -> Proposal:

@@ -1,7 +1,6 @@
 """An impeller as it is machined: the steps with their times and clearances, the proof, the files."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, ClassVar
@@ -15,6 +14,7 @@ from trunnion.jobs.impeller.step_times import StepTimes
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.toolpath import Toolpath
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 
 

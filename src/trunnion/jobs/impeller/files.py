@@ -6,7 +6,6 @@ Out:    ``ImpellerFiles``.
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.controls.definition import SubprogramNaming
@@ -19,6 +18,7 @@ from trunnion.impeller.steps import MachiningStep, file_stem
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.messages import Wording
 from trunnion.output.subprograms import SubprogramNames
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

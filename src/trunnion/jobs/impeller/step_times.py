@@ -9,7 +9,6 @@ the distance between them. So a step whose passes are k times as many takes k ti
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Annotated, Final
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Flags
 from trunnion.impeller.steps import MachiningStep, StepKind
 from trunnion.model.toolpath import Kind, Operation, Phase
+from trunnion.records import dataclass
 from trunnion.results import Figure
 from trunnion.verification import Verification
 from trunnion.verification.results import OperationRows, durations

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -11,6 +10,7 @@ from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.messages import phrase
 from trunnion.model.toolpath import Toolpath
+from trunnion.records import dataclass
 from trunnion.simulation.fixtures import is_stated_fixture, stated_fixture
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.tools.choice import ClTool, choose_tools, tools_of_toolpaths

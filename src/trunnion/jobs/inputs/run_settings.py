@@ -4,7 +4,6 @@ All other settings belong to a control, whose definition explains them.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.cl import DIALECTS
@@ -17,6 +16,7 @@ from trunnion.options.option import Option
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 from trunnion.planning import PlanOptions
 from trunnion.planning.options import AXIS_TOLERANCE_WITHOUT_TCP
+from trunnion.records import dataclass
 
 _PLANNED: Final = PlanOptions()
 

@@ -5,7 +5,7 @@ Units:  mm, degrees.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -14,6 +14,7 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.profile import ToolShape

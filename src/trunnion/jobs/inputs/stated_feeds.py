@@ -1,7 +1,7 @@
 """The setting ``missing_feed``: feeds of cuts and holes whose CL file states none, and pitches of taps."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -10,6 +10,7 @@ from trunnion.errors import InputError, setting_problem
 from trunnion.jobs.inputs.stated_by_operation import check_operations, stated_values, value_twice
 from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, Kind, Operation, Toolpath
+from trunnion.records import dataclass
 
 _KEY: Final = "missing_feed"
 

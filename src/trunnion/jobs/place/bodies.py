@@ -1,7 +1,7 @@
 """The bodies that a part is placed among: those of the machine, tools, and what is clamped with the part."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final, Literal
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem, warning
@@ -21,6 +21,7 @@ from trunnion.placing.collisions.guarded_pairs import (
     guarded_pairs,
     guarded_tool,
 )
+from trunnion.records import dataclass
 from trunnion.simulation.collisions import BodyKind, machine_bodies
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.stock.solids import stock_shape

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -34,6 +34,7 @@ from trunnion.placing.path_rows import PathRows, joined_rows
 from trunnion.placing.plan_rows import rows_of_plan
 from trunnion.placing.program_heads import damaged_notices, stated_place
 from trunnion.placing.program_rows import _rows_at_workpiece, rows_of_run
+from trunnion.records import dataclass
 from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
 
 

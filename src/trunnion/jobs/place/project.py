@@ -1,7 +1,7 @@
 """A set-up of a project as it is placed."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Literal
 
@@ -17,6 +17,7 @@ from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import PostedSetup, Project
 from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,7 +7,7 @@ Out:    ``AskedSetting``; the text of a project that states them.
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.definitions.toml_text import written, written_key
@@ -15,7 +15,8 @@ from trunnion.errors import Problem, Severity
 from trunnion.jobs.post.settings_to_fill import GATHERED, entries_to_fill
 from trunnion.jobs.project.project import Division
 from trunnion.jobs.project.settings import OWN_KEYS
-from trunnion.wording import counted
+from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.records import dataclass
 
 #: A value, or the end of one, in whose place something is to be written.
 _TO_FILL: Final = re.compile(r"(?:^|[:,])(?:[A-Z][A-Z_]*|…)$")
@@ -70,13 +71,18 @@ def asked_settings(problems: Iterable[Problem]) -> list[AskedSetting]:
 
 
 def project_text(
-    keys: Mapping[str, object], settings: Mapping[str, str], asked: Sequence[AskedSetting], head: Sequence[str]
+    keys: Mapping[str, object],
+    settings: Mapping[str, str],
+    asked: Sequence[AskedSetting],
+    head: Sequence[Wording],
+    words: Words = LIBRARY,
 ) -> str:
     """Return a project that posts what was posted, with the settings that its messages ask for.
 
     keys      of the project, as they were given
     settings  that were given
     head      lines that stand above it as comments
+    words     the language of the comments
     """
     own, table = list[str](), list[str]()
     given = dict(settings)
@@ -86,15 +92,14 @@ def project_text(
         key, lines = OWN_KEYS.get(each.name), own
         if key is None:
             key, lines = written_key(each.name), table
-        lines += ["", *_reasons(each.problems)]
+        lines += ["", *_reasons(each.problems, words)]
         mark = "" if each.to_fill and each.is_needed else "# "
         lines.append(f"{mark}{key} = {written(_of_key(each.name, value) if lines is own else value)}")
     stated = [f"{OWN_KEYS[key]} = {written(_of_key(key, value))}" for key, value in given.items() if key in OWN_KEYS]
     stated += [f"{key} = {written(value)}" for key, value in keys.items()]
     others = [f"{written_key(key)} = {written(value)}" for key, value in given.items() if key not in OWN_KEYS]
-    comments = [_printable(f"# {each}") for each in head]
-    if asked:
-        comments.append("# First write values for the words in capitals, and take the # from what you decide so.")
+    head = [*head, *([phrase("first_fill_in")] if asked else [])]
+    comments = [_printable(f"# {each.text('what', words)}") for each in head]
     return "\n".join([*comments, *stated, *own, "", "[settings]", *others, *table, ""])
 
 
@@ -117,19 +122,27 @@ def _value(text: str) -> object:
     return found if len(found) > 1 else found[0]
 
 
-def _reasons(problems: Sequence[Problem]) -> list[str]:
+def _reasons(problems: Sequence[Problem], words: Words) -> list[str]:
     """Return comments that say why: the first message of each kind, with the number of the others."""
     kinds: dict[str, list[Problem]] = {}
     for each in problems:
         kinds.setdefault(each.code, []).append(each)
-    return [_reason(same[0], len(same) - 1) for same in kinds.values()]
+    return [_reason(same[0], len(same) - 1, words) for same in kinds.values()]
 
 
-def _reason(problem: Problem, others: int) -> str:
-    more = f", and {counted(others, 'message')} like it" if others else ""
-    place = f"line {problem.line}: " if problem.line else ""
-    cure = f"; {problem.cure}" if problem.cure else ""  # which has the conditions of what it offers
-    return _printable(f"# {place}{problem.severity}: {problem.what}{more}{cure} [{problem.code}]")
+def _reason(problem: Problem, others: int, words: Words) -> str:
+    """Return why: with the cure, which has the conditions of what it offers."""
+    what, cure = (problem.wording.text(part, words) for part in ("what", "cure"))
+    if others:
+        what = phrase("and_like_it", what=what, count=others).text("what", words)
+    if problem.line:
+        what = phrase("in_line_said", line=problem.line, severity=problem.severity.said(words), what=what).text(
+            "what", words
+        )
+    else:
+        what = f"{problem.severity.said(words)}: {what}"
+    said = Wording("terminal", "joined", texts=tuple(filter(None, (what, cure)))).text("what", words)
+    return _printable(f"# {said} [{problem.code}]")
 
 
 def _printable(text: str) -> str:

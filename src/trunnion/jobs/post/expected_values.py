@@ -5,12 +5,13 @@ Out:    tolerances and settings for ``trunnion.verification.verify``.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from trunnion.jobs.post.tolerances import program_tolerances
 from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
+from trunnion.records import dataclass
 from trunnion.verification import ExpectedValues, Tolerances
 
 

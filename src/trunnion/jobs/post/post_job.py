@@ -4,7 +4,7 @@ import math
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -36,6 +36,7 @@ from trunnion.output.program import OperationKey
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
 from trunnion.readers import check_reading
+from trunnion.records import dataclass
 
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.inputs.bodies import KnownTools

@@ -6,7 +6,7 @@ Out:    the program: planned, written, read back, run and compared with its tool
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final, Unpack
 
@@ -38,6 +38,7 @@ from trunnion.machines.loading import DEMANDS
 from trunnion.messages import phrase
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
+from trunnion.records import dataclass
 
 if TYPE_CHECKING:  # imported where stock is known
     from pathlib import Path

@@ -7,13 +7,14 @@ Out:    the same, as they are told.
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.result_output import Target
 from trunnion.messages import Wording, phrase
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.output.changed_words import Changer
+from trunnion.records import dataclass
 from trunnion.verification import Check, Place, Verification
 
 

@@ -1,7 +1,7 @@
 """What posting gives back."""
 
 import io
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +13,7 @@ from trunnion.messages import Wording
 from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, Figure
 from trunnion.verification import Check, Standing, Verification
 from trunnion.wording import counted

@@ -7,20 +7,21 @@ Out:    those that are not, and why.
 import filecmp
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.errors import InputError
 from trunnion.jobs.post.papers.manifests import verify_manifest
 from trunnion.jobs.result_output import PaperFiles
+from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class StalePaper:
-    """A paper that is not of the program as it is now; ``why`` goes on after its name."""
+    """A paper that is not of the program as it is now, and why."""
 
     file: Path
-    why: str
+    why: Wording
 
 
 def stale_papers(there: PaperFiles, now: PaperFiles) -> Iterator[StalePaper]:
@@ -32,23 +33,23 @@ def stale_papers(there: PaperFiles, now: PaperFiles) -> Iterator[StalePaper]:
     new = now.by_name()
     for name, file in there.by_name().items():
         if not file.is_file():
-            yield StalePaper(file, "is missing")
+            yield StalePaper(file, phrase("paper_missing"))
         elif name == "manifest":
             yield from _of_manifest(file, new[name], there.report)
         elif name != "report" and not filecmp.cmp(file, new[name], shallow=False):
-            yield StalePaper(file, "differs")
+            yield StalePaper(file, phrase("paper_differs"))
 
 
 def _of_manifest(there: Path, now: Path, report: Path | None) -> Iterator[StalePaper]:
     try:
         checked = verify_manifest(there)
     except InputError as error:
-        yield StalePaper(there, error.problems[0].what)
+        yield StalePaper(there, error.problems[0].wording)
         return
     if _content(there) != _content(now):
-        yield StalePaper(there, "differs")
+        yield StalePaper(there, phrase("paper_differs"))
     elif report is not None and any(each.fault and each.what == "report" for each in checked.files):
-        yield StalePaper(report, "differs")
+        yield StalePaper(report, phrase("paper_differs"))
 
 
 def _content(manifest: Path) -> object:

@@ -8,7 +8,7 @@ Out:    for each of them how the programs that are posted now differ from those 
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
@@ -28,7 +28,9 @@ from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.result_output import NO_PAPERS
 from trunnion.jobs.verify.comparing import diff
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
+from trunnion.verification.comparison.result import Comparison
 
 #: What projects are called that are cases, and how the names of others end.
 _NAMES: Final = ("case.toml", "part.toml")
@@ -60,13 +62,11 @@ class ChangedProgram:
     """A program of which a file is not as it was.
 
     files   those, with subprograms
-    motion  how it moves now against before, in lines; none where it is new
-    moves   it moves as before; False where nobody can tell
+    motion  how it moves now against before, or why nobody can tell; None where it is new
     """
 
     files: tuple[ChangedFile, ...]
-    motion: tuple[str, ...] = ()
-    moves: bool = False
+    motion: Comparison | Wording | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,10 +224,10 @@ def _changed(program: PostResult, setup: PostedSetup, places: dict[Path, Path]) 
     if not places[program.output].is_file():
         return ChangedProgram(tuple(changed))
     if large := next((places[file] for file in files_of(program) if _is_large(places[file], file)), None):
-        return ChangedProgram(tuple(changed), (f"not compared: {large.name} is far larger than what comes out",))
+        return ChangedProgram(tuple(changed), phrase("not_compared_larger", file=large.name))
     beside = [places[file] for file in program.subprograms if places[file].is_file()]
-    moves, lines = _motion(places[program.output], program, [*beside, *map(Path, setup.subprograms)])
-    return ChangedProgram(tuple(changed), tuple(lines), moves)
+    motion = _motion(places[program.output], program, [*beside, *map(Path, setup.subprograms)])
+    return ChangedProgram(tuple(changed), motion)
 
 
 def _is_large(there: Path, now: Path) -> bool:
@@ -237,19 +237,18 @@ def _is_large(there: Path, now: Path) -> bool:
 
 def _difference(there: Path, now: Path) -> TextDifference | None:
     if _is_large(there, now):
-        return TextDifference(f"{there.stat().st_size} bytes are there, and {now.stat().st_size} come out")
+        return TextDifference(phrase("bytes_differ", there=there.stat().st_size, now=now.stat().st_size))
     return text_difference(there, now)
 
 
-def _motion(there: Path, program: PostResult, beside: Sequence[Path]) -> tuple[bool, list[str]]:
-    """Whether a program moves as the one that is there, and how it differs."""
+def _motion(there: Path, program: PostResult, beside: Sequence[Path]) -> Comparison | Wording:
+    """Return how a program moves against the one that is there, or why nobody can tell."""
     assert program.run is not None, "nothing is posted here that nobody reads"
     run = named_run(program.run, f"{there.name} as it is posted now")
     try:
-        found = diff(there, run, machine=run.machine, subprograms=beside)
+        return diff(there, run, machine=run.machine, subprograms=beside)
     except InputError as error:
-        return False, [f"the program that is there cannot be read: {error.problems[0].what}"]
-    return found.same, list(found.lines())
+        return phrase("program_unreadable", reason=error.problems[0].wording)
 
 
 def _gone(project: Project, places: dict[Path, Path]) -> Iterator[Path]:

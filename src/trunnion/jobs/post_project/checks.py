@@ -5,7 +5,7 @@ Out:    what was found, as errors or warnings as the project judges it.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Proj
 from trunnion.jobs.verify.comparing import diff
 from trunnion.messages import Wording, foreign, phrase
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.verification import durations
 from trunnion.wording import format_duration
 

@@ -7,7 +7,7 @@ Out:    the toolpath, the settings and the file of each operation's program.
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Final
@@ -32,6 +32,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.output.program import Program
 from trunnion.output.validation.tools import tool_conflicts
+from trunnion.records import dataclass
 
 #: Letters of an operation that the name of its file repeats.
 _MOST_LETTERS: Final = 40

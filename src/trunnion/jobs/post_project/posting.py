@@ -5,7 +5,7 @@ Out:    its programs, what the checks of the project found, and an error where o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +29,7 @@ from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.outputs import reported_at_outputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 if TYPE_CHECKING:  # imported where a project is simulated
     from trunnion.jobs.simulate.result import SimulationResult

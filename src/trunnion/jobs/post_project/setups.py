@@ -5,7 +5,7 @@ Out:    the programs of each set-up, each of them proven.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -27,6 +27,7 @@ from trunnion.jobs.project.settings import told_in_project
 from trunnion.jobs.result_output import NO_PAPERS, PaperFiles
 from trunnion.machines import Machine
 from trunnion.model.motion import Motion
+from trunnion.records import dataclass
 
 if TYPE_CHECKING:
     from trunnion.simulation.meshes import TriangleMesh

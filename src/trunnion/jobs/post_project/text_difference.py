@@ -7,12 +7,12 @@ Out:    what to say of the difference, and the first lines of it.
 import difflib
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import islice, zip_longest
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from trunnion.wording import counted
+from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 
 #: Lines behind the first difference that are compared by what they say, and not by their numbers alone.
 _MOST_ALIGNED: Final = 1000
@@ -42,7 +42,7 @@ class TextDifference:
     lines    the first ones that differ, as a unified diff has them; ``is_cut``: there are more
     """
 
-    summary: str
+    summary: Wording
     lines: tuple[str, ...] = ()
     is_cut: bool = False
 
@@ -94,10 +94,10 @@ def _of_all(context: list[bytes], was: list[bytes], now: list[bytes], first: int
     is_moved = _changes(without) < _changes(with_numbers)
     shown = without if is_moved else with_numbers
     if not shown:
-        return TextDifference(f"nothing but block numbers from line {first} on")
+        return TextDifference(phrase("only_block_numbers", line=first))
     added = sum(line.startswith("+") for line in shown)
-    summary = f"{counted(_changes(shown) - added, 'line')} removed, {added} added"
-    summary += ", and block numbers behind them" if is_moved else ""
+    variant = "lines_changed_and_numbers" if is_moved else "lines_changed"
+    summary = phrase(variant, count=_changes(shown) - added, added=added)
     return TextDifference(summary, tuple(shown[:_MOST_SHOWN]), len(shown) > _MOST_SHOWN)
 
 
@@ -111,7 +111,7 @@ def _changes(diff: list[str]) -> int:
 
 
 def _of_line_ends(first: int) -> TextDifference:
-    return TextDifference(f"nothing but line ends from line {first} on (does git change them? write * -text)")
+    return TextDifference(phrase("only_line_ends", line=first))
 
 
 def _by_numbers(
@@ -135,9 +135,9 @@ def _by_numbers(
         return _of_line_ends(first)
     if lines_before == lines_after:
         return TextDifference(
-            f"{counted(changed, 'line')} changed", tuple(shown[:_MOST_SHOWN]), 3 * changed > len(shown)
+            phrase("lines_other", count=changed), tuple(shown[:_MOST_SHOWN]), 3 * changed > len(shown)
         )
-    summary = f"from line {first} on; {lines_before} lines before, {lines_after} now"
+    summary = phrase("lines_from_on", line=first, before=lines_before, now=lines_after)
     beginning = _diff(_unnumbered(context), _unnumbered(was), _unnumbered(now), first)
     return TextDifference(summary, tuple(beginning[:_MOST_SHOWN]), is_cut=True)
 

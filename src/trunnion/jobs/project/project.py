@@ -1,7 +1,7 @@
 """A project: set-ups of a part with what is posted, simulated and checked in each, as its file states them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 from trunnion.jobs.inputs.settings import SettingValue
 from trunnion.jobs.inputs.simulation_input import Places, SimulationInput
 from trunnion.jobs.result_output import NO_PAPERS, PaperFiles
+from trunnion.records import dataclass
 
 
 class Judgement(StrEnum):

@@ -5,7 +5,7 @@ Out:    ``ReadSetup``: the set-up as it is simulated, and as it is posted, if it
 """
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -24,6 +24,7 @@ from trunnion.jobs.result_output import NO_PAPERS, PAPERS, PaperFiles, paper_fil
 from trunnion.messages import Wording
 from trunnion.options.option import Option
 from trunnion.options.words import CL_SETTINGS
+from trunnion.records import dataclass
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.text import parse_tool
 

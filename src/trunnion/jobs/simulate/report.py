@@ -15,7 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import check_report_name
-from trunnion.jobs.simulate.result import SimulationResult, not_measured_lines, travel_lines
+from trunnion.jobs.simulate.result import SimulationResult, bodies_stand_lines, travel_lines
 from trunnion.messages import LIBRARY, Words
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.remarks import remark_groups
@@ -88,14 +88,14 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         remarks=partial(_remarks, found),
         data=_cleaned(to_data(found)),
         not_checked=found.not_judged,
-        stated=() if found.stated_said is None else (found.stated_said.changed(clean),),
+        grounds=tuple(each.changed(clean) for each in found.grounds.wordings()),
     )
 
 
 def _remarks(found: SimulationResult, words: Words) -> tuple[str, ...]:
     """Return what was taken for granted or broken off, each thing once with its count."""
     groups = (group.line_in(words) for group in remark_groups(found.remarks))
-    return (*groups, *not_measured_lines(found, words), *travel_lines(found, words))
+    return (*groups, *bodies_stand_lines(found, words), *travel_lines(found, words))
 
 
 def _clamped(found: SimulationResult) -> str:

@@ -1,7 +1,7 @@
 """What a simulation found, as a record for scripts, data and reports."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from typing import Annotated, Any, ClassVar, Final
 
@@ -12,6 +12,7 @@ from trunnion.jobs.simulate.travel import ProgramTravel, judged_travel, travel_d
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, unmeasured_values
 from trunnion.messages import LIBRARY, Wording, Words, joined, phrase
 from trunnion.model.run_samples import joint_samples
+from trunnion.records import dataclass
 from trunnion.reporting.remarks import remark_data
 from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
 from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperation, SimulationFinding, setup_findings
@@ -19,7 +20,8 @@ from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.tools.profile import ToolShape
-from trunnion.verification import Verdict, stated_texts
+from trunnion.verification import Verdict
+from trunnion.verification.grounds import NO_GROUNDS, Grounded, Grounds, grounds_of, joined_grounds
 
 #: Air cuts that are told, the longest ones.
 _MOST_AIR: Final = 20
@@ -44,7 +46,7 @@ def _sentences(said: Iterable[Wording]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class SimulationResult:
+class SimulationResult(Grounded):
     """What a simulation found.
 
     programs   files, in their order
@@ -63,11 +65,12 @@ class SimulationResult:
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
     cuts_unknown  why it is not known what is cut under radius compensation; empty: it is
-    not_measured  values of the definition that the distances of bodies stand on, though nobody has measured them
+    grounds    what it stands on besides the programs
+    bodies_on  values of the definition that the distances of bodies stand on, though nobody has measured them
+    has_bodies  whether the definition of the machine states bodies
     simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     skip_meanings  which blocks were skipped (``/``) in further runs: what these found is among the findings; none
                where no block may be skipped. All other figures but ``gouge``, the worst, are those with none skipped
-    stated     words and variables that the programs rely on, with what somebody has stated of them
     travel     of each program, as ``trunnion verify`` judges it
     setup      its name, where this is one of several
     setups     the results of each, where there are several
@@ -102,8 +105,9 @@ class SimulationResult:
     setup: Annotated[str, Figure("name", is_extra=True)] = ""
     cuts_unknown: Annotated[tuple[Wording, ...], Figure("cuts_not_checked", after="remarks", take=_sentences)] = ()
     skip_meanings: Annotated[tuple[Wording, ...], Figure("meanings", after="remarks", take=_sentences)] = ()
-    not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
-    stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=(), after="remarks")] = ()
+    grounds: Annotated[Grounds, Figure(is_flat=True, after="remarks")] = NO_GROUNDS
+    bodies_on: Annotated[tuple[str, ...], NOT_DATA] = ()
+    has_bodies: Annotated[bool, NOT_DATA] = True
     travel: Annotated[tuple[ProgramTravel, ...], Figure(take=travel_data, after="remarks")] = ()
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
 
@@ -128,7 +132,7 @@ class SimulationResult:
         """Why collisions with the machine were not checked."""
         variants = [each.wording.variant for each in self.remarks if each.code == "SIM310"]
         why = dict.fromkeys(_WHY_NOT_CHECKED[each] for each in variants if each in _WHY_NOT_CHECKED)
-        return tuple(map(phrase, why))
+        return (*map(phrase, why), *(() if self.has_bodies else (phrase("no_machine_bodies"),)))
 
     @property
     def outcome(self) -> Verdict:
@@ -149,9 +153,8 @@ class SimulationResult:
 
     def said_verdict(self, words: Words = LIBRARY) -> str:
         """Return what was found, and what nothing was found of because nobody could check it."""
-        stated = () if self.stated_said is None else (self.stated_said,)
         meanings = () if self.meanings_said is None else (self.meanings_said,)
-        return joined((self._found_said(), *meanings, *self.not_judged, *stated), words)
+        return joined((self._found_said(), *meanings, *self.not_judged, *self.grounds.wordings()), words)
 
     def _found_said(self) -> Wording:
         if self.passed:
@@ -186,18 +189,15 @@ class SimulationResult:
         return phrase("collisions_not_checked", why=self.collisions_unknown) if self.collisions_unknown else None
 
     @property
-    def stated_said(self) -> Wording | None:
-        """What somebody has stated that it stands on; None: nothing."""
-        return phrase("stands_on_stated", words=self.stated) if self.stated else None
-
-    @property
     def not_judged(self) -> tuple[Wording, ...]:
         """What was not checked, and why."""
         codes = dict.fromkeys(each.code for each in self.remarks if each.code in _NOT_JUDGED)
         if self.not_checked:
             codes.pop("SIM310", None)
         others = phrase("not_all_judged", codes=tuple(codes)) if codes else None
-        return tuple(each for each in (self.cuts_said, self.collisions_said, others) if each is not None)
+        travel = dict.fromkeys(why for each in self.travel for why in each.check.missing if each.check.passed)
+        axes = phrase("travel_not_checked", why=tuple(travel)) if travel else None
+        return tuple(each for each in (self.cuts_said, self.collisions_said, axes, others) if each is not None)
 
     @property
     @Figure("remarks", after="operations")
@@ -221,6 +221,9 @@ class SimulationResult:
 def make_result(cut: CutSetup) -> SimulationResult:
     """Return the result of a set-up."""
     found, own, programs = cut.simulation, setup_findings(cut), cut.programs
+    travel = tuple(judged_travel(cut.setup.runs, cut.setup.register_holds))
+    on_bodies = _unmeasured(cut, *POSITIONS, ValueKind.BODIES) if cut.pairs else ()
+    on_travel = (value for each in travel for value in each.check.stands_on)
     x, y, z = found.stock.lattice.cell.tolist()
     return SimulationResult(
         programs=tuple(program.run.files[0] for program in programs),
@@ -242,27 +245,28 @@ def make_result(cut: CutSetup) -> SimulationResult:
         seconds=found.seconds,
         simulation=found,
         setup=cut.setup.name,
-        not_measured=_not_measured(cut),
+        grounds=grounds_of(cut.setup.runs, (*_unmeasured(cut, ValueKind.ANGLES), *on_bodies, *on_travel)),
+        bodies_on=tuple(map(str, on_bodies)),
+        has_bodies=bool(cut.setup.machine.bodies),
         cuts_unknown=tuple(cut.setup.missing()),
-        stated=tuple(dict.fromkeys(word for run in cut.setup.runs for word in stated_texts(run))),
-        travel=tuple(judged_travel(cut.setup.runs, cut.setup.register_holds)),
+        travel=travel,
         tools=cut.setup.tools,
     )
 
 
-def _not_measured(cut: CutSetup) -> tuple[str, ...]:
-    """Return the values that nobody has measured, and that distances of bodies stand on; none if none were checked."""
+def _unmeasured(cut: CutSetup, *kinds: ValueKind) -> tuple[Wording, ...]:
+    """Return the values of some kinds that nobody has measured, and that matter to the programs."""
     joints = [joint_samples(run) for run in cut.setup.runs]
-    if not (cut.pairs and joints):
+    if not joints:
         return ()
-    kinds = (*POSITIONS, ValueKind.BODIES)
-    return tuple(map(str, unmeasured_values(cut.setup.machine, kinds, np.concatenate(joints))))
+    values = unmeasured_values(cut.setup.machine, kinds, np.concatenate(joints))
+    return tuple(value.said for value in values)
 
 
-def not_measured_lines(found: SimulationResult, words: Words = LIBRARY) -> Iterator[str]:
+def bodies_stand_lines(found: SimulationResult, words: Words = LIBRARY) -> Iterator[str]:
     """Yield what distances of bodies stand on though nobody has measured it; nothing where there is none."""
-    if found.not_measured:
-        stands = phrase("stands_on", values=found.not_measured)
+    if found.bodies_on:
+        stands = phrase("stands_on", values=found.bodies_on)
         yield phrase("distances_stand_on", stands=stands).text("what", words)
 
 
@@ -294,8 +298,9 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         setup="",
         setups=tuple(results),
         pairs=sum(each.pairs for each in results),
-        not_measured=tuple(dict.fromkeys(value for each in results for value in each.not_measured)),
-        stated=tuple(dict.fromkeys(word for each in results for word in each.stated)),
+        grounds=joined_grounds(each.grounds for each in results),
+        bodies_on=tuple(dict.fromkeys(value for each in results for value in each.bodies_on)),
+        has_bodies=all(each.has_bodies for each in results),
         travel=tuple(one for each in results for one in each.travel),
         cuts_unknown=tuple(dict.fromkeys(why for each in results for why in each.cuts_unknown)),
     )

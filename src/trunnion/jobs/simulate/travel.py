@@ -5,11 +5,11 @@ Out:    what the check ``travel`` says of each, as ``trunnion verify`` makes it;
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from trunnion.compensation.stretches import RegisterValue
 from trunnion.messages import LIBRARY, Words
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.verification import Check, ExpectedValues, place_line, verify
 
 

@@ -8,7 +8,7 @@ state them, or somebody does. A cut with TCP needs neither.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
@@ -19,6 +19,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.placing.program_heads import place_without_tcp
+from trunnion.records import dataclass
 from trunnion.verification import restore_rapids
 from trunnion.verification.comparison import cuts_by_place
 

@@ -3,12 +3,13 @@
 In:     a program that was run, and the words that the definition of its control states as its own; its proof.
 Out:    a warning for each word of the machine's builder that the definition does not declare, where it stands first,
         for each block at which the program waits or stops, or passes the end of a turn by a way that no source
-        confirms, for each word that is known and not simulated (M118, M143), and for each mode and each work offset
-        that it leaves to the next program; and one for the axis
-        whose rapid speed is far too low for its feeds.
+        confirms, for each word that is known and not simulated (M118), and for each mode and each work offset
+        that it leaves to the next program; one for positions that count from a place of the machine's builder (M92);
+        and one for the axis whose rapid speed is far too low for its feeds.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Final
 
 from trunnion.controls import Control
@@ -34,6 +35,9 @@ _SLOWS: Final = 1.5
 #: Words that are known and not simulated; radius compensation, which the checks judge, has the same code.
 _NOT_SIMULATED: Final = ("NC221", "not_simulated")
 
+#: Positions that count from a place which only the machine knows: the first block of each is told.
+_PLACES_OF_BUILDER: Final = ("m92_counts_set_machine_taken", "second_reference")
+
 _KINDS: Final = (_OF_BUILDER, _WAITS, _END_OF_TURN, _LEFT_ON)
 
 
@@ -49,7 +53,12 @@ def program_warnings(run: Run, stated: frozenset[str] = frozenset()) -> list[Pro
         told += _of_kind(run, code, [each for each in run.diagnostics if _is_told(each, code, stated)])
     told += [_told(each, each.wording) for code in _FEW for each in run.diagnostics if _is_told(each, code, stated)]
     noted = (each for each in run.diagnostics if (each.code, each.wording.variant) == _NOT_SIMULATED)
-    return told + [_told(each, each.wording) for each in noted]
+    return told + [_told(each, each.wording) for each in (*noted, *_places_of_builder(run))]
+
+
+def _places_of_builder(run: Run) -> Iterator[Diagnostic]:
+    for variant in _PLACES_OF_BUILDER:
+        yield from islice((each for each in run.diagnostics if each.wording.variant == variant), 1)
 
 
 def speed_warnings(found: Verification) -> list[Problem]:

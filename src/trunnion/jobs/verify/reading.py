@@ -4,7 +4,7 @@ In:     a program, the machine that runs it, and the arguments of the verificati
 Out:    the run and the toolpaths; warnings about them have been reported.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from trunnion.controls import Control
@@ -25,6 +25,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.options.words import CL_SETTINGS
 from trunnion.placing.program_heads import stated_place, unlike_cl_files, unlike_zero
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

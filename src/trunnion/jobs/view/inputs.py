@@ -6,7 +6,7 @@ Out:    a program that has been run and verified, with its text; the arguments t
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -36,6 +36,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.options.words import CL_SETTINGS
 from trunnion.placing.program_heads import stated_place
+from trunnion.records import dataclass
 from trunnion.verification import Verification, restore_rapids
 
 #: Arguments of a view that a set-up of a project states; and those of the project as a whole.

@@ -1,7 +1,6 @@
 """The inverse map for rows of tool positions."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from trunnion.machines.inverse.parameters import KinematicParameters, kinematic_
 from trunnion.machines.inverse.rotary import POLE, UNREACHABLE, branch_angles, solve_tilt
 from trunnion.machines.inverse.slides import SLIDES_DEPENDENT, solve_slides, solve_slides_cos_sin
 from trunnion.machines.machine import Machine
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,6 +1,5 @@
 """The body that the tips of one rotary position fill while the slides go through their travel."""
 
-from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
@@ -9,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats
 from trunnion.machines.forward import forward
 from trunnion.machines.machine import Machine
+from trunnion.records import dataclass
 
 #: A slide goes so far to find its direction, mm: with less the rounding of positions would count.
 _FAR: Final = 1024.0

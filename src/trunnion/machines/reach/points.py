@@ -1,6 +1,5 @@
 """Which points of the workpiece the tip reaches, each with a tool axis of its own."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -9,6 +8,7 @@ from trunnion.arrays import Flags, Floats
 from trunnion.machines.inverse import slide_positions
 from trunnion.machines.machine import Machine
 from trunnion.machines.reach.poses import branch_positions, free_angles
+from trunnion.records import dataclass
 
 #: How far a slide may be beyond its limit and still count as on it, mm.
 _ON_LIMIT: Final = 1e-6

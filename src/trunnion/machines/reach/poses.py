@@ -1,7 +1,6 @@
 """The rotary positions that give tool axes, within the travel of the rotary axes."""
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines.inverse import inverse
 from trunnion.machines.machine import Axis, Machine
+from trunnion.records import dataclass
 
 #: How far an angle may be beyond its limit and still count as on it, degrees: that of a tool axis at the very limit has
 #: rounding errors.

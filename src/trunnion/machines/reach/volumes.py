@@ -8,7 +8,7 @@ decided; others are divided again, until they are so small that only their middl
 decided are what lies between the bounds.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Annotated, Final
 
@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Floats, Floats2, Floats3, Ints
 from trunnion.jit import inner, kernel
 from trunnion.machines.reach.bodies import PoseBodies
+from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: The box is divided into so many cells along each side at first.

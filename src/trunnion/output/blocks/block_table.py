@@ -1,13 +1,14 @@
 """The words of successive motion blocks as columns."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
 from trunnion.controls.vocabulary import VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)

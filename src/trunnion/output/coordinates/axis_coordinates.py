@@ -6,7 +6,7 @@ so that rounding an angle does not move the tip.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -17,6 +17,7 @@ from trunnion.controls.words import NumberFormat
 from trunnion.machines import Machine, forward, slide_positions
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs
+from trunnion.records import dataclass
 
 #: A tip (or all linear axes) that moves by less rests, mm: a degree then counts as a millimetre.
 AT_REST: Final = 1e-4

@@ -1,7 +1,6 @@
 """Holes of one cycle in groups: those of one height follow each other, and each file gets as many as fit."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -12,6 +11,7 @@ from trunnion.controls.words import NumberFormat
 from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.motion import Motion
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.records import dataclass
 
 #: Writes holes of one height in one file: the first row of that height, the rows from and to, the events at the first
 #: of them, and the phase comment that was written last; returns the new one.

@@ -4,7 +4,6 @@ In:     motions of a program, in their order.
 Out:    errors where no speed is stated; warnings where the CL file states that of another tool.
 """
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -14,6 +13,7 @@ from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, LoadTool, Operation, SpindleOff, SpindleOn
 from trunnion.output.program import Program
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

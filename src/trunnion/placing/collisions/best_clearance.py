@@ -1,7 +1,7 @@
 """Of all turns of a part, and all choices of branches, the place at which bodies stay farthest apart."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
@@ -18,6 +18,7 @@ from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath
+from trunnion.records import dataclass
 
 #: PathSamples that are asked first, and rows beside them where bodies were nearest at earlier turns.
 _COARSE: Final = 400

@@ -1,7 +1,6 @@
 """The least distance of pairs of bodies over a path, at one place of the zero."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -14,6 +13,7 @@ from trunnion.placing.collisions.guarded_pairs import Guarded, GuardedPair, piec
 from trunnion.placing.collisions.nearest_moment import Course, course_pose, nearest_moment
 from trunnion.placing.collisions.path_samples import PathSamples
 from trunnion.placing.collisions.surfaces import SurfaceGap, SurfacePair
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds
 from trunnion.simulation.collisions.hull_pieces import HullPiece
 from trunnion.simulation.collisions.hull_points import HullPoints, hull_points

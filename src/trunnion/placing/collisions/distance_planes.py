@@ -4,7 +4,6 @@ At a convex function's plane of contact it is lifted until it is above all corne
 function in all of the cell. The other way round the plane itself is below the function everywhere.
 """
 
-from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.placing.collisions.clearance import Clearance, Nearest
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.hull_gap import gaps_at, pose_gap
 
 _CORNERS: Final = np.array(list(product((0.0, 1.0), repeat=3)))

@@ -1,7 +1,6 @@
 """Which pieces of bodies are kept apart, and what changes how far apart they are."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum, auto
 from functools import lru_cache
 from itertools import product
@@ -12,6 +11,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.machines.links import BED, WORKPIECE, axes_between, carrier, is_nearer_the_tool
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.bodies import Body, BodyKind, tool_bodies, tool_pose
 from trunnion.simulation.collisions.hull_pieces import HullPiece, mesh_pieces, section_pieces
 from trunnion.simulation.collisions.pairs import are_on_one_side, body_pairs, may_meet, seen_at_home, side_of

@@ -6,7 +6,6 @@ Slides are linear functions of the workpiece zero in each of them.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -18,6 +17,7 @@ from trunnion.model.subdivision import arc_frames, circle_points
 from trunnion.placing.axis_equations import axis_equations
 from trunnion.placing.moving_samples import turning_samples
 from trunnion.placing.path_rows import PathRows
+from trunnion.records import dataclass
 
 #: How far chords of arcs are off them, mm.
 CHORD: Final = 0.01

@@ -7,7 +7,7 @@ places so far, or brings a new moment. Where ceilings are too far above the dist
 
 import heapq
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import count
 from typing import Final
 
@@ -18,6 +18,7 @@ from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.collisions.distance_planes import Plane, Witness
 from trunnion.placing.largest_margin import EXACT, linear_program
 from trunnion.placing.travel_limits import TABLE, CutSet
+from trunnion.records import dataclass
 
 #: The search ends when no place can have a distance larger by more, mm, or by more than this share of it; and what of
 #: the distance is given up for more margin, as a part of that.

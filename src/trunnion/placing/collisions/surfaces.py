@@ -1,12 +1,12 @@
 """How far pieces are apart whose hulls stand out beyond them: their triangles say it."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.hull_gap import pose_gap
 from trunnion.simulation.collisions.hull_pieces import HullPiece
 from trunnion.simulation.collisions.hull_points import HullPoints, hull_points

@@ -7,12 +7,12 @@ word means.
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOn, Event, Sense, SpindleOff, SpindleOn
+from trunnion.records import dataclass
 
 
 class HoleMethod(StrEnum):

@@ -9,7 +9,7 @@ angle. Motion can do neither, so such cycles stay.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
@@ -32,6 +32,7 @@ from trunnion.planning.holes.pecks import SAME_HEIGHT, HoleMotions, hole_motions
 from trunnion.planning.holes.skipped_holes import LevelWays, level_ways, with_lifts
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.planning.options import CycleObjection
+from trunnion.records import dataclass
 
 #: The reason for holes as motion although the control has their cycles.
 REQUESTED: Final = phrase("as_requested")

@@ -1,11 +1,11 @@
 """The motions that make one hole: pecks, returns to clear the chips, and the retract."""
 
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.model.toolpath import Kind
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod
+from trunnion.records import dataclass
 
 #: A rapid back into a hole ends this far above the drilled depth, and a chip-breaking peck returns as far, mm.
 REENTRY_CLEARANCE: Final = 0.5

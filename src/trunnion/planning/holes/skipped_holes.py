@@ -8,7 +8,7 @@ Both must be at one height, so that it goes across level. The lower one is raise
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -19,6 +19,7 @@ from trunnion.model.toolpath import BlockSkip, Kind, Operation
 from trunnion.planning.holes.cycles import HoleCycleError
 from trunnion.planning.holes.pecks import SAME_HEIGHT
 from trunnion.planning.linearization.row_insertion import insert_rows
+from trunnion.records import dataclass
 
 #: Tool axes are the same if no component differs by more than this.
 _SAME_AXIS: Final = 1e-7

@@ -7,7 +7,7 @@ of the pole to the other is led through it, where that is no farther off its pat
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -25,6 +25,7 @@ from trunnion.planning.linearization.leg_division import PathRows
 from trunnion.planning.linearization.rotary_motion import rotary_motion
 from trunnion.planning.poses.contact import NO_CONTACT, contact_of
 from trunnion.planning.rotary_positions import continuous_positions, tool_axes
+from trunnion.records import dataclass
 
 #: Where a step is looked at, as shares of it.
 _SHARES: Final = np.linspace(0.0, 1.0, 17)[1:-1]

@@ -1,7 +1,6 @@
 """Points between CL points, where a control would lead the tool off the CAM's path by more than the tolerances."""
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -12,6 +11,7 @@ from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.machines.forward import kinematic_chain
 from trunnion.planning.linearization.leg_division import PathRows, divide_rows
 from trunnion.planning.linearization.leg_error import branch_of
+from trunnion.records import dataclass
 
 #: Share of a tolerance that is used: the samples within a span miss the worst place by less than the rest.
 USABLE_SHARE: Final = 0.96

@@ -13,7 +13,7 @@ rewind is such a change: the slides follow it, and the tip rests at the clearanc
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -34,6 +34,7 @@ from trunnion.planning.linearization.slide_arcs import keep_slide_arcs
 from trunnion.planning.options import PlanOptions
 from trunnion.planning.request import PlanRequest
 from trunnion.planning.rotary_positions import displayed_positions
+from trunnion.records import dataclass
 
 #: Pieces into which an even turn is cut: at first, and at most.
 _FIRST_PIECES: Final = 8

@@ -1,7 +1,6 @@
 """How the rotary axes turn from row to row, and where that cannot follow the great circle of the tool axis."""
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -12,6 +11,7 @@ from trunnion.model.toolpath import Kind, Moves
 from trunnion.planning.linearization.arc_chords import great_circle_points
 from trunnion.planning.linearization.intermediate_points import branches_of_rows
 from trunnion.planning.rotary_positions import continuous_positions, tool_axes
+from trunnion.records import dataclass
 
 #: Rotary axes that turn by less than this, degrees, are at rest.
 _NO_MOTION: Final = 1e-9

@@ -4,7 +4,7 @@ It acts only if the user chooses a strategy. Every row that then differs from th
 can check the program against the record.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -19,6 +19,7 @@ from trunnion.planning.pole.lean_task import LeanedMoves, LeanTask, PoleRegion
 from trunnion.planning.pole.tool_axis_lean import lean_tool_axis
 from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.request import PreparedOperation
+from trunnion.records import dataclass
 
 #: Regions that are named one by one.
 _NAMED: Final = 20

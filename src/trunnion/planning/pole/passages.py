@@ -6,7 +6,7 @@ axis as near to the CAM's as that angle allows. The tip stays where it is.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from trunnion.planning.pole.lean_limits import closest_second_angles, degrees_of
 from trunnion.planning.pole.lean_task import LeanTask, PoleRegion, axis_deviation
 from trunnion.planning.poses.placement import OUT_OF_REACH
 from trunnion.planning.poses.selection import PlannedPoses, cheapest_states, choose_poses, poses_of_states
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

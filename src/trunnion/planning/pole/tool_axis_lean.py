@@ -12,7 +12,7 @@ Only passages and rows in which an axis would exceed its rapid speed are looked 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -34,6 +34,7 @@ from trunnion.planning.poses.placement import REWIND, WITHIN_LIMITS
 from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.rotary_positions import continuous_positions, displayed_positions, tool_axes
 from trunnion.planning.speed.rotary_speed import USABLE_SHARE
+from trunnion.records import dataclass
 
 #: Cones about the pole, as multiples of the given angle, in which the branch may change where nothing else helps.
 _CONE_FACTORS: Final = (1.0, 2.0, 4.0, 8.0)

@@ -1,6 +1,6 @@
 """The decision log of an operation: where it starts, where it changes its pose, and why."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from trunnion.planning.poses.limit_lookahead import LimitHit, continue_in_branch
 from trunnion.planning.poses.selection import choose_nearest_states, poses_of_states
 from trunnion.planning.poses.states import MAX_BEND, POLE_JUMP, REWIND_STEP, STATE_BITS, states_of
 from trunnion.planning.rotary_positions import is_endless, tool_axes
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

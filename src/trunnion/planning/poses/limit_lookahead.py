@@ -3,7 +3,6 @@
 It explains decisions; it does not make them.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -14,6 +13,7 @@ from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Moves
 from trunnion.planning.axis_limits import limit_violation_text, limits_of, outside_limits
 from trunnion.planning.poses.contact import NO_CONTACT, contact_of
+from trunnion.records import dataclass
 
 #: Rows looked at together: at first so many, then twice as many each time.
 _CHUNK: Final = 256

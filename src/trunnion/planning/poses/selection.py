@@ -5,7 +5,6 @@ It is the optimum of ``trunnion.planning.poses.optimizer`` over the states and c
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -21,6 +20,7 @@ from trunnion.planning.poses.placement import PoseColumns, place_rows
 from trunnion.planning.poses.search_rows import workspace
 from trunnion.planning.poses.search_space import search_space_of
 from trunnion.planning.poses.states import STATE_BITS, states_of
+from trunnion.records import dataclass
 
 #: Changes that are kept one by one.
 _NAMED: Final = 50

@@ -6,13 +6,13 @@ turns in its states, as it takes the shorter way.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.machines import Axis, Machine
+from trunnion.records import dataclass
 
 #: Bits of a backpointer: the state before; the step from there is a rewind; the rewind is blocked.
 STATE_BITS: Final = 0x3F

@@ -1,12 +1,12 @@
 """How far the tool retracts along its axis before it turns: by a distance, up to a plane, or out of a sphere."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.records import dataclass
 
 #: A tool axis that rises towards a plane by less than this share of its length does not lead to it.
 _MIN_RISE: Final = 0.05

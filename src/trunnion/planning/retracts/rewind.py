@@ -8,7 +8,7 @@ straight, and lines without. What is cut before and after is what would have bee
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from trunnion.planning.poses.placement import REWIND
 from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.retracts.clearance import MIN_RETRACT, Clearance
 from trunnion.planning.rotary_positions import displayed_positions, is_endless
+from trunnion.records import dataclass
 
 #: So near to the cut the tool moves at a feed in any case, mm; a shorter retract than twice that has no rapid.
 _NEAR_CUT: Final = 2.0

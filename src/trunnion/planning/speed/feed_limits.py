@@ -4,7 +4,7 @@ If not, the decision log says where an axis would be too fast, and what would he
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -19,6 +19,7 @@ from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.request import PreparedOperation
 from trunnion.planning.retracts.rewind import Rewind
 from trunnion.planning.speed.rotary_speed import OffPartTurns, find_fastest_row, lower_feeds
+from trunnion.records import dataclass
 
 #: Stretches of rows that are named one by one.
 _NAMED: Final = 20

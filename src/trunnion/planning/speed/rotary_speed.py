@@ -6,7 +6,7 @@ need.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from trunnion.machines import Machine
 from trunnion.machines.inverse import Pair
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.rotary_positions import is_endless
+from trunnion.records import dataclass
 
 #: Share of an axis' rapid speed that is used: printed numbers are rounded, which counts where steps are small.
 USABLE_SHARE: Final = 0.99

@@ -4,11 +4,12 @@ A frame of a program maps positions in it to the frame that it is defined in: ``
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,7 +5,6 @@ Input and output in programmed coordinates, mm and degrees. A plane is given by 
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.messages import Wording
 from trunnion.readers.control.worded_error import WordedError
+from trunnion.records import dataclass
 
 #: How much the radii at start and end may differ: an amount, mm, or a ratio of the radius, whichever is more. These are
 #: the default settings of a Sinumerik.

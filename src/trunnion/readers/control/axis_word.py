@@ -1,9 +1,10 @@
 """Axis words: values, how they are meant, and what those of the rotary axes amount to."""
 
 import math
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
+
+from trunnion.records import dataclass
 
 
 class PositionMode(StrEnum):

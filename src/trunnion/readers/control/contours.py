@@ -4,7 +4,6 @@ Input and output in programmed coordinates, mm and degrees; a plane is given by 
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from trunnion.arrays import Floats
 from trunnion.messages import Wording
 from trunnion.readers.control import arcs
 from trunnion.readers.control.worded_error import WordedError
+from trunnion.records import dataclass
 
 #: Elements that are this far out of the working plane, mm, are in it.
 IN_PLANE: Final = 1e-6

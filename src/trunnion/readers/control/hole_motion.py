@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.control.worded_error import WordedError
+from trunnion.records import dataclass
 
 #: Faster feeds, mm/min, are mistakes of the program.
 MAX_FEED: Final = 1e9

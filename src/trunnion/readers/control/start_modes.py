@@ -6,7 +6,6 @@ Out:    the words that a program relies on although neither it nor the definitio
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,6 +18,7 @@ from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.program.settings import control_of, reading_of
+from trunnion.records import dataclass
 
 #: The mode that any word of a motion says: on these controls it ends a cycle as G80 does.
 MOTION: Final = "motion"

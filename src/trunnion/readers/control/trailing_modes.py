@@ -1,8 +1,9 @@
 """Modes that a program sets behind its last motion: they have no use in it, the next one may begin with them."""
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Final
+
+from trunnion.records import dataclass
 
 #: With which modes any program may end.
 USUAL_MODES: Final[Mapping[str, Hashable]] = {

@@ -5,9 +5,10 @@ Out:    names of what it calls; the word by which it looks like a subprogram, wi
 """
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
+
+from trunnion.records import dataclass
 
 #: Larger files are no subprograms, bytes.
 _MOST_BYTES: Final = 2_000_000

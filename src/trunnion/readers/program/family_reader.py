@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from trunnion.readers.program.raw_text import NO_RAW_WORDS, RawWords
 from trunnion.readers.program.settings import no_reading
 from trunnion.readers.program.subprograms import Subprograms, callable_files
 from trunnion.readers.program.work_offsets import WorkOffsetWords
+from trunnion.records import dataclass
 
 #: Comments in parentheses, or from a semicolon to the end of the line: languages of the RS274 kind.
 RS274_COMMENTS = rb"\([^)\n]*\)|;[^\n]*"

@@ -5,7 +5,7 @@ The keys stand in ``forms.toml``, with their words and what they mean: readers, 
 
 import tomllib
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from importlib.resources import files
 from typing import Final
@@ -15,6 +15,7 @@ from trunnion.families import FAMILIES
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.readers.program.settings import family_of, reading_of
+from trunnion.records import dataclass
 
 #: Modes of a control with which it starts, by the key that says it: the word of the mode, and its value.
 START: Final[Mapping[str, Mapping[str, tuple[str, Hashable]]]] = {

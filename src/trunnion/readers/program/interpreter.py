@@ -7,7 +7,7 @@ loaded as soon as a jump, a loop or a subprogram needs it.
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
@@ -40,6 +40,7 @@ from trunnion.readers.program.stated_words import stated_words
 from trunnion.readers.program.subprograms import Subprograms
 from trunnion.readers.program.unreached import UnreachedBlocks
 from trunnion.readers.scan.buffers import ScanSettings
+from trunnion.records import dataclass
 
 #: Rows that are reserved before a scan if fewer than ``_MIN_FREE_ROWS`` are free.
 _RESERVED_ROWS: Final = 65536

@@ -5,7 +5,7 @@ A guess for messages, where a program is not understood; nothing is read otherwi
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -15,6 +15,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Diagnostic, Run
 from trunnion.readers.program.settings import family_of
+from trunnion.records import dataclass
 
 #: So much of a file is looked at, bytes, and so many letters of each line.
 _HEAD: Final = 200_000

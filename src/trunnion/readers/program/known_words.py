@@ -7,7 +7,6 @@ other word begins a block, and the whole block belongs to it.
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
@@ -18,6 +17,7 @@ from trunnion.messages import Wording
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.settings import GIVEN, control_of
 from trunnion.readers.program.words_beside import has_other_codes, is_other, without_words
+from trunnion.records import dataclass
 
 #: What a word may do.
 EFFECTS: Final = (

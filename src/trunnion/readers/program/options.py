@@ -1,9 +1,10 @@
 """How a program is run."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
+
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,12 +6,12 @@ compensation, system variables are among them. So the words that may be there ar
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Machine
 from trunnion.readers.program.known_words import begins_with, known_words
 from trunnion.readers.program.words_beside import has_other_codes
+from trunnion.records import dataclass
 
 #: Parts of words: a number, what a variable may become, and comments of languages of the RS274 kind. A comment that
 #: begins with a name and a comma may be a command, and some are one without a comma.

@@ -1,10 +1,10 @@
 """What the value of a word may be on a control; another one has no meaning, or one that the reader does not know."""
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,9 @@ Out:    what is left of the block, whether the words have all of it, or letters 
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final
+
+from trunnion.records import dataclass
 
 #: Letters of positions: they are never arguments of a word without effect.
 _POSITION: Final = re.compile(r"(?<![A-Z_])(?:[XYZABCUVWIJK]|R(?![0-9]*[ \t]*=))(?![A-Z_])")

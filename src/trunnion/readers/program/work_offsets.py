@@ -2,9 +2,9 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from trunnion.messages import Wording, declared
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

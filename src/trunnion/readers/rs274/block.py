@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.rs274.expressions import MAX_VALUE, Arithmetic, BlockError, ExpressionReader, Parameters, Value
+from trunnion.records import dataclass
 
 #: Longer lines are no blocks.
 MAX_LENGTH: Final = 8192

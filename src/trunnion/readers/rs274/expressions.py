@@ -8,12 +8,12 @@ import math
 import operator
 import re
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Final, Protocol
 
 from trunnion.messages import Wording
 from trunnion.readers.control.worded_error import WordedError
+from trunnion.records import dataclass
 
 #: How deep brackets and signs may nest.
 MAX_NESTING: Final = 40

@@ -3,7 +3,6 @@
 import math
 import re
 from abc import abstractmethod
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TypeVar
 
@@ -31,6 +30,7 @@ from trunnion.readers.rs274.control import CLOCKWISE, COUNTER_CLOCKWISE, Rs274Co
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.scan.buffers import BlockModes
 from trunnion.readers.scan.letter_blocks import read_blocks
+from trunnion.records import dataclass
 
 #: G codes, in tenths: those of motions and what they set, and the one that ends cycles.
 MOTIONS: Final = {0: RAPID, 10: LINEAR, 20: CLOCKWISE, 30: COUNTER_CLOCKWISE}

@@ -6,7 +6,6 @@ their own there, or to ``unknown`` where the control does not have the word, or 
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.definitions import Table
@@ -15,6 +14,7 @@ from trunnion.messages import Wording
 from trunnion.readers.program.known_words import plain_code
 from trunnion.readers.program.settings import UNKNOWN
 from trunnion.readers.rs274.block import Block, g_code_text
+from trunnion.records import dataclass
 
 _WORD: Final = re.compile(r"G0*([0-9]{1,4})(?:\.([0-9]))?|M0*([0-9]{1,9})")
 

@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import KW_ONLY, field, replace
 from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any, Final
 
 from trunnion.readers.program.word_values import Values
 from trunnion.readers.rs274.block import g_code_text
+from trunnion.records import dataclass
 
 if TYPE_CHECKING:
     from trunnion.readers.rs274.word_meanings import WordMeanings

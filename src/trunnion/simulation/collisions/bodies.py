@@ -5,7 +5,7 @@ Frame: every mesh is in the machine frame with all axes at zero. Units: mm.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Final
@@ -18,6 +18,7 @@ from trunnion.errors import InputError, Problem, unusable_file, warning
 from trunnion.machines import BodyBox, BodyCylinder, BodyFile, Machine, MachineBody
 from trunnion.machines.links import SPINDLE, WORKPIECE
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh, load_mesh, revolved_mesh
 from trunnion.simulation.tools.profile import Element, ProfileArc, Section, ToolShape
 

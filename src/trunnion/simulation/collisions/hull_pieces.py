@@ -6,7 +6,7 @@ decide.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from typing import Final
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints, distinct
 from trunnion.extras import import_extra
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.bodies import section_outline
 from trunnion.simulation.collisions.hull_points import HullPoints, hull_points
 from trunnion.simulation.meshes import TriangleMesh, revolved_mesh

@@ -7,7 +7,6 @@ the rest of the machine are no pair either: nobody knows how far apart they are.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, Mount, link_transforms
 from trunnion.machines.links import BED, SPINDLE, axes_between, carrier
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.bodies import Body, BodyKind
 from trunnion.simulation.collisions.queries import Solid, touches
 

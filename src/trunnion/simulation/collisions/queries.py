@@ -5,7 +5,7 @@ the depth is computed here, since that of a pair of triangles is not the depth o
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats, Floats2, Floats3
 from trunnion.extras import import_extra
 from trunnion.jit import inner, kernel
+from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh
 
 #: How many contacts are asked for when the place of a touch is told.

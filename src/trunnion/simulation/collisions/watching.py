@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, link_transforms
 from trunnion.machines.links import WORKPIECE, link_chain
+from trunnion.records import dataclass
 from trunnion.simulation.collisions.bodies import Body
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds, relative_pose, turns_about_itself
 from trunnion.simulation.collisions.queries import PairQuery, Solid

@@ -9,12 +9,12 @@ same order give the same numbers to the last bit, whoever has cut them.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.records import dataclass
 from trunnion.simulation.cutting.stretch_kernel import GOUGED, MET, MET_IDLE, REMOVED
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.tools.pieces import RevolvedPieces

@@ -14,13 +14,13 @@ the three greatest thicknesses.
 import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.simulation.cutting.cut_kernel import CutterTable, Sweeps, bin_sweeps, cut_tile
 from trunnion.simulation.cutting.measurements import Chunk, TileMeasured, column_count, tile_measured
 from trunnion.simulation.cutting.stretch_kernel import Rays

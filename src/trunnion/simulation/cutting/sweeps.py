@@ -13,7 +13,6 @@ away, and to come to it from far away, along what is not known; where that is no
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.stated_tips import StatedTips, turns_without_tcp
 from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 
 _XYZ = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
 

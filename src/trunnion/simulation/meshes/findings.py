@@ -1,11 +1,11 @@
 """What is wrong with a mesh: open edges, facets turned against each other, inside out, too small to be in mm."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.records import dataclass
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 #: A body whose largest extent is less is taken for one in metres, mm.

@@ -4,7 +4,7 @@ import io
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 from xml.sax.saxutils import quoteattr
 
@@ -13,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 _CORE: Final = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"

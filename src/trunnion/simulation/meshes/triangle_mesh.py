@@ -1,10 +1,9 @@
 """A surface of triangles."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

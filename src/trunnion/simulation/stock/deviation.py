@@ -10,13 +10,14 @@ middle to the surface that is gone.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Floats2, Ints
 from trunnion.jit import kernel
+from trunnion.records import dataclass
 from trunnion.results import Figure, Millimetres
 from trunnion.simulation.stock.differences import OWN_END, Stretches, common, compare_solids
 from trunnion.simulation.stock.material import Stock

@@ -5,13 +5,13 @@ Out:    what only the first has, with its thickness, and what both have.
 Units:  mm, workpiece frame.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Floats2, Ints, Lines
 from trunnion.jit import kernel
+from trunnion.records import dataclass
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.spans import Spans

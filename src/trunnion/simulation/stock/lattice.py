@@ -8,12 +8,12 @@ stock's box exactly. No face of the box contains a ray.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.records import dataclass
 
 #: Axes u, v, w of each bundle.
 BUNDLE_AXES: Final = ((1, 2, 0), (2, 0, 1), (0, 1, 2))

@@ -8,13 +8,13 @@ Memory: 4 bytes for each ray, and 15 for each of its ends of stretches, of which
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Floats, Ints, Lines
+from trunnion.records import dataclass
 from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 from trunnion.simulation.stock.spans import Spans
 

@@ -10,7 +10,6 @@ import math
 import os
 import re
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -19,6 +18,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, box_mesh, cylinder_mesh, load_mesh
 from trunnion.simulation.stock.lattice import Lattice
 from trunnion.simulation.stock.material import Stock, rays_of_tiles

@@ -6,7 +6,7 @@ Units:  mm, workpiece frame; positions along a ray count from the zero of its ax
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 import numpy as np
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Flags, Floats, Floats2, Ints, Ints2, Lines
 from trunnion.jit import inner, kernel
+from trunnion.records import dataclass
 from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 
 #: Rays pass a mesh this far aside, mm: corners of meshes lie on round coordinates, as rays do.

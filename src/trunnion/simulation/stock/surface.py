@@ -11,7 +11,6 @@ quadrilateral between the four cubes around it. Every edge belongs to two facets
 """
 
 import math
-from dataclasses import dataclass
 from typing import Annotated, Final, TypeAlias
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Flags, Floats, Floats2, Ints
 from trunnion.jit import kernel
+from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock

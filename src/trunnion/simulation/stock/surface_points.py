@@ -5,12 +5,12 @@ Out:    ``SurfacePoints``.
 Units:  mm, workpiece frame.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints, Lines
+from trunnion.records import dataclass
 from trunnion.simulation.stock.differences import Stretches, compare_solids
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock

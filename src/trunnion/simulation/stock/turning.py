@@ -9,7 +9,6 @@ becomes a mesh, and its inside is stretches along new rays.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.spans import Spans, mesh_spans

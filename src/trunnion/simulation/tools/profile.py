@@ -4,11 +4,11 @@ Frame of the tool: origin at the tip, z up the tool axis, from the tip to the ho
 """
 
 import math
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, TypeAlias
 
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Two points nearer to each other than this, as a part of their size, are the same: outlines are computed.
 _SAME: Final = 1e-9

@@ -6,11 +6,12 @@ Out:    ``size_faults``: everything that is wrong with it. Sizes without a fault
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from enum import StrEnum
 from typing import Final, NamedTuple
 
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Greatest size of a tool, mm: a larger one is in another unit, or a slip.
 GREATEST: Final = 10_000.0

@@ -2,11 +2,11 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
-from dataclasses import dataclass
 from datetime import datetime
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
+from trunnion.records import dataclass
 from trunnion.twin.mtconnect.buffer import Observation, ObservationBuffer
 from trunnion.twin.mtconnect.observations import UNAVAILABLE, shown_number, stamp_text
 from trunnion.twin.mtconnect.request_errors import RequestError

@@ -1,11 +1,11 @@
 """Requests of an agent's clients, taken apart and checked by the rules of the standard."""
 
 import re
-from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Final
 from urllib.parse import parse_qsl, unquote, urlsplit
 
+from trunnion.records import dataclass
 from trunnion.twin.mtconnect.buffer import ObservationBuffer
 from trunnion.twin.mtconnect.request_errors import RequestError, invalid, out_of_range
 

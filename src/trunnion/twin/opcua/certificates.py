@@ -4,7 +4,6 @@ import hashlib
 import ipaddress
 import os
 import socket
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Final
@@ -16,6 +15,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 _DAYS: Final = 3650
 

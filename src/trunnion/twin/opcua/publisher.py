@@ -1,13 +1,13 @@
 """Puts values into the variables that show them, and so to everybody who has subscribed to these."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
 from asyncua import ua
 from asyncua.server.address_space import AttributeValue
 
+from trunnion.records import dataclass
 from trunnion.twin.opcua.columns import Columns
 from trunnion.twin.opcua.history import NumberHistory, TwinHistory
 from trunnion.twin.opcua.space import Space

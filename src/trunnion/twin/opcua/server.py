@@ -3,7 +3,6 @@
 import logging
 import secrets
 import socket
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -12,6 +11,7 @@ from asyncua.crypto.permission_rules import User, UserRole
 from asyncua.server.internal_server import InternalServer
 from asyncua.server.internal_session import InternalSession
 
+from trunnion.records import dataclass
 from trunnion.twin.opcua.certificates import server_certificate
 from trunnion.twin.opcua.cnc import build_cnc
 from trunnion.twin.opcua.events import Events

@@ -5,12 +5,13 @@ namespace of the twin, so that a client may also name it without browsing.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from importlib import metadata
 from typing import Any, Final
 
 from asyncua import Node, Server, ua
 
+from trunnion.records import dataclass
 from trunnion.twin.nodesets import CNC, NODESETS, nodeset
 
 #: Namespace of the twin's own nodes.

@@ -13,13 +13,13 @@ import secrets
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Cost of a hash: some 50 ms and 16 MB.
 _COST: Final = {"n": 2**14, "r": 8, "p": 1}

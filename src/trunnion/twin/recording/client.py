@@ -10,7 +10,6 @@ import logging
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
@@ -22,6 +21,7 @@ from asyncua.crypto.uacrypto import CertProperties
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.twin.opcua.certificates import client_certificate
 from trunnion.twin.recording.nodes import Column, NodeList, VariableAddress
 from trunnion.twin.recording.rows import Reading, Value

@@ -5,7 +5,6 @@ Out:    a ``NodeList``.
 """
 
 import re
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
@@ -13,6 +12,7 @@ from typing import Final
 from trunnion.definitions import Table, definition_names, load_table
 from trunnion.messages import Wording
 from trunnion.model.recording import PROGRAM
+from trunnion.records import dataclass
 
 _LIBRARY: Final = files("trunnion.twin.recording").joinpath("library")
 

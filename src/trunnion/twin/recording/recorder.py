@@ -7,10 +7,10 @@ Out:    the file, whole however it ends.
 import asyncio
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from trunnion.files import OutputPlace
 from trunnion.model.recording import Mark
+from trunnion.records import dataclass
 from trunnion.twin.recording.feed import MachineFeed
 from trunnion.twin.recording.files import RecordingWriter
 

@@ -10,10 +10,11 @@ last time of the message before, but for the newest time of all; those of later 
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.model.recording import Mark
+from trunnion.records import dataclass
 
 Value = float | str | None
 

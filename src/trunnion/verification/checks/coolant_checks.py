@@ -1,7 +1,7 @@
 """The coolant of a program against COOLNT in the CL files, as far as the control or its definition knows the words."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -9,6 +9,8 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import EventValue, Run, RunEvent
+from trunnion.records import dataclass
+from trunnion.verification.block_names import block_name
 from trunnion.verification.context import ComparedContext, check_from_places
 from trunnion.verification.event_words import event_word
 from trunnion.verification.expected.states import all_coolants, coolant_states
@@ -38,6 +40,7 @@ class _CoolantWords:
     builder  (m,) int64
     stops    rows before which the program stops for the operator
     stays_off  (m,) int64, the rows before which a word switches off, and no word of the builder stands behind it there
+    carried  tool changes over which coolant is left on, each with the row before which the next word of coolant stands
     """
 
     names: Mapping[str, str]
@@ -46,6 +49,7 @@ class _CoolantWords:
     builder: Ints
     stays_off: Ints
     stops: frozenset[int]
+    carried: list[tuple[RunEvent, int]]
 
     @staticmethod
     def of(run: Run, defined: Mapping[str, int]) -> "_CoolantWords":
@@ -53,19 +57,25 @@ class _CoolantWords:
         named = {number: _COOLANT.get(kind, kind.lower()) for kind, number in reversed([*defined.items()])}
         names = {**_COOLANT, **{kind: named[number] for kind, number in defined.items()}}
         changes, builder, last = list[tuple[int, str, RunEvent]](), list[int](), dict[int, str]()
+        carried, change, flows = list[tuple[RunEvent, int]](), None, False
         for event in run.events:
+            if event.kind == "tool_change" and flows:
+                change, flows = event, False
             if event.kind not in ("coolant", "m"):
                 continue
             name = str(event.value) if event.kind == "coolant" else _name_of(event.value, named)
             last[event.before_row] = name
             if name:
                 changes.append((event.before_row, name, event))
+                carried += [(change, event.before_row)] if change is not None else []
+                change, flows = None, name != "off"
             else:
                 builder.append(event.before_row)
+        carried += [(change, len(run))] if change is not None else []
         stays_off = np.array([row for row, name in last.items() if name == "off"], np.int64)
         rows = np.array([row for row, _, _ in changes], np.int64)
         stops = frozenset(event.before_row for event in run.events if event.kind in ("stop", "optional_stop"))
-        return _CoolantWords(names, rows, changes, np.array(builder, np.int64), stays_off, stops)
+        return _CoolantWords(names, rows, changes, np.array(builder, np.int64), stays_off, stops, carried)
 
     def has_builder_word(self, after: int, row: int) -> bool:
         """Whether the machine builder has a word between the row ``after`` and another."""
@@ -88,6 +98,10 @@ class _CoolantWords:
             if at not in self.stops or k + 1 == len(self.changes) or self.changes[k + 1][0] != at:
                 yield at, state
 
+    def carried_into(self, row: int, last: int) -> RunEvent | None:
+        """Return the tool change over which the coolant of rows was left on; None: the program says it behind one."""
+        return next((event for event, end in self.carried if event.before_row <= last and row < end), None)
+
     def is_off_before(self, row: int) -> bool:
         """Whether coolant is off right before a row, or was at any time between the row before it and it."""
         first, end = int(np.searchsorted(self.rows, row)), int(np.searchsorted(self.rows, row, "right"))
@@ -106,6 +120,7 @@ def check_coolant(context: ComparedContext) -> Check:
     words = _CoolantWords.of(run, defined)
     places: list[Place] = []
     asked: set[str] = set()
+    carried: list[RunEvent] = []
     unread: set[str] = set()
     before = ""
     for state in coolant_states(context.expected):
@@ -129,6 +144,8 @@ def check_coolant(context: ComparedContext) -> Check:
                 places.append(context.place(int(off[0]), 0.0, said))
         else:
             asked.add(wanted)
+            change = words.carried_into(row, last) if wanted != "off" else None
+            carried += [change] if change is not None and change not in carried else []
             fault = _fault(words, wanted, row, last, readable=not unread)
             if fault is not None and fault.at_point:
                 places.append(context.place_with_cl(fault.row, 0.0, fault.said, matching.cl[first]))
@@ -145,6 +162,8 @@ def check_coolant(context: ComparedContext) -> Check:
     good = Wording("coolant", "good", kinds=tuple(map(event_word, sorted(asked)))) if asked else None
     found = check_from_places("coolant", places, good)
     missing = () if places else tuple(phrase("coolant_unread", kind=kind) for kind in sorted(unread))
+    if not places:
+        missing += tuple(phrase("coolant_carried", block=block_name(-1, event.line)) for event in carried)
     return replace(found, missing=missing)
 
 

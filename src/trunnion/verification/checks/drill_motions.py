@@ -3,12 +3,11 @@
 Heights are as in ``trunnion.verification.expected.holes``.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Codes, Floats, Ints
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

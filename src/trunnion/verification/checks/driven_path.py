@@ -1,11 +1,10 @@
 """The path that the control drives under radius compensation, as far as it is known what its registers hold."""
 
-from dataclasses import dataclass
-
 from trunnion.compensation.centre_runs import CentreRun, run_of_centre
 from trunnion.compensation.offsets import Fault
 from trunnion.compensation.stretches import RegisterValue, Stretch, offsets_of
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.verification.context import ComparedContext, Context
 from trunnion.verification.expected.states import compensation_states
 

@@ -1,7 +1,6 @@
 """The feeds of a program against those of the CL files."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.messages import Wording
 from trunnion.model.feed_path import NO_ROTATION, FeedPath, row_feed_path_lengths
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.timing import HARDLY_MOVES
 from trunnion.verification.context import ComparedContext, Faults
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, needlessly_lowered_feeds

@@ -1,13 +1,14 @@
 """The holes of a program against the cycles of the CL files."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.verification.checks.drill_motions import HoleFault
 from trunnion.verification.checks.hole_faults import drill_motions, hole_faults
 from trunnion.verification.checks.peck_faults import odd_lifts

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Final
 
 import numpy as np
@@ -13,6 +13,7 @@ from trunnion.model.columns import StepColumn
 from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.checks.coverage import coverage_of
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues, Faults
 from trunnion.verification.deviations.linearization import LinearizationErrors

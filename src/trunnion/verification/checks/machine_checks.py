@@ -1,12 +1,13 @@
 """What the program asks of the machine: travel, speed and acceleration of its axes."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from trunnion.machines import Axis
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.tool_additions import added_lengths
+from trunnion.records import dataclass
 from trunnion.verification.checks.coverage import coverage_of
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion

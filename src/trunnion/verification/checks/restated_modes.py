@@ -5,7 +5,7 @@ control. What is not said again may be off.
 """
 
 from bisect import bisect_right
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from trunnion.arrays import Ints
 from trunnion.messages import Wording
 from trunnion.model.run import EventValue, Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.checks.coolant_checks import is_builder_coolant
 
 #: Values with which something runs; those of the machine builder's words are numbers.

@@ -7,7 +7,7 @@ constant tilt, in a program that has no machine positions at all, turns the part
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 import numpy as np
@@ -17,6 +17,7 @@ from trunnion.machines import SAFE_DISTANCE, Mount, SweptPart, turn_clearance, t
 from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.verification.context import Context
 from trunnion.verification.kinematics.cut_extent import cut_extent
 from trunnion.verification.kinematics.home_tolerance import home_tolerance, spindle_slide

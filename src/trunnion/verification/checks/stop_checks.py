@@ -3,7 +3,7 @@
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import zip_longest
 from typing import Final
 
@@ -13,6 +13,7 @@ from trunnion.arrays import Flags
 from trunnion.messages import Wording
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Kind, Stop
+from trunnion.records import dataclass
 from trunnion.verification.checks.restated_modes import RestatedModes
 from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.checks.skip_faults import skip_faults
@@ -84,6 +85,7 @@ def check_stops(context: ComparedContext) -> Check:
     places += _nothing_said_again(context, restarts, own)
     if parts := tuple(_own_stops(context.run, own)):
         good = Wording("stops", "with_own", asked=good, own=parts)
+    places += _waits_at_part(context)
     places += _missing_between(context, found)
     places += skip_faults(context)
     return check_from_places("stops", places, good)
@@ -155,6 +157,21 @@ def _changes_in_holes(context: ComparedContext) -> Iterator[Place]:
     for event, in_hole in zip(changes, _in_holes(context, changes).tolist(), strict=True):
         if in_hole:
             yield context.place_of_event(event, 0.0, Wording("stops", "change_in_hole"))
+
+
+def _waits_at_part(context: ComparedContext) -> Iterator[Place]:
+    """Yield words at which the machine waits for a signal or stops with an alarm while the tool is at the part."""
+    run, matching = context.run, context.matching
+    noted = {(each.file, each.line) for each in run.diagnostics if each.code == "NC226"}
+    away = None
+    for place, event in enumerate(run.events if noted else ()):
+        if event.kind != "unasked" or (run.files[event.file], event.line) not in noted:
+            continue
+        pair = matching.nc.count_before(event.before_row)
+        away = away or stands_away(context)
+        within = _is_within_operation(context, pair)
+        if (within or not away(place)) and not _follows_insert(context, min(pair, len(matching.cl) - 1)):
+            yield context.place_of_event(event, 0.0, Wording("stops", "waits_at_part", word=str(event.value)))
 
 
 def _unknown_words_at_work(context: ComparedContext) -> Iterator[Place]:

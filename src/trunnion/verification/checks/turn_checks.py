@@ -7,13 +7,13 @@ axes are.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run, RunEvent
+from trunnion.records import dataclass
 from trunnion.verification.checks.rotary_moves_at_part import STILL, rotary_moves_at_part, turn_flags
 from trunnion.verification.context import ComparedContext, Context, Faults
 from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes

@@ -5,7 +5,6 @@ one that they call alike must not be two: that is how a tool change that is miss
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -15,6 +14,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.tool_faults import told_apart, tool_differences
 from trunnion.model.toolpath import Tool
+from trunnion.records import dataclass
 from trunnion.verification.checks.matched_rows import first_wrong_pair
 from trunnion.verification.context import ComparedContext
 from trunnion.verification.expected.path import Section

@@ -1,6 +1,5 @@
 """Follows two programs together and notes where they differ."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,6 +10,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.basis import stated_texts
 from trunnion.verification.comparison.control_rules import ControlRules
 from trunnion.verification.comparison.moving_rows import MovingRows

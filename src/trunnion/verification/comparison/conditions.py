@@ -30,6 +30,9 @@ _UNITS: Final = frozenset({"G20", "G21", "G70", "G71"})
 #: Positions of M92 count from a place that the builder has set: they are read as those of M91.
 _SECOND_MACHINE: Final = "m92_counts_set_machine_taken"
 
+#: G30 goes where the builder has set another reference position: it is read as G28.
+_SECOND_REFERENCE: Final = "second_reference"
+
 #: An axis that turns by no more stands, degrees.
 _STILL: Final = 1e-6
 
@@ -44,6 +47,8 @@ def conditions(run: Run) -> Iterator[tuple[int, Wording]]:
     for each in run.diagnostics:
         if each.wording.variant == _SECOND_MACHINE:
             yield 0, Wording("comparison", "second_machine")
+        elif each.wording.variant == _SECOND_REFERENCE:
+            yield 0, each.wording
     yield from _of_spindle(run)
     yield from _after_stops(run)
     yield from _turns_in_planes(run)

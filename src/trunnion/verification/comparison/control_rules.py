@@ -2,8 +2,9 @@
 
 import math
 import sys
-from dataclasses import dataclass
 from typing import Final
+
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints, distinct
 from trunnion.machines import forward
 from trunnion.messages import Wording
 from trunnion.model.feed_path import row_feed_path_lengths
@@ -42,7 +42,7 @@ class MovingRows:
         if left_out is not None:
             rows = rows[~left_out[rows]]
         if with_machine_frame:
-            rows = np.union1d(rows, run.state.machine_frame.rows_with(True))
+            rows = distinct(np.concatenate((rows, run.state.machine_frame.rows_with(True))))
         self.coolant = _coolant_numbers(run, coolants)
         numbers = [tools.setdefault(_tool_name(name), len(tools)) for name in run.tools]
         self.tool = np.array(numbers, np.int64)[run.tool]

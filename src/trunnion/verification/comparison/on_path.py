@@ -1,13 +1,13 @@
 """Whether a motion of one program ends on the path of a motion of the other."""
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.run import Orientation, Run
+from trunnion.records import dataclass
 from trunnion.verification.comparison.moving_rows import MovingRows
 
 #: At how many fractions of a turn the nearest is searched, and how often around it: to a millionth of the turn.

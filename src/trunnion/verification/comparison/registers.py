@@ -9,7 +9,7 @@ change can be compared.
 """
 
 from collections.abc import Callable, Hashable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final, TypeAlias
 
@@ -20,6 +20,7 @@ from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.comparison.states import ComparedState, Values
 
 #: Tolerances and what is added to tools are the same within this, mm: programs print no more digits; those in inches.

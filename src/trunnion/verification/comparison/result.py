@@ -1,11 +1,12 @@
 """The result of a comparison."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, ClassVar
 
 from trunnion.arrays import Ints
 from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.records import dataclass
 from trunnion.results import FIRST, NOT_DATA, Figure
 
 

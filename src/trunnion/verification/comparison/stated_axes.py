@@ -80,12 +80,14 @@ def _rows_of_planes(run: Run) -> list[int]:
 
 def _column(run: Run, word: int) -> StepColumn:
     """Return where an axis has been stated last in each row, as a work offset or one of the values above."""
-    rows = np.setdiff1d(np.flatnonzero(run.programmed & np.uint8(word)), _rows_of_planes(run))
+    rows = np.flatnonzero(run.programmed & np.uint8(word))
+    rows = rows[~np.isin(rows, _rows_of_planes(run))]
     offsets = run.state.work_offset.at(rows).astype(np.int64)
     offsets[offsets == 0] = _UNSELECTED
     codes = np.where(run.state.machine_frame.at(rows), _IN_MACHINE, offsets)
     if word == int(ProgrammedWord.Z):
-        away = np.setdiff1d(rows_behind_retracts(run), rows)
+        away = rows_behind_retracts(run)
+        away = away[~np.isin(away, rows)]
         order = np.argsort(np.append(rows, away), kind="stable")
         rows, codes = np.append(rows, away)[order], np.append(codes, np.full(len(away), _AWAY))[order]
     changes = np.flatnonzero(np.diff(codes, prepend=_NOWHERE))

@@ -6,7 +6,6 @@ Out:    the stretches of them in which something differs. One that goes on is on
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Flags, Ints
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 #: Values of rows of the first run and of as many of the second, (k,) each.
 Values: TypeAlias = tuple[NDArray[Any], NDArray[Any]]

@@ -8,7 +8,7 @@ then be as declared, within half the last digit, and everywhere else as the CL f
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -19,6 +19,7 @@ from trunnion.messages import Wording
 from trunnion.model.deviations import Deviations
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.expected.path import ExpectedPath, Section
 from trunnion.verification.kinematics.axis_difference import degrees_apart
 from trunnion.verification.kinematics.positioning_moves import oriented_by_vector

@@ -8,7 +8,6 @@ Each motion is sampled at several positions on its way.
 """
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -21,6 +20,7 @@ from trunnion.model.axis_tolerance import AxisTolerance, allowed_deviation
 from trunnion.model.programmed_words import POSITION_WORDS
 from trunnion.model.run import Orientation, ProgrammedWord, RowPositions, Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.deviations.arc_turns import off_arcs
 from trunnion.verification.deviations.divided_steps import divided_limits
 from trunnion.verification.deviations.tip_limits import FREE_PHASES, tip_limits

@@ -9,7 +9,7 @@ length is added along one of them, and the tip is right if that is the axis alon
 is read: the same rows are evaluated with another length.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -20,6 +20,7 @@ from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.run_columns import BY_PARAMETER
 from trunnion.model.unknown_setups import stated_rows
+from trunnion.records import dataclass
 
 #: How much longer the tool is taken to be, mm.
 LONGER: Final = 100.0

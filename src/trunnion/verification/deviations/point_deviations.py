@@ -7,7 +7,6 @@ Units:  mm and degrees.
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from trunnion.arrays import Flags, Floats, Floats2, Ints
 from trunnion.jit import kernel
 from trunnion.machines import Machine
 from trunnion.model.run import RowPositions
+from trunnion.records import dataclass
 from trunnion.verification.expected.path import ExpectedPath, Section
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry, RotaryPair, axis_difference, degrees_apart
 from trunnion.verification.matching.pairs import Matching

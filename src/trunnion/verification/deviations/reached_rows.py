@@ -8,7 +8,7 @@ steady; those that turn rotary axes while the tip rests keep that of the CL file
 have no feed to reach.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
@@ -18,6 +18,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.deviations import Deviations
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Operation, Phase
+from trunnion.records import dataclass
 from trunnion.timing import reached_feeds, steady
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.matching.pairs import Matching

@@ -3,14 +3,13 @@
 Units: mm and radians.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.arcs import CLOSED_ARC
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Arcs
+from trunnion.records import dataclass
 from trunnion.verification.expected.path import ExpectedPath
 
 

@@ -8,7 +8,7 @@ Heights are distances from the hole's CL point along the tool axis, mm. docs/cl.
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Kind, Operation
+from trunnion.records import dataclass
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedSpindles, ExpectedTool
 from trunnion.verification.expected.tolerances import Tolerances
 

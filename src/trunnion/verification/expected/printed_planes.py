@@ -7,7 +7,7 @@ Units:  mm and degrees.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -16,6 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation
+from trunnion.records import dataclass
 from trunnion.verification.expected.tolerances import Tolerances
 
 #: A plane belongs to CL points whose tool axis is no farther off upright in it, degrees.

@@ -1,9 +1,10 @@
 """Spindle and tool as a CL file asks for them."""
 
 from bisect import bisect_right
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from trunnion.model.toolpath import Operation, Sense, SpindleOff, SpindleOn
+from trunnion.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

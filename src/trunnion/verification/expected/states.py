@@ -1,10 +1,10 @@
 """Modal state that the CL files ask for, as ranges of CL rows: spindle, coolant, radius compensation, tool."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from trunnion.model.toolpath import Coolant, CutterComp, LoadTool, SpindleOff, SpindleOn
+from trunnion.records import dataclass
 from trunnion.verification.expected.path import ExpectedPath, Section
 from trunnion.verification.expected.spindle_and_tool import ExpectedSpindle, ExpectedTool, spindle_on
 

@@ -1,12 +1,12 @@
 """How far a program may be from its CL files, operation by operation."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.deviations import Deviations
+from trunnion.records import dataclass
 
 #: Share by which a feed per revolution may be off, however many digits are printed; that by which the last digit may
 #: round it, which is this long, mm.

@@ -8,7 +8,6 @@ A full circle ends where it begins, and its axes move all the same. While the ro
 the angle, and their derivatives are known; where rotary axes turn along an arc, both are taken from samples.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,6 +18,7 @@ from trunnion.model.arc_extremes import ArcPaths
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import PositionChunk, Run
 from trunnion.model.subdivision import arc_frames, circle_points
+from trunnion.records import dataclass
 
 #: Places of a turn at which speeds are looked at: between two of them a cosine is 0.998 of its greatest value at least.
 _PER_TURN: Final = 48

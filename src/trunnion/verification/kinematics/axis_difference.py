@@ -5,7 +5,6 @@ how far each rotary axis is off from the forward map alone, and leaves out an an
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.jit import inner
 from trunnion.machines import Machine
+from trunnion.records import dataclass
 
 #: By how much forward and inverse map may differ, rad.
 _NOISE: Final = 1e-11

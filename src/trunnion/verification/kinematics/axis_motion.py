@@ -13,7 +13,7 @@ exactly needs more.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from trunnion.model.programmed_words import POSITION_WORDS, ROTARY_WORDS
 from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
 from trunnion.model.turning_lines import LineSearch, TurningLines
+from trunnion.records import dataclass
 from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows

@@ -5,12 +5,12 @@ Out:    the positions beyond the travel of their axes, mm or degrees, with their
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.model.run import CHUNK_ROWS, ProgrammedWord, Run
+from trunnion.records import dataclass
 from trunnion.verification.kinematics.home_tolerance import home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 

@@ -1,12 +1,13 @@
 """Which motions a question is answered of: how many, and the first that is left out for each reason."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from trunnion.arrays import Flags
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)

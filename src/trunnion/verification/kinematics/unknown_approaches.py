@@ -8,7 +8,6 @@ follows from the workpiece zero and the tool length. With both the leg is known 
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from trunnion.arrays import Ints
 from trunnion.messages import Wording, phrase
 from trunnion.model.run import Run
 from trunnion.model.unknown_setups import rows_without_values
+from trunnion.records import dataclass
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import approach_rows
 

@@ -1,10 +1,11 @@
 """The worst values of many rows, collected chunk by chunk."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)

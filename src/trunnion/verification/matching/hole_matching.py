@@ -9,7 +9,6 @@ file itself has there are counted first, and skipped.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.expected.holes import Hole
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.kinematics.positioning_moves import tool_axis_exit_rows

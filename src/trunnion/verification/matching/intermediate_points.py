@@ -8,7 +8,6 @@ Units: mm; degrees outside kernels, radians inside.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats, Floats2, Ints
 from trunnion.jit import inner, kernel
 from trunnion.model.run import RowPositions
+from trunnion.records import dataclass
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry, RotaryPair, axis_difference
 from trunnion.verification.kinematics.great_circles import angle_between, slerp_weights
 

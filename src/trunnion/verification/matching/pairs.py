@@ -1,11 +1,11 @@
 """What a matching is: pairs of motions and CL points, and what is left over on either side."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.records import dataclass
 from trunnion.verification.expected.arcs import Arc
 from trunnion.verification.row_ranges import CHUNK, RowRanges
 

@@ -8,7 +8,6 @@ is held, by TCP or by slides that follow. Any other motion without a CL point st
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from trunnion.machines import forward
 from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import PositionChunk, Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 
 #: How far from the part rotary axes may turn and rapids go at the earliest, mm, and how much they must turn, degrees.
 _MIN_RETRACT, _MIN_TURN = 1.0, 1.0

@@ -4,7 +4,6 @@ A program may write each polynomial of a spline as one of its own, so several sp
 the CL file. Splines that are found here are compared as curves; all others are the lines of their points.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.splines import Spline
 from trunnion.model.toolpath import CutterComp, CycleOn
+from trunnion.records import dataclass
 from trunnion.verification.expected.path import ExpectedPath, WrittenSpline
 from trunnion.verification.expected.splines import span_counts
 

@@ -11,7 +11,6 @@ positions follow the path: each is looked for from the place of the one before, 
 moved.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -22,6 +21,7 @@ from trunnion.machines import Machine, forward
 from trunnion.messages import Wording
 from trunnion.model.recording import TIP, Mark, Recording
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.verification.recorded.nearest import Nearest, nearest_pieces, nearest_places
 from trunnion.verification.recorded.order import BEFORE, UNTOLD, ToldRows, told_rows
 from trunnion.verification.recorded.path import SAG, ProgramPath

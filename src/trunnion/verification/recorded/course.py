@@ -6,7 +6,6 @@ Units:  mm and degrees, seconds, rev/min.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,6 +15,7 @@ from trunnion.messages import Wording
 from trunnion.model.recording import NO_TIME, SPINDLE, Mark
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.records import dataclass
 from trunnion.verification.recorded.compared import RecordedComparison
 
 #: A spindle may differ from its programmed speed by this share and rev/min: overrides up to a tenth are usual.

@@ -8,13 +8,13 @@ A degree of the tool axis counts as a millimetre of the tip. A first guess takes
 the piece is refined by the forward map (Gauss-Newton).
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import forward
+from trunnion.records import dataclass
 from trunnion.verification.recorded.path import ProgramPath
 
 #: What a unit vector of the tool axis is multiplied by, so that a degree is 1.

@@ -5,7 +5,6 @@ Out:    ``ToldRows``.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Final
 
@@ -14,6 +13,7 @@ import numpy as np
 from trunnion.arrays import Flags, Ints
 from trunnion.model.recording import LINE, PROGRAM, Mark, Recording
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 
 #: The machine did not tell a line; or the program does not run: one before its first block.
 UNTOLD: Final = -1

@@ -5,7 +5,6 @@ Out:    a ``ProgramPath``.
 Units:  mm and degrees, workpiece frame.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, forward
 from trunnion.model.run import Run
+from trunnion.records import dataclass
 from trunnion.timing import MOST_PIECES, axis_pieces
 
 #: How far the tip may be from the straight line between the ends of a piece, mm; and the pieces of one piece at most.

@@ -122,6 +122,9 @@ def test_a_tilted_plane_stands_where_its_euler_angles_turn_it(
 def test_planes_that_nothing_can_stand_on_and_other_forms_are_named(run: Runner) -> None:
     got = fanuc(run, "G68.2 X0 Y0 Z0 I0 J170. K0\nG53.1\nG69\nG68.2 P2 Q1 X0 Y0 Z0 I0 J0 K0\nG53.1\n")
     assert [finding.line for finding in got.errors] == [2, 4, 5]
+    assert not fanuc(run, "G68.2 X0 Y0 Z0 I0 J20. K0 R0.\nG53.1\nG69\n").errors
+    got = fanuc(run, "G68.2 X0 Y0 Z0 I0 J20. K0 R5.\nG69\n")
+    assert [(finding.line, "P, Q or R" in finding.text) for finding in got.errors] == [(1, True)]
 
 
 @pytest.mark.parametrize(

@@ -45,6 +45,12 @@ def test_cycles_make_the_motions_of_the_manual(block: str, run: Runner) -> None:
     assert got.diagnostics == ()
 
 
+@pytest.mark.parametrize("pitch", ["-1.25", "0"])
+def test_a_rigid_tap_needs_a_pitch_above_0(pitch: str, run: Runner) -> None:
+    got = run(f"G21 G90 G17 G94 G0 X0 Y0 Z30 S1000 M3\nG33.1 Z-10 K{pitch}\nG0 Z5\nM2\n")
+    assert [(error.line, "K of G33.1 is not above 0" in error.text) for error in got.errors] == [(2, True)]
+
+
 def test_a_rigid_tap_goes_by_its_pitch(run: Runner) -> None:
     got = run("G21 G90 G17 G94 G0 X0 Y0 Z30 S1000 M3\nG33.1 Z-10 K1.25\nG0 Z5\nM2\n")
     assert got.feed[got.line == 2].tolist() == [1250.0, 1250.0]

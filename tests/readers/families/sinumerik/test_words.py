@@ -256,6 +256,7 @@ def test_work_offsets(run: Runner) -> None:
         ("F-1", "feed"),
         ("X=1 IF", "IF cannot stand here"),
         ("DEF", "DEF needs a type"),
+        ("DEF _A, REAL _B", "DEF needs a type"),
         ("DEF REAL", "DEF needs a name"),
     ],
 )

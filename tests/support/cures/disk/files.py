@@ -13,6 +13,7 @@ _NEXT: Final = _OUT.replace("part.cls", "two.cls")
 _BOTH: Final = "trunnion post part.cls a/part.cls --machine yl569 --output out"
 _DIVIDED: Final = "trunnion post part.cls --machine matsuura_mx330 --output out.nc --set programs=operations"
 _NAMED: Final = _DIVIDED.replace("matsuura_mx330", "yl569").replace("out.nc", "out.mpf")
+_INFO: Final = "trunnion info part.cls --json a.json"
 _BACKSLASH: Final = "'a\\b.cls'"
 _MANIFEST: Final = f"{_OUT} --manifest out.json"
 
@@ -76,6 +77,8 @@ CURES: Final = (
     script("FIL250 of_somebody_else", _FOREIGN, _OUT, f"{_POST} --output other.mpf"),
     script("FIL250 no_such_output", f"{_OUT} --listing two.cls", "--listing two.cls", "--listing two.lst"),
     script("FIL250 no_such_output", f"write a.html ours\n{_OUT} --report a.html", "write a.html ours\n", ""),
+    script("FIL250 of_another_command", f"trunnion verify part.mpf --machine yl569 --report a.json\n{_INFO}", _INFO,
+           _INFO.replace("a.json", "b.json")),
     script("FIL250 definition_exists", "write mill.toml 'x = 5'\ntrunnion new mill.toml --like yl569", "new mill.toml",
            "new mine.toml"),
     script("FIL260 other_ending", "trunnion verify part.mpf --machine yl569 --report a.txt", "a.txt", "a.html"),

@@ -167,6 +167,8 @@ CURES: Final = (
         on=_FANUC, trial=_with_lengths),
     _in("NC240", "- G98 G81 X1. Z-5. R2.", "+ G98 G81 X1. Z-5. R2. F100.", "G80", on=_FANUC),
     _in("NC341", "M428", "- G53 G0 Z10", "+ M429", "+ G53 G0 Z10", "+ M428", "M429", on=_LINUXCNC),
+    _in("NC341 m242_while_tcp", "G196", "- M242", "G197", "+ M242", on=_FIDIA),
+    _in("NC341 tcp_of_heads", "- G96", "+ G196", "- G97", "+ G197", on=_FIDIA),
     _in("NC342", "G196", "G1 X1. C350. F100", "X2. C10.", "G197", on=_FIDIA),
     _in("NC342 noted", "G196", "G1 X1. C350. F100", "X2. C10.", "G197", on=_FIDIA),
     _in("NC342 more_noted", "G196", "G1 X1. C350. F100", *["X2. C10.", "X1. C350."] * 12, "G197", on=_FIDIA),

@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, TypeAlias
 
@@ -26,6 +26,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
+from trunnion.records import dataclass
 from trunnion.reporting.text import clean
 from trunnion.results import FIRST, Figure, as_json, to_data
 from trunnion.verification import Check, State, Verification, durations

@@ -7,7 +7,7 @@ The papers of a project's programs are written when its checks are done: they te
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ from trunnion.jobs.result_output import Target
 from trunnion.jobs.verify.reports import add_report
 from trunnion.messages import LIBRARY, Words
 from trunnion.output.program import Program
+from trunnion.records import dataclass
 from trunnion.verification import Verification
 
 if TYPE_CHECKING:  # imported where they are written

@@ -5,7 +5,6 @@ Facts: SINUMERIK cycles manual; docs/controls/sinumerik.md lists the parameters.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,6 +15,7 @@ from trunnion.model.toolpath import Sense
 from trunnion.output.shared.spindle import cycle_dwell_seconds, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
 from trunnion.planning.holes.pecks import peck_depths
+from trunnion.records import dataclass
 
 #: Tool axis of CYCLE83 and CYCLE84: the third axis of the plane G17.
 _THIRD_AXIS: Final = "3"

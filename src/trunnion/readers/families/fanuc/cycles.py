@@ -3,7 +3,6 @@
 Heights are positions along the axis normal to the working plane, in the units of the program.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.messages import Wording
@@ -16,6 +15,7 @@ from trunnion.readers.control.hole_motion import (
     descent,
     peck_depths,
 )
+from trunnion.records import dataclass
 
 #: The one whose I and J shift the tool off the wall.
 FINE_BORE: Final = 760

@@ -1,7 +1,6 @@
 """Control flow of a Fanuc program: conditions, jumps and loops."""
 
 import re
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.errors import Severity
@@ -12,6 +11,7 @@ from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.rs274 import interpreter
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
+from trunnion.records import dataclass
 
 _WORD = re.compile(r"IF|GOTO|WHILE|DO|END(?=[0-9#\[])")
 

@@ -226,11 +226,11 @@ class OffsetInterpreter(CallInterpreter):
     def _tilt(self, word: Word, block: Block) -> None:
         """G68.2: tilt the plane by its origin and Euler angles."""
         kind = block.take("P")
-        block.take("R")
+        turn = block.take("R")
         origin = np.array([value or 0.0 for value in self._point(block)])
         angles = [block.take(letter) or 0.0 for letter in "IJK"]
         order = block.take("Q")
-        if kind or (order is not None and order != 313):
+        if kind or turn or (order is not None and order != 313):
             raise BlockError(Wording("NC220", "g68_2_p_q_not"))
         if any(not abs(angle) < MAX_POSITION for angle in angles):
             raise BlockError(Wording("NC215", "angle_not_plane"))

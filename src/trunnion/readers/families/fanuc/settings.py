@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.compensation.styles import TYPE_A, UNKNOWN_STYLE
@@ -17,6 +17,7 @@ from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
+from trunnion.records import dataclass
 
 #: Letters whose whole numbers count in least increments: lengths, and angles.
 LENGTHS: Final = (*"XYZUVWIJKRQ", ",R", ",C")

@@ -2,12 +2,12 @@
 
 import re
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.program.source_text import SourceText
+from trunnion.records import dataclass
 
 #: Endings of program names.
 SUFFIXES: Final = (".NC", ".CNC", ".TAP", ".PRG", ".TXT", "")

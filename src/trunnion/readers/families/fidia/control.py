@@ -2,13 +2,12 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.errors import Severity
-from trunnion.machines import AngleOutput, Axis, Machine
+from trunnion.machines import AngleOutput, Axis, Machine, Mount
 from trunnion.messages import Wording
 from trunnion.model.feed_path import FeedPath
 from trunnion.model.run import ProgrammedWord
@@ -19,12 +18,13 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.start_modes import check_start_modes, with_tcp_off
 from trunnion.readers.families.fidia.cycles import ABOVE
-from trunnion.readers.families.fidia.words import OFFSET_BASE, TABLE
+from trunnion.readers.families.fidia.words import OFFSET_BASE, TABLE, TCP_OF_HEADS, TCP_OF_TABLES
 from trunnion.readers.program.forms import read_form
-from trunnion.readers.program.settings import family_of, reading_of, unit_of
+from trunnion.readers.program.settings import control_of, family_of, reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
+from trunnion.records import dataclass
 
 #: Words with which a block goes to a place.
 _PLACE: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
@@ -68,6 +68,15 @@ def _start_modes_of(machine: Machine) -> Mapping[str, str]:
     return with_tcp_off(machine, "TCP", _START_MODES)
 
 
+def _tcp_words_of(machine: Machine) -> tuple[str, ...]:
+    """Return the words that switch TCP for the rotary axes of a machine, or those that its definition states."""
+    mounts = {machine.axes[column].mount for column in machine.rotary}
+    known = [*(TCP_OF_TABLES if Mount.PART in mounts else ()), *(TCP_OF_HEADS if Mount.TOOL in mounts else ())]
+    settings = control_of(machine).table("settings")
+    stated = settings.text("tcp_on", ""), settings.text("tcp_off", "")
+    return tuple(dict.fromkeys((*known, *(stated if "" not in stated and stated != TCP_OF_TABLES else ()))))
+
+
 class FidiaControl(Rs274Control):
     """A Fidia on a machine. Work offsets are the machine's workpiece zero."""
 
@@ -80,6 +89,7 @@ class FidiaControl(Rs274Control):
         super().__init__(machine, note, shortest=shortest)
         self.usual_modes["offset"] = OFFSET_BASE + 1
         self.start_modes = _start_modes_of(machine)
+        self.tcp_words = _tcp_words_of(machine)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
         self.settings = settings_of(machine)
         self.own_words = self.settings.words
@@ -134,12 +144,12 @@ class FidiaControl(Rs274Control):
     def retract(self) -> None:
         """M242: Z moves to the end of its travel; no motion if the machine's definition does not give the travel."""
         self.add_event("retract", "M242")
+        if self.tcp:
+            self.note(Wording("NC341", "m242_while_tcp"), Severity.ERROR)
         axis = self.machine.axis("Z")
         top = axis.high if axis.sense > 0.0 else axis.low
         if not math.isfinite(top):
             return
-        if self.tcp:
-            self.note(Wording("NC341", "m242_while_tcp_slide_z"), Severity.WARNING)
         self.resolve_rows()
         slides = self.current_joints[self._slides].copy()
         slides[2] = top

@@ -119,6 +119,12 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
     def _take_plane(self, word: Word, block: Block) -> None:
         self.control.take_plane()
 
+    def _tcp(self, word: Word, block: Block) -> None:
+        super()._tcp(word, block)
+        if word.text not in self.control.tcp_words:
+            where = "tcp_of_heads" if word.text in words.TCP_OF_HEADS else "tcp_of_tables"
+            self._note(Wording("NC341", where, word=word.text), Severity.ERROR)
+
     def _end_plane(self, word: Word, block: Block) -> None:
         self.control.set_plane(None)
 

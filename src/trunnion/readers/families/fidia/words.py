@@ -39,5 +39,9 @@ TABLE: Final = WordTable(
     ),
 )  # fmt: skip
 
+#: The words that switch TCP for rotary axes in the head and in the table; a machine with one of each has both pairs.
+TCP_OF_HEADS: Final = ("G96", "G97")
+TCP_OF_TABLES: Final = ("G196", "G197")
+
 DWELL: Final = TABLE.code("G4")
 MACHINE: Final = TABLE.code("G290")

@@ -3,13 +3,14 @@
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.control.hole_motion import CycleExecutionError
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.words import CYCLE_PARAMETERS
+from trunnion.records import dataclass
 
 #: Q parameters that have no sign: the second clearance and dwells.
 _UNSIGNED: Final = (204, 210, 211)

@@ -7,7 +7,6 @@ linear axis along it. Corners are rounded and chamfered in the unrolled plane.
 import math
 import re
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,6 +18,7 @@ from trunnion.readers.control.hole_motion import CycleExecutionError
 from trunnion.readers.families.heidenhain.lexer import split_line, words
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters
 from trunnion.readers.families.heidenhain.path_blocks import only, read_block
+from trunnion.records import dataclass
 
 #: Arcs of rounded corners become lines that leave them by no more, mm.
 CHORD: Final = 0.001

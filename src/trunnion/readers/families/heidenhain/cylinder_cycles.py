@@ -6,7 +6,6 @@ along its own. What the axis is, and where it lies, comes from the chain of the 
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
@@ -27,6 +26,7 @@ from trunnion.readers.families.heidenhain.cylinder_contours import CylinderConto
 from trunnion.readers.families.heidenhain.parameters import Parameters
 from trunnion.readers.families.heidenhain.text import KlartextText
 from trunnion.readers.families.heidenhain.words import CYLINDER_SLOT
+from trunnion.records import dataclass
 
 #: How far the tool may stand beside the axis of the cylinder, mm, and tool and axes may be off square.
 _BESIDE: Final = 0.01

@@ -1,17 +1,18 @@
 """Control flow of a Klartext program: labels, calls, and jumps of FN functions."""
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
-from trunnion.readers.families.heidenhain.fn_functions import execute, waiting_function
+from trunnion.readers.families.heidenhain.fn_functions import acting_function, execute
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
+from trunnion.records import dataclass
 
 #: How deep calls of labels may nest.
 MAX_LABEL_DEPTH: Final = 20
@@ -124,8 +125,9 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         if _PARAMETER.search(rest):
             active.source.jumps_back = 0
         label = execute(rest, active.parameters, self._note)
-        if (wait := waiting_function(rest)) is not None:
-            self.control.add_event("unasked", f"FN {wait}")
+        if (number := acting_function(rest)) is not None:
+            self.control.add_event("unasked", f"FN {number}")
+            self.control.say_once(f"FN {number}")
         if label is not None:
             active.source.load()
             active.source.jump_without_choice(self._line_of(active, label))

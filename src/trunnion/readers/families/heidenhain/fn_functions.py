@@ -17,7 +17,7 @@ from trunnion.readers.families.heidenhain.parameters import (
     formula,
     guarded,
 )
-from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED, FN_SYSTEM_DATA, FN_WAITS
+from trunnion.readers.families.heidenhain.words import FN_ACTS, FN_NOT_SIMULATED, FN_SYSTEM_DATA, FN_WAITS
 
 #: A parameter in the words of a function.
 _PARAMETER: Final = re.compile(r"Q[LR]?[0-9]{1,4}")
@@ -113,10 +113,10 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     return None
 
 
-def waiting_function(text: str) -> int | None:
-    """Return the number behind FN if the program stops or waits there; None: it does not."""
+def acting_function(text: str) -> int | None:
+    """Return the number behind FN if the program stops, waits or speaks to the PLC there; None: it does not."""
     match = _NUMBER.match(text)
-    return int(match[1]) if match is not None and int(match[1]) in FN_WAITS else None
+    return int(match[1]) if match is not None and int(match[1]) in FN_ACTS else None
 
 
 def _check_values(text: str, parameters: Parameters) -> None:

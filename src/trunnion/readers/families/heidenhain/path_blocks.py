@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from typing import Final
 
@@ -18,6 +18,7 @@ from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.lexer import Operand, Word
 from trunnion.readers.families.heidenhain.parameters import KlartextError, Parameters, canonical
 from trunnion.readers.families.heidenhain.words import M_ARGUMENTS
+from trunnion.records import dataclass
 
 #: Higher feeds are mistakes of the program.
 MAX_FEED: Final = 1e9

@@ -6,13 +6,13 @@ TNC 128 (77184x-01, page 380), and their course of motions in the same chapters.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.control.hole_motion import CycleExecutionError, finite
 from trunnion.readers.families.heidenhain.cycle_values import check_given, check_signs
 from trunnion.readers.program.word_values import one_of
+from trunnion.records import dataclass
 
 #: The cycles of patterns.
 CIRCLE: Final = 220

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Set
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -20,6 +19,7 @@ from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.families.heidenhain.plane_datums import PlaneDatums
 from trunnion.readers.families.heidenhain.plane_frames import Datum
+from trunnion.records import dataclass
 
 #: A master axis within this of zero has no sign, degrees.
 _ZERO: Final = 1e-6

@@ -5,7 +5,6 @@ All angles are in degrees and right-handed. The matrix of a plane maps positions
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -14,6 +13,7 @@ from trunnion.arrays import Floats
 from trunnion.messages import Wording
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
 from trunnion.readers.families.heidenhain.parameters import KlartextError
+from trunnion.records import dataclass
 
 #: Vectors that are shorter, or parallel within this, make no plane.
 _FLAT: Final = 1e-6

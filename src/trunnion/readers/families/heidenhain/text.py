@@ -1,11 +1,12 @@
 """Targets of the jumps in a Klartext program: labels."""
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
 from trunnion.readers.program.source_text import SourceText
+from trunnion.records import dataclass
 
 #: Endings of program names.
 SUFFIXES: Final = (".H", "")

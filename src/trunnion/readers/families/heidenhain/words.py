@@ -135,7 +135,7 @@ M_NOT_SIMULATED: Final = {
     142: ("deletes modal program information: not simulated", True),
     144: ("positions count with the offset of the head: not simulated", True),
     150: ("suppresses the message of a limit switch: not simulated", True),
-    143: ("deletes a basic rotation, which only the control knows", False),
+    143: ("deletes a basic rotation, which only the control knows", True),
     200: ("laser cutting is not simulated", False),
     201: ("laser cutting is not simulated", False),
     202: ("laser cutting is not simulated", False),
@@ -256,6 +256,9 @@ FN_SYSTEM_DATA: Final = frozenset({17, 25})
 
 #: FN functions that stop the program, or let it wait.
 FN_WAITS: Final = frozenset({14, 20})
+
+#: FN functions that stop the program, wait, or speak to the PLC, which may do anything: no path shows them.
+FN_ACTS: Final = FN_WAITS | {19, 29}
 
 #: FN functions that are not simulated: what they do.
 FN_NOT_SIMULATED: Final = {

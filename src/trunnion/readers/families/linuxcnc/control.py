@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 import numpy as np
@@ -27,6 +27,7 @@ from trunnion.readers.program.settings import family_of, reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
 from trunnion.readers.scan.letter_blocks import letter_table
+from trunnion.records import dataclass
 
 #: Axes in the order of LinuxCNC's tables.
 ORDER: Final = "XYZABC"

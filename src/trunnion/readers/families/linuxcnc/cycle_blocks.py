@@ -39,6 +39,8 @@ class CycleInterpreter(OffsetInterpreter):
         pitch, factor = block.take("K"), block.take("I")
         if pitch is None:
             raise BlockError(Wording("NC210", "g33_1_no_k"))
+        if not pitch > 0.0:
+            raise BlockError(Wording("NC210", "g33_1_k_not_positive"))
         if "F" in block.words:
             raise BlockError(Wording("NC210", "g33_1_takes_no_f"))
         if not control.modal.spindle.current or not control.modal.rpm.current > 0.0:
@@ -50,7 +52,7 @@ class CycleInterpreter(OffsetInterpreter):
             if name in axes:
                 end[axis] = axes[name][0] if control.absolute else start[axis] + axes[name][0]
         length = float(np.linalg.norm(end - start)) * control.length_unit
-        feed = self._feed_of_pitch(abs(pitch) * control.length_unit, length)
+        feed = self._feed_of_pitch(pitch * control.length_unit, length)
         u, v = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
         lateral = float(end[u] - start[u]), float(end[v] - start[v])
         self._counter.count_motions(2)
@@ -59,7 +61,7 @@ class CycleInterpreter(OffsetInterpreter):
                 HoleMotion(False, float(end[control.plane_axis]), feed, lateral=lateral),
                 HoleMotion(False, float(start[control.plane_axis]), feed * (factor or 1.0)),
             ],
-            SpindleWork(SpindleTask.TAP, abs(pitch) * control.length_unit),
+            SpindleWork(SpindleTask.TAP, pitch * control.length_unit),
         )
 
     def _feed_of_pitch(self, pitch: float, length: float) -> float:

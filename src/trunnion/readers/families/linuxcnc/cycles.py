@@ -3,12 +3,12 @@
 Heights are positions along the axis normal to the working plane, in the units of the program.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent
+from trunnion.records import dataclass
 
 #: Words of cycles that hold until another cycle begins.
 MODAL_WORDS: Final = "RZPQIJK"

@@ -3,7 +3,7 @@
 import re
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,6 +19,7 @@ from trunnion.readers.rs274 import interpreter
 from trunnion.readers.rs274.block import block_reader, split_line
 from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
 from trunnion.readers.rs274.word_interpreter import WordInterpreter
+from trunnion.records import dataclass
 
 _KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE|CALL|RETURN")
 

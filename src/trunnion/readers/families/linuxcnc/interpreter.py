@@ -303,6 +303,7 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     def _change_pallet(self, word: Word, block: Block) -> None:
         self.control.add_event("stop", "pallet")
+        self.control.add_event("unasked", word.text)
 
     def _builders_program(self, word: Word, block: Block) -> None:
         self.control.add_builders_word("M", float(word.code))

@@ -1,12 +1,13 @@
 """Targets of the O words in a LinuxCNC program: subprograms, branches and loops."""
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.program.source_text import SourceText
+from trunnion.records import dataclass
 
 #: Endings of program names.
 SUFFIXES: Final = (".NGC", ".NC", "")

@@ -1,7 +1,7 @@
 """The words of a block of a Sinumerik program."""
 
 from collections.abc import Set
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.families.sinumerik.expressions import Value
+from trunnion.records import dataclass
 
 #: Fields of a block that hold one value, by their words.
 _HELD: Final = {

@@ -6,7 +6,7 @@ ones; ``cycle_modes`` makes them of those of newer controls.
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 from trunnion.messages import Wording
@@ -23,6 +23,7 @@ from trunnion.readers.control.hole_motion import (
 )
 from trunnion.readers.families.sinumerik.cycle_modes import MODE_PLACES
 from trunnion.readers.families.sinumerik.words import CYCLE_NEEDS, CYCLE_VALUES
+from trunnion.records import dataclass
 
 #: How far a chip-breaking peck backs off by default, mm.
 CHIP_BREAK: Final = 1.0

@@ -5,7 +5,7 @@ Of a loop only its lines are known: its end jumps back to its beginning, which e
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.errors import Severity
@@ -20,6 +20,7 @@ from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import TYPES
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import ProgramEnd
+from trunnion.records import dataclass
 
 
 @dataclass(slots=True, eq=False)
@@ -314,10 +315,10 @@ class Flow:
 
     def _def(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         kind = reader.peek()
-        while kind and kind not in TYPES:
+        while kind and kind not in TYPES and kind != ",":
             reader.at += 1
             kind = reader.peek()
-        if not kind:
+        if kind not in TYPES:
             raise ExpressionError(Wording("NC210", "def_needs_type"))
         reader.at += 1
         if kind == "STRING":

@@ -339,6 +339,7 @@ class SinumerikInterpreter(WordInterpreter):
             alarm = f"SETAL({', '.join(call.argument_texts)})"
             control.add_event("message", alarm)
             control.note_wait(Wording("NC226", "alarm", word=alarm), alarm)
+            control.say_once(alarm)
 
     def _drill(self, call: Call) -> None:
         try:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from trunnion.machines import Machine
@@ -11,6 +11,7 @@ from trunnion.readers.control.start_modes import ANGLES, VECTOR_FRAME, VECTORS, 
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.forms import read_form
 from trunnion.readers.program.settings import family_of, reading_of, unit_of
+from trunnion.records import dataclass
 
 #: Whether the length of the edge in force counts in positions of the machine (G53, G153, SUPA).
 WITH_LENGTH: Final = "with_length"

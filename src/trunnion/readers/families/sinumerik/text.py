@@ -2,12 +2,13 @@
 
 import re
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
 from trunnion.messages import Wording
 from trunnion.readers.program.source_text import SourceText
+from trunnion.records import dataclass
 
 # No two runs of blanks follow each other: matching a line of blanks would take quadratic time.
 _START = rb"^[ \t]*(?:/[0-9]?[ \t]*)?(?:N[0-9]+[ \t]*)?"

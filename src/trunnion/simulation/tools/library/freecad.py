@@ -3,11 +3,12 @@
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Final
 
 from trunnion.errors import Problem
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.simulation.tools.library.json_text import finite, short_text
 from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary, UnusableTool
 from trunnion.simulation.tools.shapes import fault_of_size, shape_faults

@@ -3,11 +3,12 @@
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final, NoReturn
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording, phrase
+from trunnion.records import dataclass
 from trunnion.simulation.tools.sizes import GREATEST
 
 #: Longest text that is read, bytes: catalogues of makers have some ten megabytes.

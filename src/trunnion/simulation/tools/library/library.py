@@ -1,10 +1,11 @@
 """What a tool library holds: tools with their sizes, and those that cannot be made a body, with the reason."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from trunnion.errors import InputError, Problem
 from trunnion.messages import Wording
+from trunnion.records import dataclass
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.shapes import tool_shape
 from trunnion.simulation.tools.sizes import ToolSizes
