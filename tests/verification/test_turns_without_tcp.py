@@ -141,8 +141,8 @@ def test_a_point_between_may_not_lead_the_tool_axis_off_its_way(
     angle: str, other: str, state: str, tmp_path: Path
 ) -> None:
     text = (GOLDEN / "mikron_600u" / "cap_m114.expected.h").read_text(encoding="utf-8")
-    before, found, behind = text.rpartition(angle)
-    assert found
+    before, angle_found, behind = text.rpartition(angle)
+    assert angle_found
     program = tmp_path / "cap.h"
     program.write_text(before + other + behind, encoding="utf-8")
     cl = GOLDEN / "mikron_600u" / "cap.cls"
