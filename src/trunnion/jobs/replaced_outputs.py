@@ -121,7 +121,7 @@ def _refusal(option: Option, file: Path, command: str) -> Wording:
     """Return why a file is not replaced: another command has written it, or none."""
     others = writers(_head(file))
     if others and command not in others:
-        return Wording("FIL250", "of_another_command", command=others[0])
+        return Wording("FIL250", "of_another_command", commands=others)
     return Wording("FIL250", "no_such_output", flag=option.flag)
 
 
