@@ -1,5 +1,6 @@
 """Data classes whose methods are made when first used: they do what those of the standard library do."""
 
+import ast
 import copy
 import dataclasses
 import inspect
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.support.locations import ROOT
 from trunnion import records
 from trunnion.records import dataclass
 
@@ -248,3 +250,17 @@ def test_any_class_behaves_as_of_the_standard_library(drawn: Drawn) -> None:
         cls: Any = decorate(**options)(type("Drawn", (), _namespace(columns, post=post)))
         seen.append(list(_behaviour(cls, columns)))
     assert seen[0] == seen[1]
+
+
+def test_sources_use_no_other() -> None:
+    sources = ROOT / "src" / "trunnion"
+    names = [
+        (str(path.relative_to(sources)), name.name)
+        for path in sources.rglob("*.py")
+        if path != sources / "records.py"
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Import) or (isinstance(node, ast.ImportFrom) and node.module == "dataclasses")
+        for name in node.names
+    ]
+    assert any(name == "field" for _, name in names)
+    assert [each for each in names if each[1] in {"dataclass", "dataclasses"}] == []

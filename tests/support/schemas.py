@@ -102,7 +102,7 @@ KINDS: Final[Mapping[str, Kind]] = {
         "control definition", _read_control, [*shipped_controls(), str(COMPLETE / "control.toml")], control_library(),
         [("definitions.md", heading, "") for heading in (
             "#### Keys of a control", "`[[control.format]]`, a", "`[[control.word]]`, a", "Other tables:",
-        )],
+        )] + [("reader.md", "| key | may be", "reading."), ("reader-fanuc.md", "| key | meaning |", "reading.")],
         needs=("family",),
     ),
     "project": Kind(
