@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from tests.support.locations import TESTS
 from trunnion import messages
+from trunnion.batch.worker_task import Status
 from trunnion.explanations import SUBJECTS
 from trunnion.jobs.capability.fitting import FitStatus
 from trunnion.jobs.describe.controls import describe_controls
@@ -50,7 +51,7 @@ WORDS = (
     "contour", "tool's centre", "diameter", "radius", *FileKind, *Became, *NumberKind, "APT CL data (ISO 4343)",
     "CAMWorks CL data", "Autodesk Fusion or HSMWorks APT",
     "of rapid speed", "Spindle", "spindle", "fastest", "writing", "placing", "turns", "tool paths", "steps", "tilts",
-    "fit", "machines", "sensitivity", "motions", "states of the stock", "states", "survey", "files", "cutting",
+    *Status, "fit", "machines", "sensitivity", "motions", "states of the stock", "states", "survey", "files", "cutting",
     "blocks", "batch", "tasks", "prepare", "kernels", "points", "of acceleration", "tool axes", "places",
     "field of tool axes", "rounds", "layers", "links", "passes", "fit of a flank",
 )  # fmt: skip

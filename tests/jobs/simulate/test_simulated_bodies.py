@@ -178,17 +178,19 @@ def test_the_verdict_says_that_collisions_with_the_machine_were_not_checked(tmp_
     )  # fmt: skip
     assert unstated.passed
     why = "collisions with the machine: not checked (no gauge point stated)"
-    assert unstated.verdict == f"nothing found; {why}"
+    stands_on = "stands on 8 values nobody measured; assumed: the control starts with CYCLE800()"
+    assert unstated.verdict == f"nothing found; {why}; {stands_on}"
     assert list(simulation_lines(unstated))[-1] == f"Passed in part: {unstated.verdict}"
     page = b"".join(render_simulation_page(simulation_content(unstated))).decode()
     assert page.count(why) == 1
     assert "Nothing was found. Collisions with the machine: not checked (no gauge point stated)." in page
     assert to_data(unstated)["not_checked"] == ["no gauge point stated"]
     unknown = simulate(tmp_path, SLOT)
-    assert unknown.verdict.endswith("not checked (workpiece zero or tool length not stated)")
+    assert "not checked (workpiece zero or tool length not stated); " in unknown.verdict
 
 
 @pytest.mark.parametrize("project", ["examples/project/part.toml", "examples/simulation/plate.toml"])
 def test_the_example_stands_on_the_table_and_is_checked_with_the_machine(project: str) -> None:
     found = trunnion.simulate(project)
-    assert (found.verdict, found.remarks, found.not_checked) == ("nothing found", (), ())
+    assert found.verdict.startswith("nothing found; stands on 11 values nobody measured; assumed: ")
+    assert (found.remarks, found.not_checked) == ((), ())

@@ -31,6 +31,17 @@ def _in(message: str, *lines: str, on: str = "yl569", trial: Trial | None = None
     return marked(message, trial or verify(on), *lines, head=head, foot=foot, **settings)
 
 
+def _on_fork(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+    """Verify a program of a Fidia with both rotary axes in its head."""
+    file = folder / "fork.toml"
+    file.write_text(
+        'extends = "generic_head_head_ca"\nname = "Fork"\n[control]\nextends = "fidia_nc15"\n'
+        '[control.settings]\ntcp_on = "G96"\ntcp_off = "G97"\n',
+        encoding="utf-8",
+    )
+    return verify(str(file))(text, settings, folder)
+
+
 def _limited(on: str, **limits: int) -> Trial:
     """Return what verifies a program where less is followed, so that its end comes soon."""
 
@@ -169,6 +180,7 @@ CURES: Final = (
     _in("NC341", "M428", "- G53 G0 Z10", "+ M429", "+ G53 G0 Z10", "+ M428", "M429", on=_LINUXCNC),
     _in("NC341 m242_while_tcp", "G196", "- M242", "G197", "+ M242", on=_FIDIA),
     _in("NC341 tcp_of_heads", "- G96", "+ G196", "- G97", "+ G197", on=_FIDIA),
+    _in("NC341 tcp_of_tables", "- G196", "+ G96", "- G197", "+ G97", on=_FIDIA, trial=_on_fork),
     _in("NC342", "G196", "G1 X1. C350. F100", "X2. C10.", "G197", on=_FIDIA),
     _in("NC342 noted", "G196", "G1 X1. C350. F100", "X2. C10.", "G197", on=_FIDIA),
     _in("NC342 more_noted", "G196", "G1 X1. C350. F100", *["X2. C10.", "X1. C350."] * 12, "G197", on=_FIDIA),
