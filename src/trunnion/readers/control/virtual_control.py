@@ -176,6 +176,7 @@ class VirtualControl(ContourControl, ABC):
                 continue
             value, mode = axes[name]
             rule = self.turn_rule(which, mode)
+            self._judge_turn(which, value, mode)
             if self._is_incremental(mode):
                 self.resolve_rows()
                 value += float(self.current_joints[self.machine.rotary[which]])
@@ -184,6 +185,18 @@ class VirtualControl(ContourControl, ABC):
             rules |= rule << (4 * which)
             bits |= int(ProgrammedWord.FIRST) << which
         return RotaryTarget((values[0], values[1]), rules, bits)
+
+    def _judge_turn(self, which: int, value: float, mode: PositionMode) -> None:
+        """Note a position beyond one turn of an endless axis that a word takes by a way of its own: an alarm."""
+        axis = self.machine.axes[self.machine.rotary[which]]
+        if not axis.endless or mode not in (PositionMode.SHORTEST, PositionMode.POSITIVE, PositionMode.NEGATIVE):
+            return
+        start = -180.0 if axis.output is AngleOutput.SYMMETRIC else 0.0
+        if not start <= value < start + 360.0:
+            self.note(
+                Wording("NC215", "beyond_turn", axis=axis.name, value=value, start=start, end=start + 360.0),
+                Severity.ERROR,
+            )
 
     def rotary_position(self, values: Sequence[float]) -> RotaryTarget:
         """Return the target of a positioning of both rotary axes that the control itself makes."""

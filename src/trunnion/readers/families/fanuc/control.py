@@ -110,6 +110,17 @@ class FanucControl(Rs274Control):
             diagnostics = [*diagnostics, replace(first, wording=said, file=files[int(first.file)])]
         return super().finish(files, comments, diagnostics)
 
+    def change_tool(self) -> None:
+        """Change to the selected tool; some controls switch the spindle and coolant off with it."""
+        super().change_tool()
+        if not self.settings.tool_change_stops:
+            return
+        if self.modal.spindle.current:
+            self.add_event("spindle", "off")
+        flowing = next((each.value for each in reversed(self.events) if each.kind == "coolant"), "off")
+        if flowing != "off":
+            self.add_event("coolant", "off")
+
     # Frames
 
     @property

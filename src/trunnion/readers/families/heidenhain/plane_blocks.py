@@ -166,6 +166,7 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
     if len(names) % 2:
         note(Wording("NC215", "tcpm_unexpected", found=names[-1]), Severity.ERROR)
     control.judge_within_compensation("FUNCTION TCPM")
+    control.switch_tcp_by("FUNCTION TCPM", on=True)
     control.set_tcp(True)
     control.limit_compensating_feed(None)
     control.spatial_angles_active = spatial_angles

@@ -204,6 +204,8 @@ class SinumerikControl(VirtualControl):
         if any(abs(value) * self.length_unit > MAX_POSITION for value, _ in params.values()):
             raise arcs.ArcError(Wording("NC320", "circle_numbers_no_machine"))
         if self.motion == TANGENT:
+            for word in sorted(params.keys() - {"TURN"}):
+                self.note(Wording("NC213", "unused_word", word=word), Severity.ERROR)
             return arcs.tangential(start, end, self.end_direction(), self.plane_axis, turns)
         if self.motion != THROUGH:
             return self._plane_arc(params, in_plane, turns, start, end)
