@@ -373,6 +373,7 @@ class Toolpath:
     system      of the points, in that of the model, where the file gives it and its meaning is open: 3 rows of 4, mm
     states_system  each operation states where its coordinate system lies in the absolute one of the CAM system
     clamping    how the part is clamped, as comments in the head of the file say; None: they say nothing
+    stock       the stock that the file gives, in the absolute system, as ``--stock`` takes it; empty if it gives none
     reopen      opens the text of a file that is packed or a stream once more; None: it is the file of that path
     """
 
@@ -387,6 +388,7 @@ class Toolpath:
     system: tuple[float, ...] = ()
     states_system: bool = True
     clamping: Clamping | None = None
+    stock: str = ""
     reopen: Callable[[], BinaryIO] | None = None
 
     @property
