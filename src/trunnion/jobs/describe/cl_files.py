@@ -42,8 +42,7 @@ class ClFileDescription:
     """One CL file.
 
     dialect       ``clsf``, ``ncl``, ``solidworks``, ``clt``, ``catia``, ``fusion``, ``apt``, ``nci`` or ``trunnion``
-    title         its name in words
-    why           by what the dialect was recognized; ``recognized`` in English
+    title, why    its name in words, and by what it was recognized; ``recognized`` in English
     units         ``mm`` or ``inch``
     states_units  the file says its unit, or its feeds do; else mm are assumed
     part          name of the part, empty if there is none
