@@ -366,7 +366,7 @@ class Operation:
 class Toolpath:
     """The content of a CL file.
 
-    file, reopen  its path, in an archive with the name there, or ``stdin``; opens its text again if it is packed or stdin
+    file, reopen  its path, in an archive with the name there, or ``stdin``; opens a packed text or a stream again
     operations, part, remarks  in the order of the file; name of the part; warnings of the reader
     unit, states_unit  length unit of the file, mm; the file says it, or its feeds do: else mm are assumed
     dialect, recognized_by  a key of ``trunnion.cl.dialects.DIALECTS``; its title, and by what it was recognized
