@@ -16,7 +16,17 @@ from trunnion.cl.writers import WRITERS
 from trunnion.cl.writers.catia import CatiaWriter
 from trunnion.errors import InputError
 from trunnion.model.arcs import arc_gaps
-from trunnion.model.toolpath import CutterComp, Insert, Kind, Message, Operation, SpindleOn, Stop, Toolpath, UnknownStatement
+from trunnion.model.toolpath import (
+    CutterComp,
+    Insert,
+    Kind,
+    Message,
+    Operation,
+    SpindleOn,
+    Stop,
+    Toolpath,
+    UnknownStatement,
+)
 
 OTHERS = ("catia", "ncl")
 

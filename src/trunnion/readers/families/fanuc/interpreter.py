@@ -66,6 +66,9 @@ class FanucInterpreter(CycleInterpreter):
 
     def _main_program(self, source: SourceText) -> ActiveProgram:
         assert isinstance(source, FanucText)
+        if line := source.skip_text():
+            self.control.line = line
+            self._note(Wording("NC170", "text_before_percent"), Severity.WARNING)
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
