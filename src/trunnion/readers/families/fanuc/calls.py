@@ -62,6 +62,13 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         settings = settings_of(self._machine)
         return FanucControl(self._machine, self._note, settings, shortest=self._options.shortest)
 
+    def _main_program(self, source: SourceText) -> ActiveProgram:
+        assert isinstance(source, FanucText)
+        if line := source.skip_text():
+            self.control.line = line
+            self._note(Wording("NC170", "text_before_percent"), Severity.WARNING)
+        return ActiveProgram(source, 0)
+
     @abstractmethod
     def _system_value(self, key: int) -> float | None:
         """Return the value of a system variable; None for one that is not simulated."""
