@@ -74,7 +74,7 @@ CURES: Final = (
     _said("NC132", "unknown_or_missing", _SINUMERIK.replace("G1 X10", "MCALL HOLES\nG1 X10"), ("MCALL HOLES\n", "")),
     _said(
         "NC170",
-        "text_before_percent",
+        "",
         f"MADE ON MONDAY\n{_FANUC}",
         ("MADE ON MONDAY\n", "(MADE ON MONDAY)\n"),
         on="matsuura_mx330",
