@@ -5,7 +5,22 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.verification.test_hand_made_faults import JOBS
+
+JOB = """TOOL PATH/FACE,TOOL,D6
+TLDATA/MILL,6.0,0.0,75.0,0.0,0.0
+INTOL/0.01
+OUTTOL/0.01
+LOAD/TOOL,1
+SPINDL/RPM,4000,CLW
+RAPID
+GOTO/0.0,0.0,60.0,0.0,0.0,1.0
+FEDRAT/MMPM,500.0
+GOTO/0.0,0.0,10.0
+GOTO/10.0,0.0,10.0
+RAPID
+GOTO/10.0,0.0,60.0
+END-OF-PATH
+"""
 
 
 @pytest.mark.parametrize(
@@ -14,7 +29,7 @@ from tests.verification.test_hand_made_faults import JOBS
 )
 def test_a_tolerance_that_no_block_states_is_not_checked(machine: str, word: str, line: str, tmp_path: Path) -> None:
     cl, program = tmp_path / "part.cls", tmp_path / "part.nc"
-    cl.write_text(JOBS[machine], encoding="utf-8")
+    cl.write_text(JOB, encoding="utf-8")
     text = trunnion.post(cl, machine=machine).text or ""
 
     def said(blocks: str) -> list[str]:
@@ -24,4 +39,4 @@ def test_a_tolerance_that_no_block_states_is_not_checked(machine: str, word: str
 
     without = "\n".join(block for block in text.splitlines() if line not in block)
     assert said(text) == []
-    assert [word in each for each in said(f"{without}\n")] == [True, True]
+    assert [word in each for each in said(f"{without}\n")] == [True]
