@@ -54,7 +54,7 @@ class VirtualControl(ContourControl, ABC):
     shortest       how endless rotary axes reach plain words: True by the shorter way, False not so, None as the control
     compensation_style    how it compensates in a plane, a key of ``compensation.styles.STYLES``; 0: not known
     compensates_in_space  radius compensation is across the tool, by a word for it (G41.2, CUT3DC)
-    rotary_names   letters of the rotary axes
+    rotary_names   letters of the rotary axes that the machine has
     """
 
     compensation_style = UNKNOWN_STYLE
@@ -68,7 +68,7 @@ class VirtualControl(ContourControl, ABC):
         self.compensates_in_space = False
         # Where the last drilling cycle was judged: it is called for each hole of a block.
         self._drilled_line = 0
-        self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
+        self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.own_rotary)
 
     def _fault_at(self, fault: Wording, line: int) -> None:
         """Note an error at a line of the program, or at the present one for 0."""

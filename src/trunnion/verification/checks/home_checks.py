@@ -59,7 +59,7 @@ class _HomeMotions:
         rows = rows[~np.isin(rows, [event.before_row for event in run.events if event.kind == "retract"])]
         joints, before = run.positions(rows).joints, run.positions(rows - 1).joints
         off = joints - run.machine.home
-        for k, axis in enumerate(run.machine.axes):
+        for k, axis in run.machine.own_columns:
             if axis.endless:
                 off[:, k] -= 360.0 * np.rint(off[:, k] / 360.0)
         words = np.array(_axis_words(run.machine))

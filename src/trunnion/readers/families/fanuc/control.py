@@ -78,10 +78,11 @@ class FanucControl(Rs274Control):
 
     def _make_table(self, whole_feeds: bool, vectors: bool, turning: bool) -> Codes:
         """Return a letter table; ``whole_feeds`` if a whole number after F counts as it is."""
-        first, second = self.rotary_names
         # Rotary words are no plain words where the tool axis is a vector, or where they must not turn axes.
-        plain = ("", "") if vectors or not turning else (first, second)
-        need_point = "" if self.settings.calculator else f"XYZ{first}{second}IJK" + ("" if whole_feeds else "F")
+        plain = () if vectors or not turning else self.rotary_names
+        need_point = (
+            "" if self.settings.calculator else f"XYZ{''.join(self.rotary_names)}IJK" + ("" if whole_feeds else "F")
+        )
         return letter_table(plain, gaps=True, need_point=need_point, vector="IJK" if vectors else "")
 
     @property

@@ -68,7 +68,7 @@ class HeidenhainControl(LeadControl):
         self._head_preset: int | None = None
         super().__init__(machine, note, shortest=shortest)
         self.modal.feed_path.set(0, int(FeedPath.AXES))
-        self._letter_tables = letter_table((self.rotary_names[0], self.rotary_names[1])), letter_table(("", ""))
+        self._letter_tables = letter_table(self.rotary_names), letter_table(("", ""))
 
     @property
     def letter_table(self) -> Codes:
@@ -181,7 +181,7 @@ class HeidenhainControl(LeadControl):
 
     def feed_at_tip(self, on: bool) -> None:
         """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
-        heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
+        heads = [axis.name for axis in self.machine.own_axes if axis.is_rotary and axis.mount is Mount.TOOL]
         if on and heads:
             self.note(Wording("NC241", "feed_of_head_unknown", axes=tuple(heads)), Severity.WARNING)
         self._feed_path = FeedPath.TIP if on else FeedPath.AXES

@@ -68,7 +68,7 @@ class SinumerikControl(VirtualControl):
         super().__init__(machine, note, shortest=shortest)
         if self._settings.unit:  # as G700 and G710 do: feeds count in it too
             self.set_units(self._settings.unit == "inch", True)
-        self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
+        self.letter_table = letter_table(self.rotary_names, comment=";", assign="=")
 
     def add_exact_stop(self, mode: str) -> None:
         """Record a G code of exact stops, which counts until ``smooth`` switches, or another one."""

@@ -76,7 +76,7 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     if int(mode) >> 6 == 3:
         # The values are those of the first and the second rotary axis of the swivel data.
         names = settings_of(control.machine).swivel_axes
-        rotary = tuple(control.machine.names[k] for k in control.machine.rotary)
+        rotary = tuple(control.machine.names[k] for k in control.machine.own_rotary)
         if names not in (rotary, rotary[::-1]):
             note(Wording("NC224", "cycle800_direct_axes_unknown", mode=mode), Severity.ERROR)
         direct = (angles[0], angles[1]) if names != rotary[::-1] else (angles[1], angles[0])
