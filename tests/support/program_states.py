@@ -220,6 +220,9 @@ SAMPLES: Final = {
     ),
     "frame and shift": Sample("Sinumerik", rooms={"head": "TRANS X5"}, cl=r"GOTO/25\.0"),
     "TCP": Sample("Sinumerik", rooms={"head": "G0 B30 C0\nTRAORI\nG54"}, cl=r"GOTO/[^,]*,[^,]*,[^,]*,0\.5"),
+    "limit of the compensating motions": Sample(
+        "iTNC 530", rooms={"head": "M128 F1000", "behind": "M129"}, says="M128 F1000 is not carried over",
+    ),
     "tip at the ends of blocks": Sample(
         "iTNC 530", rooms={"head": "L B-30 C+0 R0 FMAX\nM114", "behind": "M115"}, cl=r"GOTO/[^,]*,[^,]*,[^,]*,-0\.5",
     ),
@@ -314,11 +317,17 @@ SAMPLES: Final = {
     "position of the machine": Sample(
         "Sinumerik", rooms={"head": "SUPA G0 Z300 D0\nD1"}, says="Z goes to the machine position 300",
     ),
+    "rotary axes between operations and at the end": Sample(
+        "Sinumerik", rooms={"behind": "SUPA G0 Z0 D0\nG0 B30"}, says="B goes to the machine position 30",
+    ),
     "drilling cycle": Sample(
         "Sinumerik", rooms={"cut": "G0 Z50\nF100\nMCALL CYCLE81(5,0,2,-3)\nX12\nMCALL\nG1 Z-1"},
         says="1 hole of drilling cycles becomes motion",
     ),
     "variable": Sample("Fanuc", rooms={"cut": "#1=12.\nX#1"}, cl=r"GOTO/12\.0"),
+    "variable that outlives the program": Sample(
+        "Fanuc", rooms={"head": "#500=7."}, says="#500 = 7 is not carried over",
+    ),
     "end": Sample("Fanuc", rooms={"end": "M2"}, probe=_event("end")),
     "begin anew": Sample("Fanuc", rooms={"end": "M99"}, says="M99 begins the program anew"),
 }  # fmt: skip

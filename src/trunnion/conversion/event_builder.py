@@ -184,7 +184,7 @@ class EventBuilder:
 
     def _lose(self, kind: str, event: ProgramEvent) -> None:
         """Say of an event that no operation holds what the table of states has."""
-        fate, loss = loss_of(kind)
+        fate, loss = loss_of(kind, event.value)
         if loss is not None:
             (self._warn.refuse if fate is Fate.REFUSED else self._warn)(event.line, loss, event.file)
 

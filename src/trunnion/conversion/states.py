@@ -39,6 +39,7 @@ class State:
     kinds    events of a run that set it
     columns  columns of a run that hold it
     loss     what is said of an event of these kinds that no operation can hold
+    by_value  each is named by its value, as not carried over, instead
     """
 
     name: str
@@ -50,6 +51,7 @@ class State:
     kinds: tuple[str, ...] = ()
     columns: tuple[str, ...] = ()
     loss: Wording | None = None
+    by_value: bool = False
 
     def on(self, target: str) -> Fate:
         """Return what becomes of it on a target."""
@@ -90,6 +92,7 @@ STATES: Final = (
     ),
     State("frame and shift", "TRANS, ROT, SCALE, G52, cycle 7", _PATH, kinds=("frame",)),
     State("TCP", "TRAORI, M128, G43.4, G96 (Fidia)", _PATH, columns=("tcp",)),
+    State("limit of the compensating motions", "M128 F1000", _REPORTED, kinds=("following",), by_value=True),
     State("tip at the ends of blocks", "M114", _PATH, columns=("at_ends",)),
     State("turn of the tool on a great circle", "ORIVECT, PATHCTRL VECTOR", _REPORTED, columns=("orientation",)),
     State("other rotary positions than the tool axis gives", "C90 with an upright tool", _REPORTED),
@@ -146,8 +149,10 @@ STATES: Final = (
         "position of the machine", "SUPA, G53, M91, M140", _REPORTED, kinds=("retract", "leave"),
         columns=("machine_frame", "machine_steps"),
     ),
+    State("rotary axes between operations and at the end", "G0 A30", _REPORTED),
     State("drilling cycle", "CYCLE81, G83, cycle 200", _REPORTED, kinds=("hole", "cycle_value")),
-    State("variable", "R1, #1, Q1", _PATH),
+    State("variable", "#1, #100, Q1", _PATH),
+    State("variable that outlives the program", "R1, #500, QR1", _REPORTED, kinds=("variable",), by_value=True),
     State("end", "M30, M2", _PATH, kinds=("end",)),
     State("begin anew", "M99 of a main program", _REPORTED),
 )  # fmt: skip
@@ -163,10 +168,14 @@ SAID_ANYHOW: Final = frozenset(
 _BY_KIND: Final = {kind: state for state in STATES for kind in state.kinds}
 
 
-def loss_of(kind: str) -> tuple[Fate, Wording | None]:
+def loss_of(kind: str, value: object = None) -> tuple[Fate, Wording | None]:
     """Return what becomes of an event that no operation holds, and what is said of it; one without a row is refused."""
     state = _BY_KIND.get(kind)
-    return (Fate.REFUSED, Wording("CNV170", "unknown_state", kind=kind)) if state is None else (state.fate, state.loss)
+    if state is None:
+        return Fate.REFUSED, Wording("CNV170", "unknown_state", kind=kind)
+    if state.by_value:
+        return state.fate, Wording("CNV150", "not_carried", lost=(str(value),))
+    return state.fate, state.loss
 
 
 def table_rows() -> Iterator[tuple[str, ...]]:

@@ -36,6 +36,7 @@ from trunnion.conversion.unsupported import (
     warn_of_interpolation,
     warn_of_machine_words,
     warn_of_normals,
+    warn_of_park_angles,
     warn_of_park_positions,
     warn_of_poses,
     warn_of_register_changes,
@@ -208,6 +209,7 @@ class _ToolpathBuilder:
         warn_of_other_meanings(run, self._warn)
         warn_of_skipped_words(run, rows, self._texts[0], self._headers.template_lines, self._warn)
         warn_of_park_positions(run, self._warn)
+        warn_of_park_angles(run, rows, self._warn)
         warn_of_normals(run, self._warn)
         warn_of_splines(run, self._warn)
         warn_of_cycles(run, self._warn)

@@ -25,6 +25,8 @@ _WITHOUT_RADIUS = ("cycle 208:", "G41.2:", "G42.2:")
 
 #: Rotary positions within this, degrees, are the same; programs have at most five decimals.
 _SAME_ANGLE = 1e-4
+#: A rotary axis within this, degrees, of where an operation begins is there: planes may have fewer digits.
+_SAME_PARK_ANGLE = 0.01
 #: Machine positions within this, mm, are the same.
 _SAME_POSITION = 1e-3
 #: A tool within this distance of the axis of a hole, mm, is on it; heights within it are the same.
@@ -173,6 +175,28 @@ def warn_of_park_positions(run: Run, warn: Warnings) -> None:
                 Wording("CNV161", "goes_machine_position", axis=axis.name, position=position),
                 warn,
             )
+
+
+def warn_of_park_angles(run: Run, operations: Sequence[Ints], warn: Warnings) -> None:
+    """Warn of rotary axes that go elsewhere between operations than home and to where an operation begins or ends.
+
+    operations   the rows (n,) of each operation
+    """
+    machine = run.machine
+    ends = [-1, *(int(rows[-1]) for rows in operations)]
+    begins = [*(int(rows[0]) for rows in operations), len(run)]
+    for end, begin in zip(ends, begins, strict=True):
+        rows = np.arange(end + 1, begin)
+        for column in machine.rotary if len(rows) else ():
+            axis = machine.axes[column]
+            known = [axis.home, *(float(run.joints[row, column]) for row in (end, begin) if 0 <= row < len(run))]
+            away = np.abs(run.joints[rows, column][:, None] - known)
+            away = np.minimum(away % 360.0, -away % 360.0) if axis.endless else away
+            elsewhere = np.flatnonzero(away.min(axis=1) > _SAME_PARK_ANGLE)
+            if len(elsewhere):
+                row = rows[elsewhere]
+                said = Wording("CNV161", "goes_machine_position", axis=axis.name, position=run.joints[row[0], column])
+                _warn_at_rows(run, row, said, warn)
 
 
 def refuse_unsimulated_motions(run: Run, warn: Warnings) -> None:

@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Final
 
 from trunnion.errors import Severity
@@ -45,6 +46,7 @@ class EventRecorder:
         self.modal = ModalBuilder()
         self.events: list[RunEvent] = []
         self.mode_words: list[ModeWord] = []
+        self._left_variables: dict[str, RunEvent] = {}
         self._modes_said: dict[str, str] = {}
         self._times_said: Counter[str] = Counter()
         #: The row from which on the program has said a mode.
@@ -72,6 +74,17 @@ class EventRecorder:
         if kind == "dwell" and isinstance(value, float):
             self._judge_dwell(value)
         self.events.append(RunEvent(self.line, self.row, kind, value, modal.file.current, bool(modal.tcp.current)))
+
+    def leave_variable(self, name: str, value: float | None) -> None:
+        """Record what a variable that outlives the program is set to: the last value is an event at the end."""
+        said = f"{name} = {'#0' if value is None else f'{value:.10g}'}"
+        file, tcp = self.modal.file.current, bool(self.modal.tcp.current)
+        self._left_variables[name] = RunEvent(self.line, self.row, "variable", said, file, tcp)
+
+    @property
+    def left_variables(self) -> tuple[RunEvent, ...]:
+        """The last value of each variable that outlives the program, behind its last row; at its block."""
+        return tuple(replace(event, before_row=self.row) for event in self._left_variables.values())
 
     def _judge_dwell(self, amount: float) -> None:
         """Note a long dwell: seconds, or turns of the spindle if below zero."""

@@ -353,7 +353,7 @@ class RowRecorder(EventRecorder):
             normals=self._normal_columns(),
             tools=tuple(self.tools),
             comments=comments,
-            events=self.events,
+            events=[*self.events, *self.left_variables],
             diagnostics=tuple(diagnostics),
             units_from=self.units_from,
             spindle_holes=tuple(self._spindle_holes),

@@ -36,11 +36,20 @@ def read_variables(table: Table, names: re.Pattern[str], example: str) -> dict[s
 
 
 class DeclaredVariables:
-    """The declared values of a running program, each of which is noted once, when it is first used."""
+    """The declared values of a running program, each of which is noted once, when it is first used.
 
-    def __init__(self, values: Mapping[str, float], note: Callable[[Wording, Severity], None]) -> None:
+    leave   takes name and value of a variable that keeps what the program sets when the program has ended
+    """
+
+    def __init__(
+        self,
+        values: Mapping[str, float],
+        note: Callable[[Wording, Severity], None],
+        leave: Callable[[str, float | None], None],
+    ) -> None:
         self._values = values
         self._note = note
+        self._leave = leave
         self._told: set[str] = set()
 
     def __contains__(self, name: str) -> bool:
@@ -54,6 +63,14 @@ class DeclaredVariables:
             self._note(Wording(OF_VARIABLES, "declared_value", name=name, value=value), Severity.WARNING)
         return value
 
+    def set(self, name: str, value: float | None, *, outlives: bool) -> None:
+        """Take what the program sets a variable to.
+
+        outlives   the control keeps it, as it does each that the definition declares
+        """
+        if outlives or name in self._values:
+            self._leave(name, value)
+
 
 #: For programs of controls of which nothing is declared.
-NOTHING_DECLARED: Final = DeclaredVariables(NO_VARIABLES, lambda _wording, _severity: None)
+NOTHING_DECLARED: Final = DeclaredVariables(NO_VARIABLES, lambda _wording, _severity: None, lambda _name, _value: None)

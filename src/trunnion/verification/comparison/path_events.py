@@ -119,6 +119,7 @@ def _left_on(run: Run) -> list[Wording]:
     found = [each.wording for each in run.diagnostics if each.code == _LEFT_ON]
     modes = {each.mode: each.word for each in run.mode_words if each.before_row == len(run)}
     found += [Wording("comparison", "mode_left_on", mode=mode, word=word) for mode, word in modes.items() if word]
+    found += [Wording("comparison", "known", word=event.value) for event in run.events if event.kind == "variable"]
     frames = [event.value for event in run.events if event.kind == "frame"]
     found += [Wording("comparison", "frame_left_on", word=frames[-1])] if frames and frames[-1] else []
     found += [Wording("comparison", "tcp_left_on") for event in run.events if event.kind == "end" and event.tcp]

@@ -42,7 +42,7 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         self.jump_words = _jump_words(settings_of(machine))
         super().__init__(path, machine, options)
-        declared = DeclaredVariables(self.control.settings.variables, self._note)
+        declared = DeclaredVariables(self.control.settings.variables, self._note, self.control.leave_variable)
         self._variables = Variables(self._system_value, self._set_system_value, declared)
         self._flow = Flow(self._note, self._variables)
         # The program and the line of the present block.

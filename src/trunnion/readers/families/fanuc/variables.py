@@ -19,9 +19,10 @@ from trunnion.readers.rs274.expressions import (
     round_half_away,
 )
 
-#: Number of local variables, and the first common and system variables.
+#: Number of local variables, the first common ones, those of them that stay when the control is off, and system ones.
 LOCAL_COUNT: Final = 33
 COMMON_FROM: Final = 100
+KEPT_FROM: Final = 500
 SYSTEM_FROM: Final = 1000
 
 #: Comparisons take numbers that differ by no more as equal.
@@ -131,6 +132,7 @@ class Variables:
             raise BlockError(Wording("NC223", "variable_not_set_by_programs", key=key))
         if key > LOCAL_COUNT:
             self._common[key] = value
+            self._declared.set(f"#{key}", value, outlives=key >= KEPT_FROM)
         elif value is None:
             self._local[-1].pop(key, None)
         else:

@@ -119,6 +119,8 @@ class HeidenhainControl(LeadControl):
     def limit_compensating_feed(self, feed: float | None) -> None:
         """M128 F: how fast the linear axes may follow the rotary ones, as written; None: as the machine sets it."""
         self.say_mode(FOLLOWING, "" if feed is None else f"F{feed * self.feed_unit:.6g}")
+        if feed is not None:
+            self.add_event("following", f"M128 F{feed:g}")
 
     def say_tool_axis(self) -> None:
         """Record whether rotary words under TCP are positions of axes or angles in space."""

@@ -97,7 +97,7 @@ class HeidenhainInterpreter(PathInterpreter):
 
     def _main_program(self, source: SourceText) -> ActiveProgram:
         assert isinstance(source, KlartextText)
-        declared = DeclaredVariables(variables_of(self._machine), self._note)
+        declared = DeclaredVariables(variables_of(self._machine), self._note, self.control.leave_variable)
         self._main = ActiveProgram(source, 0, parameters=Parameters(declared))
         return self._main
 

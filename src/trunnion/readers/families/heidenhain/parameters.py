@@ -51,6 +51,7 @@ class Parameters:
 
     def __setitem__(self, name: str, value: float) -> None:
         self._table(name)[name] = checked(value)
+        self.declared.set(name, value, outlives=name.startswith("QR"))
 
     def forget(self, name: str) -> None:
         """Mark the value of a parameter as not known."""

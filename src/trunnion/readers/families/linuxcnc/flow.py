@@ -69,7 +69,8 @@ class OWordInterpreter(WordInterpreter[ActiveProgram]):
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
-        self._parameters = Parameters(self._system_value, DeclaredVariables(self.control.declared, self._note))
+        declared = DeclaredVariables(self.control.declared, self._note, self.control.leave_variable)
+        self._parameters = Parameters(self._system_value, declared)
         self._returned: float | None = None
         self._handlers: dict[str, Callable[[OWord], None]] = {
             "SUB": lambda word: word.jump(word.structure.end + 1),

@@ -118,9 +118,12 @@ class Parameters:
             if key > 5000:
                 raise BlockError(Wording("NC223", "set_by_control", key=key))
             self._numbers[key] = value
+            self._declared.set(f"#{key}", value, outlives=key > LOCAL_COUNT)
             return
         table = self._global if key.startswith("_") else self._local[-1]
         table[key] = value
+        if key.startswith("_"):
+            self._declared.set(f"#<{key.lower()}>", value, outlives=True)
         if len(table) > MAX_VARIABLES:
             raise BlockError(Wording("NC210", "too_many_names", most=MAX_VARIABLES))
 

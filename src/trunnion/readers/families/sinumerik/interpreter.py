@@ -94,7 +94,7 @@ class SinumerikInterpreter(WordInterpreter):
 
     def _main_program(self, source: SourceText) -> ActiveProgram:
         assert isinstance(source, SinumerikText)
-        declared = DeclaredVariables(settings_of(self._machine).variables, self._note)
+        declared = DeclaredVariables(settings_of(self._machine).variables, self._note, self.control.leave_variable)
         return ActiveProgram(source, 0, variables=Variables(declared))
 
     def _takes_positions(self, codes: Sequence[str]) -> bool:

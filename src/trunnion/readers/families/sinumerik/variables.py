@@ -82,6 +82,7 @@ class Variables:
         """Set an R parameter."""
         self._check_index(number)
         self._parameters[number] = value
+        self.declared.set(f"R{number}", value, outlives=True)
 
     def define(
         self,
