@@ -6,7 +6,7 @@
 from typing import Final
 
 #: Dialects that are read.
-READ_DIALECTS: Final = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt", "nci")
+READ_DIALECTS: Final = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt", "nci", "trunnion")
 
 #: Extensions of CL files by the dialects that are written; the first one is the default.
-WRITTEN_DIALECTS: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl"}
+WRITTEN_DIALECTS: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl", "trunnion": ".apt"}

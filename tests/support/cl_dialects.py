@@ -160,6 +160,22 @@ class _Clsf(_Writer):
         return [f"CYCLE/{mode}{pecks},RAPTO,{clear:.4f},FEDTO,{-depth:.4f},{self.feed_unit},{feed:.4f}"]
 
 
+class _Trunnion(_Clsf):
+    name = "trunnion"
+
+    def head(self) -> list[str]:
+        return ["$$-> TRUNNION / 1", *super().head()]
+
+    def foot(self) -> list[str]:
+        return [*super().foot(), "FINI"]
+
+    def tool(self, number: int, diameter: float, corner: float) -> list[str]:
+        ends = _Clsf.foot(self)
+        self._open = True
+        data = f"$$-> TOOL / MILL, LENGTH, 50, DIAMETER, {diameter:.6f}, CORNER, {corner:.6f}"
+        return [*ends, f"TOOL PATH/OP{number},TOOL,T{number}", data, f"LOADTL/{number}"]
+
+
 class _Ncl(_Writer):
     name = "ncl"
 
@@ -289,7 +305,7 @@ class _Fusion(_Writer):
 
 #: By the names of the dialects: those that have words for every step.
 WRITERS: Final[dict[str, type[_Writer]]] = {
-    writer.name: writer for writer in (_Clsf, _Ncl, _Solidworks, _Catia, _Writer)
+    writer.name: writer for writer in (_Clsf, _Ncl, _Solidworks, _Catia, _Writer, _Trunnion)
 }
 
 #: All of them.

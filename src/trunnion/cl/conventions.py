@@ -54,6 +54,8 @@ class Conventions:
     title        its name in messages
     cycles       how it writes CYCLE
     end          the statement behind the last motion, for messages
+    has_end      files end with that statement, also where operations have an end of their own
+    is_strict    a statement that is not known is an error
     in_sections  operations stand between TOOL PATH and END-OF-PATH; else a tool, a name or a system begins one
     no_axis      the tool axis of a point that gives none, before any statement about it
     multax_off   the same after MULTAX/OFF
@@ -65,6 +67,8 @@ class Conventions:
     title: str
     cycles: CycleWords
     end: str = "FINI"
+    has_end: bool = True
+    is_strict: bool = False
     in_sections: bool = False
     no_axis: NoAxis = NoAxis.MODAL
     multax_off: NoAxis = NoAxis.DOUBTFUL

@@ -18,6 +18,7 @@ class Dialect(Conventions):
     """One way of writing CL files.
 
     marks          beginnings of lines that only this dialect has
+    first_line     beginning of the first line of its files, which settles that they are of this dialect; None: any line
     handlers       what its statements mean, by their major words
     text           the form of its text
     is_general     its marks are words that other dialects have as well: they count where no other has one
@@ -29,6 +30,7 @@ class Dialect(Conventions):
     marks: tuple[re.Pattern[bytes], ...]
     handlers: Mapping[str, Handler]
     text: TextFormat = APT_TEXT
+    first_line: re.Pattern[bytes] | None = None
     is_general: bool = False
     comment: Callable[[ReaderState, str], None] | None = None
     after_comment: Callable[[ReaderState], None] | None = None

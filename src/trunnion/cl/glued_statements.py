@@ -54,6 +54,8 @@ class GluedStatements:
             if self._has_commands and comment.lstrip().startswith("->"):
                 raise StatementError(Wording("CL160", "behind_begins_line", major=statement.major[:40]))
             self.refuse_in_comment(comment)
+        if self._has_commands and "$$->" in statement.text:
+            raise StatementError(Wording("CL160", "behind_begins_line", major=statement.major[:40]))
         if not statement.text:
             found = self._in_values(statement)
         else:

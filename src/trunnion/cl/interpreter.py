@@ -54,7 +54,7 @@ class ClInterpreter:
     def __init__(
         self, columns: MoveColumns, diagnostics: Diagnostics, dialect: Dialect, encoding: str, *, strict: bool
     ) -> None:
-        self._state = ReaderState(columns, diagnostics, dialect, strict)
+        self._state = ReaderState(columns, diagnostics, dialect, strict or dialect.is_strict)
         self._dialect = dialect
         self._diagnostics = diagnostics
         self._encoding = encoding
@@ -84,6 +84,16 @@ class ClInterpreter:
     def system(self) -> tuple[float, ...]:
         """The coordinate system of the points in that of the model as the file has it; empty if it has none."""
         return self._state.system
+
+    def stock(self, unit: float) -> str:
+        """Return the stock as ``--stock`` takes it, mm; empty if the file gives none.
+
+        unit  of the file, mm
+        """
+        if self._state.stock is None:
+            return ""
+        kind, sizes = self._state.stock
+        return f"{kind.lower()}:{','.join(f'{size * unit:.12g}' for size in sizes)}"
 
     @property
     def states_system(self) -> bool:
@@ -139,9 +149,9 @@ class ClInterpreter:
             self._dialect.after_comment(state)
         if state.direction is not None:
             state.direction.report_lost_arc(self._diagnostics)
+        if self._dialect.has_end and row > max(state.end_row, 0) and not state.in_operation:
+            self._report_cut_off(complete, lines)
         if not self._dialect.in_sections:
-            if row > max(state.end_row, 0):
-                self._report_cut_off(complete, lines)
             if row > state.builder.first:
                 state.close_operation()
         elif state.in_operation:

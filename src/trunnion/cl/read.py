@@ -157,6 +157,7 @@ def read_source(
         recognized_by=phrase("recognized_by", title=recognized.dialect.title, why=recognized.why),
         states_system=interpreter.states_system,
         clamping=interpreter.clamping(),
+        stock=interpreter.stock(unit),
         reopen=source.open if source.packed else None,
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip

@@ -79,6 +79,7 @@ class ReaderState:
     direction        the INDIRV whose arc has not followed yet
     turns            turns of all arcs so far
     clearance        height of the clearance plane
+    stock            kind and numbers of the stock, in units of the file; None: it gives none
     system           the coordinate system of the points as the file gives it, empty if it gives none
     """
 
@@ -111,6 +112,7 @@ class ReaderState:
     direction: ArcDirection | None = None
     turns: int = 0
     clearance: float | None = None
+    stock: tuple[str, tuple[float, ...]] | None = None
     system: tuple[float, ...] = ()
     _own: dict[type, Any] = field(default_factory=dict)
 

@@ -44,6 +44,8 @@ def info_lines(found: ClDescription) -> Iterator[str]:
         if file.system:
             numbers = " ".join(f"{number:g}" for number in file.system)
             yield _INDENT + line("system_of_points", numbers=numbers)
+        if file.stock:
+            yield _INDENT + line("stock_of_file", stock=file.stock)
     operations = found.operations
     yield line("operations_with_motions", count=len(operations), motions=_motions(operations))
     yield line("cutting_and_rapids", cutting=_lengths(found), length=found.rapid_length)

@@ -366,14 +366,13 @@ class Operation:
 class Toolpath:
     """The content of a CL file.
 
-    file        path of the file; in an archive, the path of the archive and the name there; ``stdin`` for a stream
+    file, reopen  its path, in an archive with the name there, or ``stdin``; opens a packed text or a stream again
     operations, part, remarks  in the order of the file; name of the part; warnings of the reader
     unit, states_unit  length unit of the file, mm; the file says it, or its feeds do: else mm are assumed
     dialect, recognized_by  a key of ``trunnion.cl.dialects.DIALECTS``; its title, and by what it was recognized
     system      of the points, in that of the model, where the file gives it and its meaning is open: 3 rows of 4, mm
     states_system  each operation states where its coordinate system lies in the absolute one of the CAM system
-    clamping    how the part is clamped, as comments in the head of the file say; None: they say nothing
-    reopen      opens the text of a file that is packed or a stream once more; None: it is the file of that path
+    clamping, stock  as comments in the head say, or None; as ``--stock`` takes it, in the absolute system, or empty
     """
 
     file: str
@@ -387,6 +386,7 @@ class Toolpath:
     system: tuple[float, ...] = ()
     states_system: bool = True
     clamping: Clamping | None = None
+    stock: str = ""
     reopen: Callable[[], BinaryIO] | None = None
 
     @property

@@ -12,12 +12,13 @@ from trunnion.cl.dialects.nci import NCI
 from trunnion.cl.dialects.ncl import NCL
 from trunnion.cl.dialects.recognition import Recognition, recognize
 from trunnion.cl.dialects.solidworks import SOLIDWORKS
+from trunnion.cl.dialects.trunnion import TRUNNION
 
 __all__ = ["DIALECTS", "Dialect", "Recognition", "recognize_dialect"]
 
 #: By their names, those of ``trunnion.dialect_names.READ_DIALECTS``.
 DIALECTS: Final[dict[str, Dialect]] = {
-    dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION, APT, NCI)
+    dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION, APT, NCI, TRUNNION)
 }
 
 

@@ -21,6 +21,8 @@ _MODES: Final = (
 #: has both), or of another contact, such as that of a tilted tool.
 _CONTOUR: Final = re.compile(r"\s*(?:contact\s+)?contour\s+data\s*", re.IGNORECASE)
 _CENTRE: Final = re.compile(r"\s*cent(?:er|re)\s*line\b.*", re.IGNORECASE)
+#: Commands of Trunnion's own profile (``trunnion.cl.dialects.trunnion``), whose first line is lost.
+_OF_PROFILE: Final = re.compile(r"->\s*(?:TRUNNION|STOCK|TOOL|HOLDER)\s*/.*", re.IGNORECASE)
 _CONTACT: Final = re.compile(r"\s*contact\b.*\bdata\s*", re.IGNORECASE)
 
 
@@ -32,6 +34,8 @@ def _comment(state: ReaderState, text: str) -> None:
         state.own(CutcomPoints).take(state, StatedPoints(of_contour, state.line, f"$${text}", lost, refuses=True))
     elif _CONTACT.fullmatch(text):
         raise StatementError(Wording("CL470", "points_those_contact", text=text))
+    elif _OF_PROFILE.fullmatch(text):
+        raise StatementError(Wording("CL350", "profile_first_line"))
 
 
 CLSF: Final = Dialect(
@@ -41,6 +45,7 @@ CLSF: Final = Dialect(
     handlers=HANDLERS,
     cycles=CycleWords({word: (word,) for word in _MODES}),
     in_sections=True,
+    has_end=False,
     text=CLSF_TEXT,
     comment=_comment,
 )

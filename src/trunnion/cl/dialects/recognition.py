@@ -1,5 +1,6 @@
 """Recognizes the dialect of a CL file by its lines, never by its name."""
 
+import re
 from collections.abc import Iterable
 from operator import itemgetter
 from typing import Final
@@ -25,10 +26,15 @@ class Recognition:
 
 
 def recognize(head: bytes, dialects: Iterable[Dialect], default: Dialect) -> Recognition:
-    """Return the dialect with most different marks in the lines of ``head``, the first one among equals.
+    """Return the dialect that the first line of ``head`` names, else the one with most different marks in lines.
 
-    A general one counts where no other has a mark; without any mark it is the ``default``.
+    Among equals it is the first one. A general one counts where no other has a mark; without any mark it is the
+    ``default``.
     """
+    dialects = tuple(dialects)
+    for dialect in dialects:
+        if dialect.first_line is not None and (named := dialect.first_line.match(head)):
+            return Recognition(dialect, _found(named, 1))
     seen: dict[bytes, int] = {}
     for number, line in enumerate(head.splitlines(), 1):
         if not line.lstrip()[:7].upper().startswith(_NO_MARKS):
@@ -49,7 +55,11 @@ def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, Wording
     for mark in dialect.marks:
         for line, number in lines.items():
             if matched := mark.match(line):
-                text = matched[0].strip().decode("ascii", "replace")
-                found.append((number, phrase("recognized_in_line", mark=text, line=number)))
+                found.append((number, _found(matched, number)))
                 break
     return found
+
+
+def _found(matched: re.Match[bytes], line: int) -> Wording:
+    """Return a mark as it stands in a line."""
+    return phrase("recognized_in_line", mark=matched[0].strip().decode("ascii", "replace"), line=line)

@@ -66,12 +66,16 @@ class ClsfWriter(ClWriter):
         frame = operation.frame
         origin = [number_text(value, 4) for value in frame.origin]
         vectors = [number_text(value, 7) for value in (*frame.x, *frame.y)]
-        lines = [f"TOOL PATH/{operation.name},TOOL,{operation.tool.name}", *_tldata(operation.tool)]
+        lines = [f"TOOL PATH/{operation.name},TOOL,{operation.tool.name}", *self.tool_lines(operation.tool)]
         lines.append(f"MSYS/{','.join([*origin, *vectors])}")
         for word, tolerance in (("INTOL", operation.intol), ("OUTTOL", operation.outtol)):
             if tolerance is not None:
                 lines.append(f"{word}/{number_text(tolerance, 6)}")
         return lines
+
+    def tool_lines(self, tool: Tool) -> list[str]:
+        """Return the statements of the tool; none for an unknown tool."""
+        return _tldata(tool)
 
     def end(self, operation: Operation) -> list[str]:
         """Return the end of the path."""

@@ -75,6 +75,7 @@ class ClWriter(ABC):
     slash     between the word of a statement and its values
     comma     between two values
     form      of a point
+    has_stock  a file says what the stock is
     """
 
     name: ClassVar[str]
@@ -83,10 +84,13 @@ class ClWriter(ABC):
     comma: ClassVar[str] = ","
     form: ClassVar[PointForm] = PointForm()
     divides_lines: ClassVar[bool] = True
+    has_stock: ClassVar[bool] = False
 
     def __init__(self, toolpath: Toolpath, *, inch: bool = False) -> None:
         self.remarks: list[Problem] = []
         self.source = toolpath
+        if toolpath.stock and not self.has_stock:
+            self.remark(0, Wording("CL930", "stock", title=self.title))
         self.toolpath = self.prepared(toolpath)
         self.inch = inch
 

@@ -52,8 +52,8 @@ def convert(
     to_machine, to_cl
         One of both: the machine for which it is posted, or True for a CL file.
     to_dialect
-        What the CL file is written in: ``"clsf"``, ``"catia"`` or ``"ncl"``. It is read back and compared before it
-        appears.
+        What the CL file is written in: ``"clsf"``, ``"catia"``, ``"ncl"`` or ``"trunnion"``. It is read back and
+        compared before it appears.
     units, dialect, strict
         How a CL file is read, as ``trunnion.read_cl`` has it.
     output

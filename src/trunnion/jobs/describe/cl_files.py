@@ -41,14 +41,14 @@ _UNITS: Final = {1.0: "mm", 25.4: "inch"}
 class ClFileDescription:
     """One CL file.
 
-    dialect       ``clsf``, ``ncl``, ``solidworks``, ``clt``, ``catia``, ``fusion``, ``apt`` or ``nci``
-    title         its name in words
-    why           by what the dialect was recognized; ``recognized`` in English
+    dialect       ``clsf``, ``ncl``, ``solidworks``, ``clt``, ``catia``, ``fusion``, ``apt``, ``nci`` or ``trunnion``
+    title, why    its name in words, and by what it was recognized; ``recognized`` in English
     units         ``mm`` or ``inch``
     states_units  the file says its unit, or its feeds do; else mm are assumed
     part          name of the part, empty if there is none
     system        coordinate system of the points in that of the model, where the file gives one whose meaning is not
                   settled: 3 rows of 4 numbers, mm; else empty
+    stock         the stock that the file gives, as ``trunnion simulate --stock`` takes it; empty if it gives none
     """
 
     file: str
@@ -59,6 +59,7 @@ class ClFileDescription:
     states_units: bool
     part: str
     system: tuple[float, ...]
+    stock: str
 
     @property
     def recognized(self) -> str:
@@ -289,6 +290,7 @@ def _file(toolpath: Toolpath) -> ClFileDescription:
         states_units=toolpath.states_unit,
         part=toolpath.part,
         system=toolpath.system,
+        stock=toolpath.stock,
     )
 
 

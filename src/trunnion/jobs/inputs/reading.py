@@ -80,7 +80,7 @@ def read_cl(
         Length unit of the file, ``"mm"`` or ``"inch"``; by default the file decides.
     dialect
         ``"clsf"``, ``"catia"``, ``"ncl"``, ``"solidworks"``, ``"clt"``, ``"fusion"``,
-        ``"apt"`` or ``"nci"``; by default the content of the file decides.
+        ``"apt"``, ``"nci"`` or ``"trunnion"``; by default the content of the file decides.
     strict
         Raise an error for an unknown statement instead of keeping it with a remark.
     spline_tolerance

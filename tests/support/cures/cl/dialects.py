@@ -33,6 +33,11 @@ def _camworks(message: str, *lines: str, axis: str = "0.0,-1.0,0.0") -> Cure:
                   "OPFEATSTART/A", *lines, "OPFEATEND/A", "FINI ")  # fmt: skip
 
 
+def _own(message: str, *lines: str) -> Cure:
+    """Lines of a file in Trunnion's own profile."""
+    return marked(message, read, *lines, foot="END-OF-PATH\nFINI\n")
+
+
 def _turns(a: str, b: str, c: str) -> tuple[str, ...]:
     return f"ROTABL/ {a},AAXIS,TABLE,CCLW ", f"ROTABL/ {b},BAXIS,TABLE,CCLW ", f"ROTABL/ {c},CAXIS,TABLE,CCLW "
 
@@ -70,6 +75,9 @@ _POINTS: Final = ("RAPID/ ", "GOTO/ -30.0,-15.0,25.0 ", "FEDRAT/ MMPM,100.0", "G
 _PECKING: Final = "CYCLE/ DRILL,G98,6.00161,PECKING,5.0,2.0,MMPM,1101.5,3.0,25.0 25.0 DWELL,0.0"
 
 _CUT_OFF: Final = "\n".join((*HEADS["apt"], "GOTO/0,0,5"))
+
+_NAMED: Final = ("$$-> TRUNNION / 1", "UNITS/MM")
+_FINISH: Final = ("TOOL PATH/A,TOOL,B", "FEDRAT/MMPM,100", "GOTO/0,0,5")
 
 CURES: Final = (
     _apt("CL120 defined_here_apt", "- M1 = MACRO/A"),
@@ -206,4 +214,20 @@ CURES: Final = (
     _in("solidworks", "CL860 pecks_behind_first",
         "- CYCLE/DEEP2,FEDTO,45,1STPECK,5.,SUBPECK,30.,MMPM,9,RAPTO,3.,RTRCTO,27",
         "+ CYCLE/DEEP2,FEDTO,45,1STPECK,30.,SUBPECK,30.,MMPM,9,RAPTO,3.,RTRCTO,27", "GOTO/0,0,0", "CYCLE/OFF"),
+    _own("CL160 blank_before_arrow", *_NAMED, "- $$ -> STOCK / CYLINDER,9,9,0",
+         "+ $$-> STOCK / CYLINDER,9,9,0", *_FINISH),
+    _own("CL320 stock_twice", *_NAMED, "$$-> STOCK / CYLINDER,9,9,0", "- $$-> STOCK / CYLINDER,8,9,0", *_FINISH),
+    _own("CL320 tool_word_twice", *_NAMED, *_FINISH, "- $$-> TOOL / MILL,DIAMETER,8,DIAMETER,8",
+         "+ $$-> TOOL / MILL,DIAMETER,8"),
+    _own("CL330 profile_version", "- $$-> TRUNNION / 3", "+ $$-> TRUNNION / 1", *_NAMED[1:], *_FINISH),
+    _own("CL330 profile_stock", *_NAMED, "- $$-> STOCK / BLOCK,9,9,9,0,0,0",
+         "+ $$-> STOCK / BOX,9,9,9,0,0,0", *_FINISH),
+    _own("CL330 profile_tool", *_NAMED, *_FINISH, "- $$-> TOOL / MILL,10", "+ $$-> TOOL / MILL,DIAMETER,10"),
+    _own("CL330 profile_paint", *_NAMED, *_FINISH, "- PAINT/PATH", "+ PAINT/COLOR,31"),
+    _own("CL350 profile_first_line", "- $$ PART 7", *_NAMED, "+ $$ PART 7", "$$-> STOCK / CYLINDER,9,9,0", *_FINISH),
+    _own("CL350 profile_behind_head", *_NAMED, "+ $$-> STOCK / CYLINDER,9,9,0", *_FINISH,
+         "- $$-> STOCK / CYLINDER,9,9,0"),
+    _own("CL350 profile_outside", *_NAMED, "- $$-> HOLDER / HSK 63", "TOOL PATH/A,TOOL,B", "+ $$-> HOLDER / HSK 63",
+         *_FINISH[1:]),
+    _own("CL410 profile_units", *_NAMED[:1], "+ UNITS/MM", *_FINISH),
 )  # fmt: skip
