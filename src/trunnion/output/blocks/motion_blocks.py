@@ -187,10 +187,7 @@ class MotionBlockWriter:
             raise error.at(self._file, event.line) from None
 
     def _is_on_arc(self, words: Mapping[str, int]) -> bool:
-        """Whether G2 or G3 is in force where radius compensation is switched, at which controls stop with an alarm.
-
-        Behind blocks that may be skipped, and behind texts of others, either may be.
-        """
+        """Whether G2 or G3 may be in force where compensation is switched: controls stop with an alarm there."""
         if "cutter_comp" not in words:
             return False
         motion = self.writer.modal_state().get("motion")
