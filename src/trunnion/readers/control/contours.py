@@ -92,10 +92,15 @@ def corner_turn(before: Element, behind: Element, plane: int) -> float:
     return 0.0 if abs(angle) < SAME_DIRECTION else angle
 
 
-def chamfer(before: Element, behind: Element, side: float) -> Corner:
-    """Return the chamfer that cuts ``side`` off both lines."""
+def check_chamfered(before: Element, behind: Element) -> None:
+    """Raise ``ContourError`` if one of the two elements of a chamfer is a circle, tangent or not."""
     if before.arc is not None or behind.arc is not None:
         raise ContourError(Wording("NC324", "chamfer_beside_circle"))
+
+
+def chamfer(before: Element, behind: Element, side: float) -> Corner:
+    """Return the chamfer that cuts ``side`` off both lines."""
+    check_chamfered(before, behind)
     for element in (before, behind):
         _check_length(side, element)
     corner = before.end
