@@ -56,7 +56,9 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
     # A block that is skipped is one without motion.
     operation = replace(operation, events=tuple(_not_skipped(operation.events)))
     found = _corner_problems(program, motion, operation, np.where(skipped & (across != 0), -1, across))
-    return found or list(_sides_alone(program.file_of(motion.operation), operation, across > 0, skipped))
+    if found or not program.control.own_blocks:  # words within a motion begin and end with it
+        return found
+    return list(_sides_alone(program.file_of(motion.operation), operation, across > 0, skipped))
 
 
 def _sides_alone(file: str, operation: Operation, across: Flags, skipped: Flags) -> Iterator[Problem]:
