@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.support.cl_reading import Fail, Read
+from trunnion.model.toolpath import Message, Stop
 
 HEAD = ["$$ CATIA APT VERSION 1.0", "CUTTER/10,1,4,1,0,0,50", "LOADTL/5"]
 
@@ -69,3 +70,34 @@ def test_a_full_circle_as_the_help_writes_it(read: Read) -> None:
     (operation,) = read("\n".join([*HEAD, "MULTAX", "GOTO/50,0,0,0,0,1", "AUTOPS", *arc, "END"])).operations
     assert operation.moves.tip.tolist() == [[50, 0, 0], [50, 0, 0]]
     assert (operation.arcs.normal.tolist(), operation.arcs.radius.tolist()) == ([[0, 0, -1]], [50])
+
+
+def texts_of(read: Read, *lines: str) -> list[str]:
+    """Return the texts of a file."""
+    toolpath = read("\n".join([*HEAD, *lines, "GOTO/1,2,3", "GOTO/4,5,6", "END"]) + "\n")
+    assert toolpath.dialect == "catia"
+    assert [tip for operation in toolpath.operations for tip in operation.moves.tip.tolist()] == [[1, 2, 3], [4, 5, 6]]
+    events = [event for operation in toolpath.operations for event in operation.events]
+    return [event.text for event in events if isinstance(event, Message | Stop)]
+
+
+def test_a_text_goes_on_behind_a_dollar_sign_in_the_last_column(read: Read) -> None:
+    long = f"PPRINT/{'=' * 64}$"
+    assert len(long) == 72
+    assert texts_of(read, long, "==) ") == ["=" * 66 + ")"]
+    assert texts_of(read, f"{long}\r", "==)\r", "STOP/(B)\r") == ["=" * 66 + ")", "(B)"]
+    assert texts_of(read, long, "x" * 71 + "$", "$") == ["=" * 64 + "x" * 71 + "$"]
+    assert texts_of(read, f"STOP/{'a' * 66}$", "b") == ["a" * 66 + "b"]
+    # In another column it is a letter of the text, and so it is in the files of other systems.
+    assert texts_of(read, long.replace("==$", "=$"), "PPRINT/B") == ["=" * 63 + "$", "B"]
+    (operation,) = read(f"TOOL PATH/A,TOOL,T\n{long}\nGOTO/1,2,3\nGOTO/4,5,6\nEND-OF-PATH\n").operations
+    assert [event.text for event in operation.events if isinstance(event, Message)] == ["=" * 64 + "$"]
+
+
+@pytest.mark.parametrize("line", ["GOTO/1,2,3", "RAPID", "FEDRAT/ 100.0,MMPM", " SPINDL / OFF", "COOLNT/ON"])
+def test_a_text_that_would_hide_a_statement_is_refused(fails: Fail, line: str) -> None:
+    word = line.partition("/")[0].strip()
+    text = f"PPRINT/{'COST ' * 12}1 9 $"
+    problem = fails("\n".join([*HEAD, text, line, "GOTO/4,5,6", "GOTO/7,8,9", "END"]))[0]
+    assert (problem.code, problem.line) == ("CL160", 4)
+    assert problem.what == f"PPRINT has {word} within it, a statement without a line of its own"

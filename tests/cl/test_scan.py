@@ -22,7 +22,7 @@ QUICK = settings(max_examples=examples(100), deadline=None, suppress_health_chec
 
 
 def scan_all(
-    data: bytes, spans: int = 64, *, apt: bool = False
+    data: bytes, spans: int = 64, *, apt: bool = False, text_width: int = 0
 ) -> tuple[Floats, Floats, Lines, list[tuple[str, int, int, int]]]:
     """Scan whole bytes; return tip, axis, line, and the statements as (text, line, row, marks)."""
     data += b"" if data.endswith(b"\n") else b"\n"
@@ -34,7 +34,7 @@ def scan_all(
     found = []
     while at < len(data):
         at, number, rows, count = scan(
-            apt, Piece(array, at, len(data), number, True), rows, PointColumns(tip, axis, line), room
+            apt, text_width, Piece(array, at, len(data), number, True), rows, PointColumns(tip, axis, line), room
         )
         for begin, length, where, row, mark in room[:count].tolist():
             found.append((naive.blank(data[begin : begin + length].decode("latin-1")), where, row, mark))
@@ -139,12 +139,14 @@ FILES = st.lists(st.tuples(PIECES, st.sampled_from(["\n", "\r\n", " \n", "\n\n"]
 
 
 @QUICK
-@given(FILES, st.integers(1, 5))
-@example("GOTO/1,$\r\n2,3\r\n", 1)
-@example("COOLNT/$\n$$ c\n", 1)
-def test_the_walk_finds_the_statements_of_its_twin(text: str, spans: int) -> None:
-    tip, axis, line, found = scan_all(text.encode(), spans)
-    expected = list(naive.statements(text.encode()))
+@given(FILES, st.integers(1, 5), st.sampled_from([0, 8]))
+@example("GOTO/1,$\r\n2,3\r\n", 1, 0)
+@example("COOLNT/$\n$$ c\n", 1, 0)
+@example("PPRINT $ \r\n PPRIN $\n1234567$\nGOTO/1,2,3\n", 1, 8)
+@example("PPRINT/$\n", 1, 8)
+def test_the_walk_finds_the_statements_of_its_twin(text: str, spans: int, text_width: int) -> None:
+    tip, axis, line, found = scan_all(text.encode(), spans, text_width=text_width)
+    expected = list(naive.statements(text.encode(), text_width))
     rows = [(statement, number) for statement, number, _ in expected if naive.is_row(statement)]
     assert line.tolist() == [number for _, number in rows]
     left = {number: (statement, row, mark) for statement, number, row, mark in found if mark != COMMENT}

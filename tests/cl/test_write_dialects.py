@@ -16,7 +16,17 @@ from trunnion.cl.writers import WRITERS
 from trunnion.cl.writers.catia import CatiaWriter
 from trunnion.errors import InputError
 from trunnion.model.arcs import arc_gaps
-from trunnion.model.toolpath import CutterComp, Kind, Operation, SpindleOn, Toolpath, UnknownStatement
+from trunnion.model.toolpath import (
+    CutterComp,
+    Insert,
+    Kind,
+    Message,
+    Operation,
+    SpindleOn,
+    Stop,
+    Toolpath,
+    UnknownStatement,
+)
 
 OTHERS = ("catia", "ncl")
 
@@ -182,6 +192,19 @@ def test_texts_names_and_registers_survive(dialect: str, read: Read, tmp_path: P
     assert (operation.intol, operation.outtol) == pytest.approx((0.03, 0.01))
     assert operation.name == ("FEATNO 1" if dialect == "ncl" else "零件 1")
     assert lost == (["names of 1 operation become numbers: Creo NCL has no names"] if dialect == "ncl" else [])
+
+
+def test_a_dollar_sign_in_the_last_column_stays_one_of_its_text(read: Read, tmp_path: Path) -> None:
+    text = "x" * 64 + "$"
+    lines = f"PARTNO/{text}\nTOOL PATH/A,TOOL,{text}\nLOAD/TOOL,7\nPPRINT/{text}\nINSERT/{text}\n"
+    toolpath = read(f"{lines}STOP/xx{text}\nGOTO/0,0,9\nGOTO/0,0,8\nEND-OF-PATH\n")
+    back, _ = again(toolpath, "catia", tmp_path)
+    assert (back.part, back.operations[0].tool.name) == (text, text)
+    before, after = (
+        [replace(event, line=0) for event in each.operations[0].events if isinstance(event, Message | Insert | Stop)]
+        for each in (toolpath, back)
+    )
+    assert before == after
 
 
 def test_holders_and_lengths_in_the_spindle(read: Read, tmp_path: Path) -> None:

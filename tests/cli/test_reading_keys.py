@@ -26,6 +26,13 @@ END = "G0 Z9.\nG49\nM30\n%\n"
             {"arc_centres": "absolute", "whole_numbers": "calculator"},
         ),
         ("matsuura_mx330", FANUC + "G1 N5 X5. F9.\n" + END, {"numbers_anywhere": "anywhere"}),
+        ("matsuura_mx330", FANUC + "G1 X5. F500000\n" + END, {"whole_feeds": "increments"}),
+        ("matsuura_mx330", FANUC + "G1 X5. F500000.\n" + END, {}),
+        ("matsuura_mx330", FANUC.replace("G21 ", "") + "G1 X5. F.5\nX6. F.75\n" + END, {"units": "inch"}),
+        ("matsuura_mx330", FANUC + "G1 X5. F.5\n" + END, {}),
+        ("matsuura_mx330", FANUC.replace("G21 ", "") + "G95 G1 X5. F.05\n" + END, {}),
+        ("yl569", "G90\nG0 X0 Y0 Z9\nG1 X5 F.5\nM30\n", {"units": "inch"}),
+        ("xyzac_trt", "G90 G94\nG0 X0 Y0 Z9\nG1 X5 F.5\nM2\n", {"units": "inch"}),
         ("xyzac_trt", ":12\nG21 G90 G94\nG1 X5 F9\nM2\n", {"program_numbers": [":"]}),
         ("yl569", "G71 G90\nG1 X5 F9 ! FIRST\nM30\n", {"more_comments": ["!"]}),
     ],
@@ -39,6 +46,17 @@ def test_keys_are_proposed_that_the_text_can_tell(
     assert found.keys == keys
     assert found.after <= found.before
     assert len(found.why) == len(keys)
+
+
+def test_why_feeds_are_plausible_is_said(tmp_path: Path) -> None:
+    program = tmp_path / "a.nc"
+    program.write_text(FANUC.replace("G21 ", "") + "G1 X5. F.5\nX6. F.75\n" + END)
+    found = proposed_reading(program, trunnion.load_machine("matsuura_mx330"))
+    assert (found.before[2], found.after[2]) == (2, 0)
+    assert list(found.lines())[1:] == [
+        "[control.reading]",
+        'units = "inch"  # 2 feeds with which no machine cuts before, 0 with it',
+    ]
 
 
 def test_the_proposal_is_toml_to_copy_and_changes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

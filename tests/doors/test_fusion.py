@@ -68,6 +68,13 @@ def test_the_language_of_the_post_is_that_of_the_engine() -> None:
     assert re.findall(r"\b(?:let|const|class|async)\b|=>|`|\.\.\.\w|\.(?:includes|startsWith|padStart)\(", text) == []
 
 
+def test_probing_is_refused_unless_the_definition_says_what_it_is(tmp_path: Path) -> None:
+    file = tmp_path / "part.apt"
+    file.write_text(STREAMS["probing"]().text, encoding="utf-8")
+    with pytest.raises(trunnion.InputError, match=r"part\.apt:17: error: PROBE is not known; write under"):
+        trunnion.post(file, machine="yl569", output=tmp_path / "part.nc", settings=SETTINGS["probing"])
+
+
 @needs_node
 def test_a_form_that_cannot_be_said_is_a_warning() -> None:
     (found,) = posted([STREAMS["tools"]().event()])

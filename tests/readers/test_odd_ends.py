@@ -1,5 +1,6 @@
 """Circles that end a digit beside their start, and what a program leaves on or has behind itself."""
 
+import contextlib
 from pathlib import Path
 
 import pytest
@@ -84,3 +85,48 @@ def test_ctrl_z_before_another_block_is_an_error(machine: str, tmp_path: Path) -
     found = _said(machine, f"{head}\x1a\nM{rest}", tmp_path)
     assert "NC169" not in found
     assert {"NC210", "NC211", "NC160"} & set(found)
+
+
+_HEADED = "%\nO0001\nG21 G90 G17 G54\nG0 X0. Y0. Z9.\nG1 Z-1. F90.\nM30\n%\n"
+
+
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750"])
+@pytest.mark.parametrize("text", ["MADE ON MONDAY\r\nFOR THE CUSTOMER\n", "(A)\n\n  STOCK 100 X 50\n", "+++\n"])
+def test_a_text_before_the_first_percent_sign_is_passed_over(machine: str, text: str, tmp_path: Path) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text(text + _HEADED, encoding="utf-8", newline="")
+    run = trunnion.read_program(program, machine=machine)
+    assert [(each.code, each.severity.value) for each in run.diagnostics if each.code == "NC170"] == [
+        ("NC170", "warning")
+    ]
+    assert not run.errors
+    assert run.tip[-1].tolist() == [0.0, 0.0, -1.0]
+    assert run.line[-1] == 5 + text.count("\n")
+
+
+@pytest.mark.parametrize(
+    ("machine", "before"),
+    [
+        ("matsuura_mx330", "G1 X5O\n"),
+        ("matsuura_mx330", "MADE ON MONDAY\nG0 X5.\n"),
+        ("matsuura_mx330", "T1 M6 OF MONDAY\n"),
+        ("xyzac_trt", "MADE ON MONDAY\n"),
+        ("hs664rt", "MADE ON MONDAY\n"),
+    ],
+)
+def test_what_a_control_may_run_before_a_percent_sign_is_not_passed_over(
+    machine: str, before: str, tmp_path: Path
+) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text(before + _HEADED, encoding="utf-8")
+    run = trunnion.read_program(program, machine=machine)
+    assert run.errors
+    assert "NC170" not in [each.code for each in run.diagnostics]
+
+
+@pytest.mark.parametrize("behind", ["", "%\n", "%\n\n  \n"])
+def test_a_text_behind_which_no_program_begins_is_an_error(behind: str, tmp_path: Path) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text(f"MADE ON MONDAY\n{behind}", encoding="utf-8")
+    with contextlib.suppress(trunnion.TrunnionError):
+        assert trunnion.read_program(program, machine="matsuura_mx330").errors

@@ -106,6 +106,42 @@ def test_what_cannot_be_stated_is_an_error_of_the_argument(
     assert not any(problem.file == "(given)" for problem in refused.value.problems)
 
 
+@pytest.mark.parametrize(
+    ("machine", "text", "name", "stated"),
+    [
+        ("yl569", "G71 G90\nG0 X0 Y0 Z9\nG1 Z=-_DEPTH F9\nM30\n", "_depth", "_DEPTH"),
+        ("yl569", "G71 G90\nG0 X0 Y0 Z9\nG1 Z=-_depth F9\nM30\n", "_Depth", "_DEPTH"),
+        ("yl569", "G71 G90\nG0 X0 Y0 Z9\nG1 Z=-R5 F9\nM30\n", "r5", "R5"),
+        ("yl569", "G71 G90\nG0 X0 Y0 Z9\nG1 Z=-DEPTHS[1] F9\nM30\n", "depths[1]", "DEPTHS[1]"),
+        ("xyzac_trt", "G21 G90\nG0 X0 Y0 Z9\nG1 Z-#<_Depth> F9\nM2\n", "#<_DEPTH>", "#<_depth>"),
+        ("dmu65", "BEGIN PGM A MM\nTOOL CALL 1 Z S9\nL Z-Q13 F9\nM30\nEND PGM A MM\n", "q13", "Q13"),
+    ],
+)
+def test_a_name_is_stated_in_letters_of_either_case_where_the_control_reads_both(
+    machine: str, text: str, name: str, stated: str, tmp_path: Path
+) -> None:
+    program = tmp_path / "a.nc"
+    program.write_text(text)
+    found = trunnion.verify(program, machine=machine, settings={name: 2})
+    assert found.run.errors == ()
+    assert found.run.tip[-1, 2] == -2.0
+    assert found.standing.stated == (f"{stated} = 2 (stated)",)
+    if name.lower() != name.upper():
+        with pytest.raises(InputError, match="which has a value already"):
+            trunnion.verify(program, machine=machine, settings={name: 2, stated: 3})
+
+
+@pytest.mark.parametrize("name", ["spindel", "depth", "program_number", "spindle"])
+def test_a_setting_is_no_variable_of_a_control(name: str, tmp_path: Path) -> None:
+    program = tmp_path / "a.mpf"
+    program.write_text("G71 G90\nG0 X0 Y0 Z9\nM30\n")
+    if name == "spindle":
+        assert trunnion.verify(program, machine="yl569", settings={name: 2}).standing.stated == ()
+        return
+    with pytest.raises(InputError, match="is not a setting that the proof needs"):
+        trunnion.verify(program, machine="yl569", settings={name: 2})
+
+
 def test_diff_convert_simulate_and_view_take_them(tmp_path: Path) -> None:
     text, variable, word = PROGRAMS["matsuura_mx330"]
     program = tmp_path / "a.nc"

@@ -60,7 +60,7 @@ class GluedStatements:
             found = self._in_values(statement)
         else:
             point = None if statement.major == "REMARK" else _POINT.search(statement.text)
-            found = point[1] if point else self._in_words(statement.text)
+            found = point[1] if point else self._in_next_lines(statement.source) or self._in_words(statement.text)
         if found:
             raise StatementError(Wording("CL160", "within_statement_without", major=statement.major[:40], found=found))
 
@@ -80,6 +80,15 @@ class GluedStatements:
             return "".join(found[1].split()).upper()
         ends = (word for word in _BARE_WORDS if text.endswith(word))
         return next((word for word in ends if text[: -len(word)][-1:] not in ("", " ", "\t", "_", "-", "/")), "")
+
+    def _in_next_lines(self, source: str) -> str:
+        """Return the statement that a later line of a text begins with; empty if there is none."""
+        for line in source.upper().split("\n")[1:]:
+            word, slash, _ = line.partition("/")
+            word = "".join(word.split())
+            if word in _BARE_LINES or (slash and word in self._words):
+                return word
+        return ""
 
     def _in_values(self, statement: Statement) -> str:
         """Return the statement that stands among the values of another one; empty if there is none."""

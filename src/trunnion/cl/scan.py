@@ -85,10 +85,13 @@ class Piece(NamedTuple):
 
 
 @kernel(writes="columns spans")
-def scan(apt: bool, piece: Piece, row: int, columns: PointColumns, spans: Ints2) -> tuple[int, int, int, int]:
+def scan(
+    apt: bool, text_width: int, piece: Piece, row: int, columns: PointColumns, spans: Ints2
+) -> tuple[int, int, int, int]:
     """Read a piece of a file until its lines, the rows or the spans are used up.
 
     apt      comments with an arrow are statements, and GOFWD and RETRCT are motions
+    text_width  column in which a dollar sign at the end of a line continues a text as well; 0: texts are one line
     row      first row of ``columns`` to write
     spans    (s, 5) int64      written from 0 on, see ``SPAN_COLUMNS``
     returns  where to go on in ``data``, the line there, the next row, number of spans written
@@ -107,7 +110,7 @@ def scan(apt: bool, piece: Piece, row: int, columns: PointColumns, spans: Ints2)
             line += 1 + continued
             at = following
             continue
-        begin, end, line_count, mark = _find_statement(data, at, stop, apt)
+        begin, end, line_count, mark = _find_statement(data, at, stop, apt, text_width)
         if mark & UNFINISHED and not last:
             break
         following = _next_line(data, end)
@@ -223,8 +226,9 @@ def _may_end_comment(byte: int) -> bool:
 
 
 @inner
-def _find_statement(data: Bytes, at: int, stop: int, apt: bool) -> tuple[int, int, int, int]:
+def _find_statement(data: Bytes, at: int, stop: int, apt: bool, text_width: int) -> tuple[int, int, int, int]:
     """Begin, end, lines and mark of the statement at ``at``, without blanks and comment around it; it may be empty."""
+    first = at
     while _is_blank(data[at]) and data[at] != _NEWLINE:
         at += 1
     if data[at] == _DOLLAR and data[at + 1] == _DOLLAR:
@@ -235,10 +239,16 @@ def _find_statement(data: Bytes, at: int, stop: int, apt: bool) -> tuple[int, in
     begin = at
     content, end = _find_content_end(data, at, False)
     dollars = data[end] == _DOLLAR or (content > at and data[content - 1] == _DOLLAR)
+    lines = 1
     if dollars and content > begin and _is_text_statement(data, begin, content):
         content, end = _find_content_end(data, at, True)
-        return begin, content, 1, 0
-    lines = 1
+        while text_width and content - first == text_width and data[content - 1] == _DOLLAR:
+            first = _next_line(data, end)
+            if first >= stop:
+                return begin, content, lines, UNFINISHED
+            lines += 1
+            content, end = _find_content_end(data, first, True)
+        return begin, content, lines, 0
     while content > at and data[content - 1] == _DOLLAR:
         # The rest of the line after a continuation sign is a comment.
         at = _next_line(data, end)

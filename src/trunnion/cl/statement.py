@@ -14,6 +14,8 @@ _TEXT_STATEMENT = re.compile(
 )
 _TEXT_FIRST_BYTES = frozenset(b"TPIDSORtpidsor")
 _CONTINUATION = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n")
+#: Where a text goes on in the next line: the scan puts lines together only in dialects that have that.
+_TEXT_CONTINUED = re.compile(rb"\$[ \t]*\r?\n")
 _CONTROL_CHARACTER = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _NUMBER_FIRST = frozenset("+-.0123456789")
 _NUMBER_LAST = frozenset(".0123456789")
@@ -144,10 +146,11 @@ def _without_comment(source: str) -> str:
 
 
 def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statement:
-    if b"\r" in raw:
+    content = _TEXT_CONTINUED.sub(b"", match[4])
+    if b"\r" in content:
         raise StatementError(Wording("CL150", "carriage_return_without"))
     major = "".join((match[1] or match[2]).decode("ascii").split()).upper()
-    text = match[4].decode(encoding, "replace")
+    text = content.decode(encoding, "replace")
     # Only INSERT goes into the program letter by letter.
     return Statement(major, (), text if major == "INSERT" else text.strip(), raw.decode(encoding, "replace"))
 

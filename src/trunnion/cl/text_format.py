@@ -49,7 +49,10 @@ class TextFormat:
 _CONTINUED: Final = "the file ends after a continuation sign $"
 
 #: The text of APT dialects: comments with an arrow are statements, GOFWD and RETRCT are motions.
-APT_TEXT: Final = TextFormat(partial(scan, True), parse, _CONTINUED, has_words=True)
+APT_TEXT: Final = TextFormat(partial(scan, True, 0), parse, _CONTINUED, has_words=True)
 
 #: The text of NX CLSFs.
-CLSF_TEXT: Final = TextFormat(partial(scan, False), parse, _CONTINUED, has_words=True)
+CLSF_TEXT: Final = TextFormat(partial(scan, False, 0), parse, _CONTINUED, has_words=True)
+
+#: The text of CATIA, which prints no line of more than 72 columns: the last one continues a text, too.
+CATIA_TEXT: Final = TextFormat(partial(scan, True, 72), parse, _CONTINUED, has_words=True)

@@ -452,12 +452,12 @@ function onSection() {
     writeSpindle(spindleSpeed, tool.clockwise);
     writeCoolant(tool.coolant);
   }
-  if (currentSection.isOptional && currentSection.isOptional()) {
-    writeln("OPSKIP/ON");
-    state.isOptional = true;
-  }
   state.axis = state.isFiveAxis ? array(currentSection.getInitialToolAxis()) : [0, 0, 1];
   writeMove(array(currentSection.getInitialPosition()), state.axis, undefined);
+  if (currentSection.isOptional && currentSection.isOptional()) {
+    writeln("OPSKIP/ON"); // behind the point to which the tool comes from home
+    state.isOptional = true;
+  }
 }
 
 function onSectionEnd() {

@@ -334,10 +334,52 @@ def tools() -> Stream:
     return job
 
 
+def rest() -> Stream:
+    """What is seldom: no name, a comment of the program, a tool by hand, an operation that may be skipped."""
+    job = Stream("REST", comment="second clamping", stock=None)
+    job._said.append("PPRINT/second clamping")
+    with job.section("OPERATION 1", MILL, (30.0, 30.0, 50.0), parameters={"operation-comment": ""}, offset=0):
+        square(job, 25.0, 1.0)
+        square(job, 24.0, 1.0)
+    by_hand = FusionTool(12, name="BY HAND", others=(("manualToolChange", True),))
+    with job.section("SKIPPED", by_hand, (30.0, 30.0, 50.0), optional=True):
+        square(job, 20.0, 1.0)
+    left = FusionTool(
+        9, "TAP_LEFT_HAND", 8.0, stated=("MILL", "DIAMETER", 8.0), name="TAP M8 LEFT", pitch=1.0, is_clockwise=False
+    )
+    with job.section("LEFT TAP", left, (-30.0, 0.0, 60.0), spindle=500.0):
+        job.holes("tapping", "TAP", HOLES, 14.0, feed="MMPR,1")
+    return job
+
+
+def depths() -> Stream:
+    """Holes of one cycle with depths and heights of their own, and radius compensation to the end."""
+    job = Stream("DEPTHS")
+    with job.section("HOLES", DRILL, (0.0, 0.0, 60.0)):
+        points = []
+        for x, top, depth, rapid, clearance in ((0.0, 0.0, 10.0, 2.0, 20.0), (20.0, 5.0, 12.5, 2.0, 15.0)):
+            heights = {"stock": top, "retract": top + rapid, "clearance": top + clearance, "depth": depth}
+            points.append({"point": (x, 0.0, top - depth), **heights})
+            job.lines += [
+                f"CYCLE/DRILL,RAPTO,{rapid:.6f},FEDTO,{-depth:.6f},RTRCTO,{clearance:.6f},MMPM,150.000000",
+                f"GOTO/{x:.6f},0.000000,{top:.6f}", "CYCLE/OFF",
+            ]  # fmt: skip
+        job._event("cycle", "drilling", {"feedrate": 150.0}, points)
+        job.rapid(0.0, 0.0, 60.0)
+    with job.section("EDGE", MILL, (0.0, -40.0, 50.0), parameters={"operation:compensationType": "wear"}):
+        job.rapid(0.0, -40.0, 5.0)
+        job.line(0.0, -40.0, -1.0, feed=300.0)
+        job.say(("compensation", 1), "CUTCOM/LEFT,1")
+        job.line(0.0, -20.0, -1.0)
+        job.line(0.0, 20.0, -1.0)
+        job.lines.append("CUTCOM/OFF")
+    return job
+
+
 STREAMS: Final[dict[str, Callable[[], Stream]]] = {
     each.__name__: each
     for each in (
         three_axes, planes, cycles, threads, five_axes, arcs, helix, inches, set_ups, pattern, manual, probing, spindle,
-        coolants, compensation, tools,
+        coolants, compensation, tools, rest, depths,
     )
 }  # fmt: skip

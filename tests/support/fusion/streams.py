@@ -101,7 +101,7 @@ class Stream:
     stock: tuple[Vector, Vector] | None = ((-60.0, -60.0, -50.0), (60.0, 60.0, 0.0))
     says_offsets: bool = False
     sections: list[dict[str, Any]] = field(default_factory=list)
-    after: list[list[Any]] = field(default_factory=list)
+    comment: str = ""
     lines: list[str] = field(default_factory=list)
     _waiting: list[list[Any]] = field(default_factory=list)
     _said: list[str] = field(default_factory=list)
@@ -124,8 +124,9 @@ class Stream:
         """The stream, for the stand-in of the engine."""
         inserts = ";".join(f"{name}={line}" for name, line in self.inserts.items())
         return {
-            "name": self.name, "inch": self.inch, "properties": {"inserts": inserts, **self.properties},
-            "stock": self.stock or (NOWHERE, NOWHERE), "sections": self.sections, "after": self._waiting,
+            "name": self.name, "comment": self.comment, "inch": self.inch,
+            "properties": {"inserts": inserts, **self.properties}, "stock": self.stock or (NOWHERE, NOWHERE),
+            "sections": self.sections, "after": self._waiting,
         }  # fmt: skip
 
     @contextmanager
@@ -152,7 +153,9 @@ class Stream:
             f"MSYS/{listed(*NOWHERE)},{listed(*plane[0], *plane[1], decimals=9)}",
             f"INTOL/{tolerance}", f"OUTTOL/{tolerance}",
             *([f"$$ WORK OFFSET {offset}", f"PPRINT/WORK OFFSET {offset}"] if self.says_offsets else []),
-            *self._said, f"LOADTL/{tool.number},ADJUST,{tool.number}",
+            *self._said,
+            *([f"STOP/T{tool.number}"] if dict(tool.others).get("manualToolChange") else []),
+            f"LOADTL/{tool.number},ADJUST,{tool.number}",
             *(f"PPRINT/{note}" for note in parameters.get("notes", "").split("\n") if note),
         ]  # fmt: skip
         if tool.type != "PROBE":
@@ -160,8 +163,10 @@ class Stream:
             word = _COOLANT_WORDS.get(tool.coolant)
             self.lines.append(f"COOLNT/{word}" if word else f"INSERT/{self.inserts.get(f'COOLANT_{tool.coolant}')}")
         self._waiting, self._said, self._feed, self._axis, self._cycle = [], [], None, axis, ""
-        self.lines += ["RAPID", self._goto(start)]
+        self.lines += ["RAPID", self._goto(start), *(["OPSKIP/ON"] if more.get("optional") else [])]
         yield
+        if more.get("optional"):
+            self.lines.append("OPSKIP/OFF")
         self._now = None
 
     def _goto(self, point: Sequence[float]) -> str:

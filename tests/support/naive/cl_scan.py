@@ -14,8 +14,17 @@ def blank(text: str) -> str:
     return text.strip(" \t\r\n")
 
 
-def statements(data: bytes) -> Iterator[tuple[str, int, bool]]:
-    """Yield (statement, line, marked open) of a file, without comments, continuation lines joined by newlines."""
+def fills(line: str, width: int) -> bool:
+    """Whether a line ends with a dollar sign in the column ``width``."""
+    content = line.rstrip(" \t\r")
+    return len(content) == width and content.endswith("$")
+
+
+def statements(data: bytes, text_width: int = 0) -> Iterator[tuple[str, int, bool]]:
+    """Yield (statement, line, marked open) of a file, without comments, continuation lines joined by newlines.
+
+    A text goes on behind a dollar sign in the column ``text_width`` that ends its line.
+    """
     lines = data.split(b"\n")
     if lines[-1] == b"":
         lines.pop()
@@ -24,8 +33,13 @@ def statements(data: bytes) -> Iterator[tuple[str, int, bool]]:
         first = at
         content = lines[at].decode("latin-1")
         if TEXT.match(re.sub(r"[ \t\r$]", "", content.lstrip(" \t\r")).upper()):
-            yield blank(content), first + 1, False
+            whole = content
             at += 1
+            while (is_open := text_width > 0 and fills(content, text_width)) and at < len(lines):
+                content = lines[at].decode("latin-1")
+                whole += "\n" + content
+                at += 1
+            yield blank(whole), first + 1, is_open
             continue
         whole = ""
         unfinished = False

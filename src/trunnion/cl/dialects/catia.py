@@ -14,6 +14,7 @@ from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
 from trunnion.cl.statements import apt_motion, apt_refused, events, motion
+from trunnion.cl.text_format import CATIA_TEXT
 from trunnion.messages import Wording, phrase
 from trunnion.model.frames import frame_from_vectors, relative_frame
 from trunnion.model.toolpath import Frame
@@ -201,6 +202,7 @@ CATIA: Final = Dialect(
         "TLAXIS": _tlaxis,
         "TOOLNO": _toolno,
     },
+    text=CATIA_TEXT,
     cycles=CycleWords(
         modes=CYCLES.modes,
         words=CYCLES.words,

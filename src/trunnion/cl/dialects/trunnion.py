@@ -16,8 +16,8 @@ from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, joined_lines, numbers
 from trunnion.cl.statements import HANDLERS, apt_tools, operations
 from trunnion.cl.text_format import APT_TEXT
-from trunnion.messages import Wording
-from trunnion.model.toolpath import Tool
+from trunnion.messages import Wording, phrase
+from trunnion.model.toolpath import Tool, UnknownStatement
 from trunnion.records import dataclass
 
 _VERSION: Final = 1.0
@@ -127,6 +127,13 @@ def _holder(state: ReaderState, statement: Statement) -> None:
     state.builder.tool = replace(tool, holder=name)
 
 
+def _probe(state: ReaderState, statement: Statement) -> None:
+    """Keep a probing cycle: what becomes of it only the definition of a machine can say."""
+    _stay_in_operation(state, statement)
+    what = phrase("not_known", statement=statement.major)
+    state.add(UnknownStatement(state.operation_row, state.line, statement.source, what=what))
+
+
 def _paint(state: ReaderState, statement: Statement) -> None:
     """Note the colour of the path, which gives the phase of motion."""
     if statement.values[:1] != ("COLOR",):
@@ -166,6 +173,7 @@ TRUNNION: Final = Dialect(
         "UNITS": _units,
         "SELCTL": apt_tools.select,
         "PAINT": _paint,
+        "PROBE": _probe,
     },
     cycles=CycleWords(CLSF.cycles.modes),
     text=APT_TEXT,

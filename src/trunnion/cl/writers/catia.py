@@ -11,12 +11,16 @@ from trunnion.cl.writers.apt import AptWriter
 from trunnion.cl.writers.points import AxisRule, PointForm, number_text
 from trunnion.errors import Problem
 from trunnion.messages import Wording
-from trunnion.model.toolpath import CycleOn, From, LoadTool, Operation, SpindleOn
+from trunnion.model.toolpath import CycleOn, Event, From, LoadTool, Operation, SpindleOn
 
 #: A tool axis that turns by no more than this between the ends of an arc stays, as its last decimal may differ.
 _SAME_AXIS: Final = 1e-9
 
 _TANGENT_DECIMALS: Final = 12
+
+#: CATIA prints no longer lines; a dollar sign in the last column continues a text.
+_COLUMNS: Final = 72
+_TEXTS: Final = ("PPRINT/", "DISPLY/", "INSERT/", "PARTNO/", "TPRINT/", "STOP/", "OPSTOP/")
 
 
 class CatiaWriter(AptWriter):
@@ -30,7 +34,7 @@ class CatiaWriter(AptWriter):
 
     def head(self, comments: Sequence[str]) -> list[str]:
         """Comments, part and unit."""
-        part = [f"PARTNO/{self.toolpath.part}"] if self.toolpath.part else []
+        part = _in_columns([f"PARTNO/{self.toolpath.part}"] if self.toolpath.part else [])
         head = [*self._system(), *(f"$$ {text}" for text in comments), *part]
         return [*head, f"UNITS/{'INCHES' if self.inch else 'MM'}", "MULTAX"]
 
@@ -43,6 +47,14 @@ class CatiaWriter(AptWriter):
     def title_lines(self, number: int, operation: Operation) -> list[str]:
         """Return the comment that names an operation."""
         return [f"$$ OPERATION NAME : {operation.name}"]
+
+    def begin(self, number: int, operation: Operation) -> list[str]:
+        """Return the lines at the beginning of an operation."""
+        return _in_columns(super().begin(number, operation))
+
+    def event(self, event: Event) -> list[str]:
+        """Return the statements of an event."""
+        return _in_columns(super().event(event))
 
     def load_tool(self, event: LoadTool) -> list[str]:
         """LOADTL, with the register behind it; with a length in the spindle, the register is a couplet too."""
@@ -99,6 +111,15 @@ class CatiaWriter(AptWriter):
 
     def _point(self, point: Floats) -> str:
         return ", ".join(self.length(value) for value in point.tolist())
+
+
+def _in_columns(lines: Sequence[str]) -> list[str]:
+    """Return the lines, a text that ends with a dollar sign in the last column continued, so that it stays one."""
+    divided = []
+    for line in lines:
+        ends = line.endswith("$") and len(line.encode()) == _COLUMNS and line.startswith(_TEXTS)
+        divided += [line, "$"] if ends else [line]
+    return divided
 
 
 def _axis_before(operation: Operation, row: int) -> Floats | None:

@@ -1,7 +1,8 @@
 """Under which keys of ``[control.reading]`` a program reads best: a proposal, which changes nothing by itself.
 
 In:     a program, and the machine that is to run it.
-Out:    the keys that the text can tell apart and with which it has fewer errors, or keeps within the travel, with why.
+Out:    the keys that the text can tell apart and with which it has fewer errors, keeps within the travel, or has feeds
+        that a machine cuts with, with why.
 """
 
 import re
@@ -15,6 +16,8 @@ from trunnion import readers
 from trunnion.errors import InputError
 from trunnion.machines import Machine
 from trunnion.messages import LIBRARY, Wording, Words, phrase
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
 from trunnion.readers.program.forms import keys_of
 from trunnion.readers.program.settings import family_of, reading_of
 from trunnion.records import dataclass
@@ -49,11 +52,23 @@ _TELLS: Final[tuple[tuple[str, Value, str, str], ...]] = (
     ("start_plane", "G19", r"G0?[23](?![0-9])", r"G1[789]"),
     ("behind_circles", "line", r"G0?[23](?![0-9])", ""),
     ("end_in_subprogram", "returns", r"M98", ""),
-    ("whole_numbers", "calculator", r"[XYZIJKR][ \t]*[-+]?[0-9]+(?![.0-9])", ""),
+    ("whole_numbers", "calculator", r"[XYZIJKRF][ \t]*[-+]?[0-9]+(?![.0-9])", ""),
+    ("whole_feeds", "increments", r"F[ \t]*[0-9]{4,}(?![.0-9])", ""),
+    ("units", "mm", r"F[ \t]*[.0-9]", r"G(?:2[01]|7[01]0?)(?![.0-9])"),
+    ("units", "inch", r"F[ \t]*[.0-9]", r"G(?:2[01]|7[01]0?)(?![.0-9])"),
 )
+
+#: Feeds with which machines cut, by their mode: mm/min and mm/rev. A machine's rapids say more where they are stated.
+_PLAUSIBLE: Final = {94: (1.0, 60_000.0), 95: (0.001, 10.0)}
+
+#: Errors, axes beyond their travel, and feeds with which no machine cuts: the fewer of the first that differ is better.
+Score: TypeAlias = tuple[int, int, int]
 
 #: Keys of which either may help only with the other: a centre is right where its place and its numbers are.
 _TOGETHER: Final = frozenset({("arc_centres", "whole_numbers"), ("arc_vectors", "whole_numbers")})
+
+#: Keys that feeds alone speak for: in another unit or with other numbers, all ways are shorter or longer.
+_OF_FEEDS: Final = frozenset({"units", "whole_feeds"})
 
 #: Longer programs are judged by their beginning.
 _MOST_BYTES: Final = 200_000
@@ -64,7 +79,7 @@ class Proposal:
     """Keys under which a program reads best; none: it reads best as it is.
 
     keys    TOML values by their keys
-    before  errors, and axes beyond their travel, without the keys
+    before  errors, axes beyond their travel, and implausible feeds, without the keys
     after   with them
     why     what each key changes
     role    what the program is, if it looks like a subprogram
@@ -72,8 +87,8 @@ class Proposal:
     """
 
     keys: dict[str, Value]
-    before: tuple[int, int]
-    after: tuple[int, int]
+    before: Score
+    after: Score
     why: tuple[Wording, ...]
     role: Wording | None = None
     kind: Wording | None = None
@@ -105,17 +120,25 @@ def proposed_reading(program: Path, machine: Machine) -> Proposal:
     single = list(_candidates(text, machine))
     pairs = [[each, other] for each in single for other in single if (each[0], other[0]) in _TOGETHER]
     for added in [*([each] for each in single), *pairs]:
-        if best == (0, 0):
+        if not any(best):
             break
         tried = {**keys, **{key: _joined(keys.get(key), value) for key, value in added}}
         score = _score(program, readers.with_reading(machine, tried))
-        if score < best:
-            variant = "fewer_errors" if score[0] < best[0] else "within_travel"
-            said = phrase(variant, before=best[0], after=score[0], axes=best[1] - score[1])
+        if score < best and (_OF_FEEDS.isdisjoint(key for key, _ in added) or score[2] < best[2]):
+            said = _why(best, score)
             why |= {key: said for key, _ in added}
             keys, best = tried, score
     kind = _kind(program, readers.with_reading(machine, keys)) if best[0] else None
     return Proposal(keys, first, best, tuple(why[key] for key in keys), readers.role_of(program, machine), kind)
+
+
+def _why(before: Score, after: Score) -> Wording:
+    """Return what a key makes better: a phrase."""
+    if after[0] < before[0]:
+        return phrase("fewer_errors", before=before[0], after=after[0])
+    if after[2] < before[2]:
+        return phrase("feeds_plausible", before=before[2], after=after[2])
+    return phrase("within_travel", axes=before[1] - after[1])
 
 
 def _kind(program: Path, machine: Machine) -> Wording | None:
@@ -131,7 +154,9 @@ def _candidates(text: str, machine: Machine) -> Iterator[tuple[str, Value]]:
     """Yield keys of the machine's family that it does not state, with values that the text can tell apart."""
     known = {key.name: key.words for key in keys_of(family_of(machine))}
     if "fanuc" in family_of(machine):
-        known["whole_numbers"] = ("calculator",)
+        known |= {"whole_numbers": ("calculator",), "whole_feeds": ("increments",)}
+    if "heidenhain" not in family_of(machine):
+        known["units"] = ("mm", "inch")
     stated = reading_of(machine).keys()
     for key, value, has, has_not in _TELLS:
         if key not in known or key in stated:
@@ -145,16 +170,28 @@ def _joined(before: Value | None, value: Value) -> Value:
     return [*before, *value] if isinstance(before, list) and isinstance(value, list) else value
 
 
-def _score(program: Path, machine: Machine) -> tuple[int, int]:
-    """Return how many errors a program has, and how many linear axes need more than their travel."""
+def _score(program: Path, machine: Machine) -> Score:
+    """Return what speaks against a reading of a program."""
     try:
         run = readers.run_program(program, machine)
     except InputError as error:
-        return len(error.problems) + _MOST_BYTES, 0
+        return len(error.problems) + _MOST_BYTES, 0, 0
     at_part = ~run.machine_frame
     spans = np.ptp(run.joints[at_part], axis=0) if at_part.any() else np.zeros(len(machine.axes))
     beyond = [
         not axis.is_rotary and axis.has_limits and bool(span > axis.high - axis.low)
         for axis, span in zip(machine.axes, spans.tolist(), strict=True)
     ]
-    return len(run.errors), sum(beyond)
+    return len(run.errors), sum(beyond), _implausible_feeds(run)
+
+
+def _implausible_feeds(run: Run) -> int:
+    """Return how many different feeds of cuts no machine of the kind has."""
+    rapids = [axis.rapid for axis in run.machine.axes if axis.rapid and not axis.is_rotary]
+    cuts = run.kind != Kind.RAPID
+    count = 0
+    for mode, (least, most) in _PLAUSIBLE.items():
+        feeds = np.unique(run.feed[cuts & (run.feed_mode == mode)])
+        most = max(rapids) if mode == 94 and rapids else most
+        count += int(((feeds < least) | (feeds > most)).sum())
+    return count

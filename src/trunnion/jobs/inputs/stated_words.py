@@ -27,9 +27,8 @@ def with_stated(
     Raises ``InputError`` of the setting or the argument, if a variable has no number or a word cannot be declared.
     """
     settings, words = settings or {}, assumed_words(assume)
-    pattern = readers.reader_of(machine).variables if readers.can_read(machine) else None
-    names = [] if pattern is None else [each for each in settings if isinstance(each, str) and pattern.fullmatch(each)]
-    texts = as_texts({name: settings[name] for name in names})
+    names = _variables_of(machine, settings)
+    texts = as_texts({name: settings[key] for key, name in names.items()})
     if not (texts or words):
         return machine, settings
     stated = readers.with_stated(machine, words, {name: _number(name, text) for name, text in texts.items()})
@@ -38,6 +37,22 @@ def with_stated(
     except InputError as error:
         raise InputError([_of_argument(each) for each in error.problems]) from None
     return stated, {key: value for key, value in settings.items() if key not in names}
+
+
+def _variables_of(machine: Machine, settings: Settings) -> dict[str, str]:
+    """Return the settings that are variables of the control -> how it calls them.
+
+    Raises ``InputError`` of a setting that is the variable of one before it.
+    """
+    reader = readers.reader_of(machine) if readers.can_read(machine) else None
+    names: dict[str, str] = {}
+    for key in settings:
+        name = reader.variable(key) if reader is not None and isinstance(key, str) else ""
+        if name in names.values():
+            raise InputError(setting_problem(key, Wording("ARG230", "variable_stated_twice", name=name)))
+        if name:
+            names[key] = name
+    return names
 
 
 def refuse_settings(left: Iterable[str], *machines: Machine) -> None:

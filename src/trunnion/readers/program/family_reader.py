@@ -40,6 +40,7 @@ class FamilyReader:
     compensation_style   how a control compensates the radius in a plane, a key of ``STYLES``; 0: not known
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     variables            what variables are called of which values can be stated; None: there are none
+    variable_form        how a name of a variable is written here that the control reads in small letters and capitals
     call_words           how programs call others; None: none does
     coolants             M codes of coolants that all controls of the family have: ``OFF``, ``FLOOD`` or ``MIST``
     """
@@ -58,8 +59,20 @@ class FamilyReader:
     compensation_style: Callable[[Machine], int] = lambda _: UNKNOWN_STYLE
     check_reading: Callable[[Machine], object] = no_reading
     variables: re.Pattern[str] | None = None
+    variable_form: Callable[[str], str] = str
     call_words: CallWords | None = None
     coolants: Mapping[int, str] = field(default_factory=lambda: COOLANTS)
+
+    def variable(self, name: str) -> str:
+        """Return how a variable is called of which a value is stated under a name; empty: it is the name of none.
+
+        Letters of the other case count where nothing else is called so: settings are words in small letters.
+        """
+        if self.variables is None:
+            return ""
+        form = name if self.variables.fullmatch(name) else self.variable_form(name)
+        is_setting = form != name and name.isidentifier() and not name.startswith("_") and not name[1:].isdigit()
+        return form if self.variables.fullmatch(form) and not is_setting else ""
 
     def callable_files(self, files: Iterable[Path]) -> tuple[Path, ...]:
         """Return the files whose names programs can call, the first of each name."""

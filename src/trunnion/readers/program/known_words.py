@@ -192,6 +192,15 @@ def plain_code(word: str) -> str:
     return _LEADING_ZEROS.sub(r"\1\2", word)
 
 
+def beginning_call(raw: str, call: str) -> str:
+    """Return the call with which a block begins as a word that can be declared; empty if it begins otherwise.
+
+    call  regular expression of a call
+    """
+    found = re.match(rf"{_BLOCK_BEGIN.pattern}({call})(?![A-Z0-9_.])", raw, re.IGNORECASE)
+    return normal_word(found[1]) if found is not None else ""
+
+
 def begins_with(words: Iterable[KnownWord], text: str) -> bool:
     """Whether a block begins with a declared word, which then has the whole block."""
     patterns = [_pattern(word.word) for word in words if word.code is None]

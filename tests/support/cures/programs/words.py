@@ -71,7 +71,14 @@ CURES: Final = (
     _said("rpm", "", _SINUMERIK.replace("S500", "S90000"), ("S90000", "S5000")),
     _said("travel", "", _SINUMERIK.replace("X10 F100", "X10 F100\nG0 G153 Z900 D0"), ("Z900", "Z100")),
     _line("NC352", "offset_over_unknown_zero", "G10 L2 P1 X9. Y-5. Z-60.\nG54", "G54", on="matsuura_mx330"),
-    _said("NC132", "unknown_or_missing", _SINUMERIK.replace("G1 X10", "HOLES\nG1 X10"), ("HOLES\n", "")),
+    _said("NC132", "unknown_or_missing", _SINUMERIK.replace("G1 X10", "MCALL HOLES\nG1 X10"), ("MCALL HOLES\n", "")),
+    _said(
+        "NC170",
+        "",
+        f"MADE ON MONDAY\n{_FANUC}",
+        ("MADE ON MONDAY\n", "(MADE ON MONDAY)\n"),
+        on="matsuura_mx330",
+    ),
     _said(
         "NC168",
         "program_begins_without_number",

@@ -16,6 +16,7 @@ from trunnion.readers.families.fanuc.text import SUFFIXES, FanucText
 from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.program.declared_variables import DeclaredVariables
 from trunnion.readers.program.interpreter import ProgramEnd
+from trunnion.readers.program.known_words import beginning_call
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.rs274.block import Block, Number, g_code_text
@@ -60,6 +61,13 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
     def _make_control(self) -> FanucControl:
         settings = settings_of(self._machine)
         return FanucControl(self._machine, self._note, settings, shortest=self._options.shortest)
+
+    def _main_program(self, source: SourceText) -> ActiveProgram:
+        assert isinstance(source, FanucText)
+        if line := source.skip_text():
+            self.control.line = line
+            self._note(Wording("NC170", "text_before_percent"), Severity.WARNING)
+        return ActiveProgram(source, 0)
 
     @abstractmethod
     def _system_value(self, key: int) -> float | None:
@@ -188,6 +196,8 @@ class CallInterpreter(WordInterpreter[ActiveProgram]):
         if begin is not None:
             return ActiveProgram(here.source.restarted(), here.file, repeats), begin
         if not paths:
+            if call := beginning_call(self._raw, r"(?:G6[56]|M198|M98)[ \t]*P[0-9]+"):
+                raise BlockError(Wording("NC132", "missing_called_number", number=number, call=call))
             raise BlockError(Wording("NC132", "missing_subprogram_number", number=number))
         source, file = self._open_subprogram(paths[0])
         assert isinstance(source, FanucText)

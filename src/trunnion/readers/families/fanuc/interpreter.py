@@ -22,7 +22,6 @@ from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
 from trunnion.readers.families.fanuc.nurbs import NurbsBlocks
 from trunnion.readers.families.fanuc.polar_positions import PolarPositions
-from trunnion.readers.families.fanuc.text import FanucText
 from trunnion.readers.families.fanuc.variables import ARITHMETIC
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
@@ -63,10 +62,6 @@ class FanucInterpreter(CycleInterpreter):
     @property
     def _letter_table(self) -> Codes:
         return self.control.letter_table
-
-    def _main_program(self, source: SourceText) -> ActiveProgram:
-        assert isinstance(source, FanucText)
-        return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
         in_doubt = (

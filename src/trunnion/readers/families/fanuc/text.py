@@ -20,6 +20,13 @@ _O_NUMBER = re.compile(rb"^[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9])", re.IGNORECASE
 #: Where a control numbers programs so: alone in its block, for tape marks are written with the same sign.
 _PERCENT_NUMBER = re.compile(rb"^[ \t]*%[ \t]*([0-9]{1,8})(?=[ \t]*(?:[\r\n(;]|$))", re.MULTILINE)
 _N_NUMBER = re.compile(rb"^[ \t]*(?:/[0-9]?[ \t]*)?N[ \t]*([0-9]{1,15})", re.IGNORECASE | re.MULTILINE)
+#: What begins a block, and no mere text.
+_BLOCK: Final = re.compile(
+    r"/|#|<|(?:IF|WHILE|GOTO|DO|END)[ \t]*[\[0-9#]|[A-Z:][ \t]*[-+]?[ \t]*[.0-9#\[]", re.IGNORECASE
+)
+_COMMENT: Final = re.compile(r"\([^)]*\)|;.*")
+#: Lines before a percent sign in which a text is looked for.
+_MOST_TEXT: Final = 200
 _LOOP = re.compile(
     _START + rb"(?:WHILE[ \t]*\[[^\n(]*\][ \t]*)?(DO|END)[ \t]*([0-9]{1,3})[ \t]*(?=[\r\n(;]|$)",
     re.IGNORECASE | re.MULTILINE,
@@ -47,6 +54,30 @@ class FanucText(SourceText):
         # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
         super().__init__(path, whole=whole, encoding=encoding)
+
+    def skip_text(self) -> int:
+        """Go past texts that stand before the first percent sign of the file, and behind which a program follows.
+
+        A control leaves out what comes before that sign. Lines that may be blocks are not gone past. Returns the line
+        of the first such text, 0 where there is none.
+        """
+        text = 0
+        if not self.fill():
+            return 0
+        begin, first = self.position, self.line
+        while self.line - first < _MOST_TEXT and self.position < len(self.buffer):
+            at, line, content = self.position, self.line, _COMMENT.sub("", self.next_line()).strip()
+            if content.startswith("%"):
+                has_more = bool(self.buffer[self.position :].tobytes().strip())
+                if text and has_more:
+                    self.position, self.line = at, line
+                    return text
+                break
+            if _BLOCK.match(content):
+                break
+            text = text or (line if content else 0)
+        self.position, self.line = begin, first
+        return 0
 
     def number_by_percent(self) -> None:
         """Take ``%1234`` for a program number too, as the definition states."""

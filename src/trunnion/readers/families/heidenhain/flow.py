@@ -12,6 +12,7 @@ from trunnion.readers.families.heidenhain.parameters import KlartextError, Param
 from trunnion.readers.families.heidenhain.text import SUFFIXES, KlartextText
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
+from trunnion.readers.program.known_words import beginning_call
 from trunnion.records import dataclass
 
 #: How deep calls of labels may nest.
@@ -112,7 +113,10 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         """Call a program, one of the files given by the user."""
         path = self._subprograms.find(name)
         if path is None:
-            self._note(Wording("NC132", "missing_program", name=name[:80]), Severity.ERROR)
+            call = beginning_call(self._raw, r"CALL PGM[ \t]+[^\s;\"]+")
+            missing = Wording("NC132", "missing_program", name=name[:80])
+            called = Wording("NC132", "missing_called_program", name=name[:80], call=call)
+            self._note(called if call else missing, Severity.ERROR)
             return
         self._check_depth()
         outer = self._stack[-1].parameters

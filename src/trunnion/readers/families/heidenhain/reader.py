@@ -61,6 +61,7 @@ READER: Final = FamilyReader(
     compensation_style=lambda _: HeidenhainControl.compensation_style,
     check_reading=variables_of,
     variables=VARIABLE,
+    variable_form=str.upper,
     call_words=CallWords(
         rb"(?:(?:CALL|SEL)[ \t]+PGM|PGM[ \t]+CALL|12\.1[ \t]+PGM)[ \t]+\"?([^\"\s]+)",
         rb"END[ \t]+PGM(?![A-Z])",

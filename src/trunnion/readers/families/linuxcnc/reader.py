@@ -46,6 +46,7 @@ READER: Final = FamilyReader(
     compensation_style=lambda _: LinuxcncControl.compensation_style,
     check_reading=settings_of,
     variables=PARAMETER,
+    variable_form=str.lower,
     call_words=CallWords(
         rb"^[ \t]*O[ \t]*<?[ \t]*([^>\n\t ]+?)[ \t]*>?[ \t]*call(?![a-z])",
         rb"^[ \t]*O[ \t]*(?:<[^>\n]*>|[0-9]+)[ \t]*endsub(?![a-z])",

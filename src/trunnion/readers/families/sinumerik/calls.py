@@ -16,9 +16,13 @@ from trunnion.readers.families.sinumerik.tokens import TokenKind
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import CYCLES_NOT_SIMULATED
 from trunnion.readers.program.interpreter import Interpreter
+from trunnion.readers.program.known_words import beginning_call
 
 #: What the control may put before the name of a program.
 _PREFIX: Final = "_N_"
+
+#: So many letters of a call are shown.
+_LONGEST_SHOWN: Final = 80
 
 
 class CallInterpreter(Interpreter[ActiveProgram]):
@@ -79,7 +83,9 @@ class CallInterpreter(Interpreter[ActiveProgram]):
             self._note(fault.within("cycle_not_executed"), Severity.ERROR)
             return
         if path is None:
-            self._note(Wording("NC132", "unknown_or_missing", call=call.name[:80]), Severity.ERROR)
+            begins = beginning_call(self._raw, re.escape(call.name)) and len(call.name) <= _LONGEST_SHOWN
+            variant = "unknown_or_missing_word" if begins else "unknown_or_missing"
+            self._note(Wording("NC132", variant, call=call.name[:_LONGEST_SHOWN]), Severity.ERROR)
             return
         if call.repeats < 1:
             return

@@ -59,6 +59,7 @@ READER: Final = FamilyReader(
     compensation_style=lambda _: SinumerikControl.compensation_style,
     check_reading=settings_of,
     variables=VARIABLE,
+    variable_form=str.upper,
     call_words=CallWords(
         rb"(?<![A-Z0-9_$])(L[0-9]{1,9}|[A-Z_]{2}[A-Z0-9_]*)(?![A-Z0-9_])",
         rb"(?<![A-Z0-9_])(?:M[ \t]*0*17(?![0-9.=])|RET(?![A-Z0-9_])|PROC(?![A-Z0-9_]))",
