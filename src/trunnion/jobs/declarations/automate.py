@@ -158,7 +158,7 @@ _PREPARE: Final = job(
 
 _FREECAD: Final = job(
     "freecad", "put the post for FreeCAD where FreeCAD looks, or take it back",
-    Option("work", "", Choice(("install",), "install"), "what is done"),
+    Option("step", "", Choice(("install",), "install"), "what is done"),
     Option("remove", "--remove", Switch(), "take it back"),
     Option("folder", "--folder", Text("FOLDER"), "folder of FreeCAD's macros, where it is another than by default"),
     run="freecad:run",
