@@ -11,11 +11,12 @@ from hypothesis import strategies as st
 
 from tests.support.conversion import Site, converted, losses, made, paths, posted, roomy, same
 from tests.support.examples import examples
+from tests.support.machines import five_axis_machines
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.conversion import convert, transfer_settings
 from trunnion.errors import InputError, warning
-from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines import load_machine
 from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode
 from trunnion.model.run import ProgrammedWord, Run
@@ -41,7 +42,7 @@ from trunnion.verification.block_names import block_name_of
 
 def sites() -> Iterator[tuple[str, Site]]:
     """The first shipped machine of each family with a writer and TCP, and of each control with words of its own."""
-    for name in shipped_machines():
+    for name in five_axis_machines():
         machine = roomy(load_machine(name))
         try:
             control = load_control(machine.control)

@@ -7,12 +7,13 @@ import pytest
 
 import trunnion
 from tests.support.klartext import CONTROLS, SIMULTANEOUS, Post
+from tests.support.machines import five_axis_machines
 from tests.support.posting import FOOT, HEAD
 from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.controls.template import Template
 from trunnion.conversion.template_matching import family_value_expressions, line_patterns, match_lines
-from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines import load_machine
 
 
 @pytest.fixture
@@ -73,7 +74,7 @@ def test_a_word_beside_tcp_is_remarked_upon(post: Post, capfd: pytest.CaptureFix
     assert "M107 is not carried over" in capfd.readouterr().err
 
 
-@pytest.mark.parametrize("name", sorted(shipped_machines()))
+@pytest.mark.parametrize("name", sorted(five_axis_machines()))
 def test_what_a_family_says_now_is_one_of_its_spellings(name: str) -> None:
     control = load_control(load_machine(name).control)
     spoken = family_value_expressions(control)

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.support.machines import five_axis_machines
 from trunnion.foreign.definition import differences, nearest_machine, written_definition
 from trunnion.foreign.machine import ForeignMachine
 from trunnion.foreign.machine_data import read_machine_data
 from trunnion.machines import Machine, load_machine
 from trunnion.machines.links import link_transforms
-from trunnion.machines.loading import shipped_machines
 
 #: Offset of swivel data -> the first of its three variables.
 _FIRST = {1: 1, 2: 4, 3: 15, 4: 18}
@@ -57,7 +57,7 @@ def swivel_data(machine: Machine) -> list[str]:
     return lines
 
 
-@pytest.mark.parametrize("name", shipped_machines())
+@pytest.mark.parametrize("name", five_axis_machines())
 def test_swivel_data_of_a_machine_have_nothing_otherwise(name: str, tmp_path: Path) -> None:
     machine = load_machine(name)
     machine = replace(machine, spindle_point=(3.0, -5.0, 250.0))

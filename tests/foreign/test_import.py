@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.locations import ROOT
+from tests.support.machines import five_axis_machines
 from trunnion.cli import main
 from trunnion.errors import InputError
 from trunnion.foreign.definition import differences, nearest_machine, written_definition
@@ -14,7 +15,6 @@ from trunnion.foreign.machine import ForeignMachine
 from trunnion.foreign.machine_data import read_machine_data
 from trunnion.foreign.nx_post import read_nx_post
 from trunnion.machines import load_machine
-from trunnion.machines.loading import shipped_machines
 
 FILES = ROOT / "tests" / "data" / "foreign"
 POST = [FILES / "mill.tcl", FILES / "mill.def"]
@@ -102,7 +102,7 @@ def test_a_fork_head_has_its_pivot_above_the_gauge_point(tmp_path: Path) -> None
     assert next(axis for axis in machine.axes if axis.name == "A").has_limits  # stay until they are measured
 
 
-@pytest.mark.parametrize("name", [name for name in shipped_machines() if "nutated" not in name])
+@pytest.mark.parametrize("name", [name for name in five_axis_machines() if "nutated" not in name])
 def test_every_shipped_machine_comes_back_from_a_post_of_it(name: str, tmp_path: Path) -> None:
     """A post with the axes of a shipped machine becomes a definition with the same axes."""
     machine = load_machine(name)

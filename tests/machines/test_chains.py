@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from tests.support.examples import examples
 from tests.support.machine_strategies import directions, joints, machines
+from tests.support.machines import five_axis_machines
 from tests.support.naive.chains import naive_forward, rotation
 from trunnion.arrays import Floats
 from trunnion.machines import (
@@ -16,7 +17,6 @@ from trunnion.machines import (
     inverse,
     kinematic_parameters,
     load_machine,
-    shipped_machines,
 )
 from trunnion.machines.forward import kinematic_chain
 from trunnion.machines.inverse import POLE, SLIDES_DEPENDENT, UNREACHABLE, solve_point, solve_slides
@@ -137,7 +137,7 @@ def test_slides_solved_for_given_angles_are_those_of_the_branch(machine: Machine
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 def test_a_tool_axis_along_the_table_axis_leaves_its_angle_free(key: str) -> None:
     machine = load_machine(key)
     kinematics = kinematic_parameters(machine, 80.0)
@@ -154,7 +154,7 @@ def test_a_tool_axis_along_the_table_axis_leaves_its_angle_free(key: str) -> Non
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 @pytest.mark.parametrize("tilt", [2e-7, 1e-6, 1e-5, 1e-3])
 def test_a_tilt_far_too_small_for_an_arc_cosine_keeps_its_digits(key: str, tilt: float) -> None:
     machine = load_machine(key)
@@ -170,7 +170,7 @@ def test_a_tilt_far_too_small_for_an_arc_cosine_keeps_its_digits(key: str, tilt:
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("key", [key for key in shipped_machines() if key != "generic_nutated_b45_c"])
+@pytest.mark.parametrize("key", [key for key in five_axis_machines() if key != "generic_nutated_b45_c"])
 def test_branch_0_is_the_positive_tilt_and_branch_1_the_negative_one(key: str) -> None:
     machine = load_machine(key)
     turn = np.radians(np.arange(-175.0, 180.0, 10.0))
@@ -220,7 +220,7 @@ def test_slides_that_a_rotary_axis_has_laid_in_one_plane_are_reported() -> None:
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 def test_a_winding_of_a_hundred_turns_costs_no_digits(key: str) -> None:
     machine = load_machine(key)
     plain = np.array([[12.5, -33.25, 71.0, 0.5, 45.125]])

@@ -7,9 +7,10 @@ from hypothesis import example, given, settings
 from tests.support.examples import examples
 from tests.support.machine_mutants import mutants
 from tests.support.machine_strategies import joints, machines
+from tests.support.machines import five_axis_machines
 from trunnion.cli.machine.machine_text import machine_lines
 from trunnion.jobs.describe.machines import describe_machine
-from trunnion.machines import Axis, AxisKind, Machine, Mount, forward, load_machine, shipped_machines
+from trunnion.machines import Axis, AxisKind, Machine, Mount, forward, load_machine
 from trunnion.machines.jog_table import jog_table, rotary_pose
 
 #: What is seen at the shipped machines: for each axis the tool, and the iron.
@@ -113,7 +114,7 @@ def agrees(machine: Machine, values: dict[str, float]) -> None:
     np.testing.assert_allclose(pose.tool_axis, axis[0], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 def test_the_table_of_a_shipped_machine_agrees_with_the_forward_map(key: str) -> None:
     machine = load_machine(key)
     table = jog_table(machine)
@@ -139,14 +140,14 @@ def test_both_positions_of_the_rotary_axes_point_the_tool_the_same_way(machine: 
     assert list(one.values) == list(other.values)
 
 
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 def test_every_mistake_in_a_definition_changes_what_is_shown(key: str) -> None:
     machine = load_machine(key)
     before = shown(machine)
     assert [name for name, mutant in mutants(machine) if shown(mutant) == before] == []
 
 
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 def test_senses_sides_orders_and_offsets_change_what_moves_and_not_only_what_is_repeated(key: str) -> None:
     machine = load_machine(key)
     before = moved(machine)

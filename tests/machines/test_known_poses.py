@@ -13,6 +13,7 @@ from tests.support import machine_mutants
 from tests.support.fifty_machines import CONTRADICTIONS, ROWS, load
 from tests.support.known_poses import FACTS, LENGTH, POSES, SLIDES, check_facts, check_known_poses
 from tests.support.locations import DOCS, TESTS
+from tests.support.machines import five_axis_machines
 from trunnion.definitions import Table, load_table
 from trunnion.errors import InputError
 from trunnion.machines import (
@@ -24,7 +25,6 @@ from trunnion.machines import (
     forward,
     load_machine,
     loading,
-    shipped_machines,
 )
 from trunnion.machines.jog_table import rotary_pose
 
@@ -44,10 +44,10 @@ def is_caught(machine: Machine) -> bool:
 
 
 def test_every_shipped_machine_has_known_poses_and_facts() -> None:
-    assert set(POSES) == set(FACTS) == set(shipped_machines())
+    assert set(POSES) == set(FACTS) == set(five_axis_machines())
 
 
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 def test_the_tool_is_where_it_is_known_to_be(key: str) -> None:
     check_known_poses(load_machine(key))
     check_facts(load_machine(key))
@@ -56,7 +56,7 @@ def test_the_tool_is_where_it_is_known_to_be(key: str) -> None:
 def all_mutants() -> list[tuple[str, str, Machine]]:
     return [
         (key, name, machine)
-        for key in shipped_machines()
+        for key in five_axis_machines()
         for name, machine in machine_mutants.mutants(load_machine(key))
     ]
 
@@ -123,7 +123,7 @@ def test_a_mistake_in_the_loader_is_caught_by_at_least_one_shipped_machine(
     function, make = LOADER_MUTANTS[mutant]
     monkeypatch.setattr(loading, function, make())
     caught = []
-    for key in shipped_machines():
+    for key in five_axis_machines():
         try:
             machine = loading.read_machine(load_table(key, loading.machine_library()), key)
         except InputError:  # the chain itself is refused
@@ -132,7 +132,7 @@ def test_a_mistake_in_the_loader_is_caught_by_at_least_one_shipped_machine(
         caught += [key] if is_caught(machine) else []
     assert caught
     if mutant.startswith(("all senses", "senses of tables", "senses of rotary", "directions")):
-        assert len(caught) >= len(shipped_machines()) - (2 if mutant == "senses of tables" else 0)
+        assert len(caught) >= len(five_axis_machines()) - (2 if mutant == "senses of tables" else 0)
 
 
 def test_every_third_party_machine_has_a_known_pose() -> None:
@@ -159,7 +159,7 @@ def test_known_poses_are_of_a_tool_and_of_slides_that_are_not_at_zero() -> None:
     assert 0.0 not in SLIDES.values()
 
 
-@pytest.mark.parametrize("name", shipped_machines())
+@pytest.mark.parametrize("name", five_axis_machines())
 def test_a_zero_of_whole_numbers_is_one_of_millimetres(name: str) -> None:
     machine = load_machine(name)
     joints = np.full((2, 5), 20.0)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from trunnion.machines import AngleOutput, Mount, forward, inverse, load_machine, shipped_machines
+from tests.support.machines import five_axis_machines
+from trunnion.machines import AngleOutput, Mount, forward, inverse, load_machine
 
 #: B, C, i, j, k as printed; the vectors are cut to four decimals, not rounded. The fourth row is left out of them: it
 #: repeats the vector of the first, and only to 1.5e-4 belongs to its own angles.
@@ -137,7 +138,7 @@ def test_the_yl569_has_its_published_travel_and_speeds() -> None:
     assert machine.facts.tool_holder == "BT40"
 
 
-@pytest.mark.parametrize("key", shipped_machines())
+@pytest.mark.parametrize("key", five_axis_machines())
 def test_every_shipped_machine_says_what_it_is_and_names_its_control(key: str) -> None:
     machine = load_machine(key)
     assert machine.key == key
@@ -147,7 +148,7 @@ def test_every_shipped_machine_says_what_it_is_and_names_its_control(key: str) -
 
 
 def test_all_the_machines_of_the_published_work_are_shipped() -> None:
-    assert {"yl569", "ucp800", "mikron_600u", "hs664rt", "dmu65"} <= set(shipped_machines())
+    assert {"yl569", "ucp800", "mikron_600u", "hs664rt", "dmu65"} <= set(five_axis_machines())
 
 
 def test_the_workpiece_zero_moves_coordinates_and_nothing_else() -> None:
@@ -161,7 +162,7 @@ def test_the_workpiece_zero_moves_coordinates_and_nothing_else() -> None:
 
 
 def test_the_primary_rotary_axis_is_the_one_that_carries_the_other_or_the_head() -> None:
-    named = {key: load_machine(key) for key in shipped_machines()}
+    named = {key: load_machine(key) for key in five_axis_machines()}
     primary = {key: machine.names[machine.primary] for key, machine in named.items()}
     secondary = {key: machine.names[machine.secondary] for key, machine in named.items()}
     assert (primary["yl569"], secondary["yl569"]) == ("B", "C")

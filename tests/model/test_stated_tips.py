@@ -6,8 +6,8 @@ import pytest
 
 import trunnion
 from tests.support.locations import GOLDEN
+from tests.support.machines import five_axis_machines
 from trunnion.errors import Severity
-from trunnion.machines import shipped_machines
 from trunnion.model.stated_tips import StatedTips
 
 BEVEL = GOLDEN / "dmu65" / "bevel.cls"
@@ -37,7 +37,7 @@ def unjudged(found: trunnion.SimulationResult) -> list[tuple[int, str]]:
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("machine", shipped_machines())
+@pytest.mark.parametrize("machine", five_axis_machines())
 def test_a_sound_bevel_has_no_finding_on_any_machine(tmp_path: Path, machine: str) -> None:
     """Plane on, X and Y at the height of home, then Z: the tool comes from above, and the height was never stated."""
     place = tmp_path / "bevel.nc"

@@ -23,6 +23,6 @@ def test_a_program_is_proven_and_the_one_that_it_was(name: str, capfdbinary: pyt
 
 
 def test_every_golden_program_of_these_folders_is_made() -> None:
-    folders = [GOLDEN / name for name in ("dmu65", "fanuc", "haas", "linuxcnc", "mikron_600u")]
+    folders = [GOLDEN / name for name in ("dmu65", "fanuc", "four_axis", "haas", "linuxcnc", "mikron_600u")]
     there = {f"{folder.name}/{path.name}" for folder in folders for path in folder.glob("*.expected.*")}
     assert there == set(CASES)

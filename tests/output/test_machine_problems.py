@@ -4,7 +4,7 @@ import pytest
 
 import trunnion
 from tests.support.locations import YL569
-from trunnion.machines.loading import shipped_machines
+from tests.support.machines import five_axis_machines
 
 CL = YL569 / "3_blade_finish.cls"
 
@@ -74,7 +74,7 @@ def test_over_travel_with_an_unknown_length_names_the_length() -> None:
     assert travel_and_warnings("matsuura_mx330", (0.0, 0.0, 50.0), 150.0)[0].count(" left in ")
 
 
-@pytest.mark.parametrize("machine", shipped_machines())
+@pytest.mark.parametrize("machine", five_axis_machines())
 def test_no_axis_is_left_out_in_silence(machine: str) -> None:
     """Each axis has limits, or turns without end, or is named."""
     loaded = trunnion.load_machine(machine)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.support.examples import examples
 from tests.support.jobs import post_job
+from tests.support.machines import five_axis_machines
 from tests.support.operations import moves_of, operation_of, rapids_at
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
@@ -17,14 +18,14 @@ from trunnion.errors import InputError, RefusedError
 from trunnion.jobs.post.expected_values import expectation
 from trunnion.jobs.post.planning import plan_program
 from trunnion.jobs.post.post_job import parse_plan_options
-from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines import load_machine
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import LoadTool, SpindleOn, Toolpath
 from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.verification import Verification, verify
 
-MACHINES = {name: load_machine(name) for name in shipped_machines()}
+MACHINES = {name: load_machine(name) for name in five_axis_machines()}
 CONTROLS = {name: load_control(machine.control) for name, machine in MACHINES.items()}
 TIPS = np.array([[0.0, 0.0, 50.0], [10.0, 0.0, 5.0], [20.0, 3.0, 5.0], [60.0, -40.0, 2.0]])
 

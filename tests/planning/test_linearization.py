@@ -10,12 +10,13 @@ from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
 from tests.support.examples import examples
+from tests.support.machines import five_axis_machines
 from trunnion.arrays import Floats
-from trunnion.machines import Machine, forward, inverse, load_machine, shipped_machines, slide_positions
+from trunnion.machines import Machine, forward, inverse, load_machine, slide_positions
 from trunnion.planning.linearization.intermediate_points import DividedPath, divide_path
 from trunnion.planning.linearization.leg_division import PathRows
 
-NAMES = sorted(shipped_machines())
+NAMES = sorted(five_axis_machines())
 ZERO = (37.0, -21.0, 110.0)
 
 

@@ -6,10 +6,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.support.examples import examples
+from tests.support.machines import five_axis_machines
 from tests.support.naive.poses import AllPaths, nearest_neighbour
 from tests.support.operations import moves_of, rapids_at
 from tests.support.path_strategies import BC, CA, directions, short_paths, smooth_paths, winding, with_limits
-from trunnion.machines import Machine, forward, load_machine, shipped_machines, slide_positions
+from trunnion.machines import Machine, forward, load_machine, slide_positions
 from trunnion.model.toolpath import Moves
 from trunnion.planning.poses import selection as poses
 from trunnion.planning.poses.placement import REWIND
@@ -80,7 +81,7 @@ def test_on_the_yl569_the_optimum_is_the_nearest_neighbour_where_that_is_good_en
     assert np.array_equal(posed(machine, moves).rotary, np.column_stack((wound, naive.rotary[:, 1])))
 
 
-ALIKE = {name: machine for name in shipped_machines() if branches_travel_alike(machine := load_machine(name))} | {
+ALIKE = {name: machine for name in five_axis_machines() if branches_travel_alike(machine := load_machine(name))} | {
     name: SMALL[name] for name in SMALL if branches_travel_alike(SMALL[name])
 }
 
@@ -130,7 +131,7 @@ def test_one_pass_is_enough_for_a_usual_path(name: str) -> None:
 
 
 #: The nearest neighbour does not look at preferred sides.
-IMPARTIAL = [name for name in shipped_machines() if not any(axis.preferred_sign for axis in load_machine(name).axes)]
+IMPARTIAL = [name for name in five_axis_machines() if not any(axis.preferred_sign for axis in load_machine(name).axes)]
 
 
 @settings(deadline=None, max_examples=examples(40))
@@ -150,7 +151,7 @@ def test_on_every_machine_it_is_the_nearest_neighbour_or_cheaper(name: str, move
 
 
 @settings(deadline=None, max_examples=examples(25))
-@given(st.sampled_from(shipped_machines()), smooth_paths(30.0))
+@given(st.sampled_from(five_axis_machines()), smooth_paths(30.0))
 def test_the_nearest_neighbour_of_the_planner_is_that_of_the_tests(name: str, moves: Moves) -> None:
     machine = load_machine(name)
     naive = nearest_neighbour(machine, moves)
@@ -160,7 +161,7 @@ def test_the_nearest_neighbour_of_the_planner_is_that_of_the_tests(name: str, mo
 
 
 @settings(deadline=None, max_examples=examples(30))
-@given(st.sampled_from(shipped_machines()), st.one_of(smooth_paths(35.0), short_paths(30)))
+@given(st.sampled_from(five_axis_machines()), st.one_of(smooth_paths(35.0), short_paths(30)))
 def test_limits_hold_and_the_tool_points_where_it_should(name: str, moves: Moves) -> None:
     machine = load_machine(name)
     poses = posed(machine, moves)

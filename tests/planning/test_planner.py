@@ -6,9 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.examples import examples
+from tests.support.machines import five_axis_machines
 from trunnion.arrays import Floats
 from trunnion.errors import RefusedError, Severity
-from trunnion.machines import Machine, forward, load_machine, shipped_machines, slide_positions
+from trunnion.machines import Machine, forward, load_machine, slide_positions
 from trunnion.model.frames import into_frame
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Arcs, Frame, Moves, Operation, Tool, Toolpath
@@ -157,7 +158,7 @@ def test_operations_in_other_coordinate_systems_are_carried_into_the_first_one()
 
 @settings(deadline=None, max_examples=examples(20))
 @given(
-    st.sampled_from(shipped_machines()),
+    st.sampled_from(five_axis_machines()),
     st.lists(st.tuples(st.floats(0, 35), st.floats(-720, 720), *[st.floats(-60, 60)] * 3), min_size=1, max_size=20),
 )
 def test_on_every_shipped_machine_the_tool_is_where_the_toolpath_has_it(

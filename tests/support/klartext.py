@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from tests.support.jobs import post_job
 from tests.support.locations import GOLDEN
+from tests.support.machines import five_axis_machines
 from tests.support.operations import operation_of
 from tests.support.path_strategies import short_paths, smooth_paths
 from tests.support.posting import FOOT, HEAD
@@ -18,7 +19,7 @@ from trunnion.controls import Control, load_control
 from trunnion.jobs.post.expected_values import expectation
 from trunnion.jobs.post.planning import plan_program
 from trunnion.jobs.post.post_job import parse_plan_options
-from trunnion.machines import Machine, load_machine, shipped_machines
+from trunnion.machines import Machine, load_machine
 from trunnion.model.toolpath import Arcs, LoadTool, Moves, SpindleOn, Toolpath
 from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
@@ -30,7 +31,7 @@ CONTROLS = {name: load_control(machine.control) for name, machine in OWN.items()
 
 #: Every shipped machine, with the control of one of these.
 MACHINES = {
-    name: replace(load_machine(name), control=OWN["mikron_600u"].control.unread_copy()) for name in shipped_machines()
+    name: replace(load_machine(name), control=OWN["mikron_600u"].control.unread_copy()) for name in five_axis_machines()
 }
 
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from trunnion.machines import Machine, load_machine
+from trunnion.machines import Machine, load_machine, shipped_machines
 
 
 def at_zero(name: str) -> Machine:
@@ -23,3 +23,8 @@ def machine_without_tcp(folder: Path) -> Path:
         encoding="utf-8",
     )
     return file
+
+
+def five_axis_machines() -> list[str]:
+    """Names of the shipped machines with two rotary axes, sorted: those with fewer have tests of their own."""
+    return [name for name in shipped_machines() if len(load_machine(name).own_rotary) == 2]

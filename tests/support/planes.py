@@ -4,12 +4,13 @@ from pathlib import Path
 
 from hypothesis import strategies as st
 
+from tests.support.machines import five_axis_machines
 from tests.support.posting import FOOT, HEAD
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
 from trunnion.errors import InputError
-from trunnion.machines import Machine, forward, load_machine, shipped_machines
+from trunnion.machines import Machine, forward, load_machine
 from trunnion.output.families.sinumerik import writer as sinumerik
 from trunnion.readers import run_program
 from trunnion.verification import ExpectedValues, failures, verify
@@ -20,7 +21,7 @@ ANGLES = st.one_of(st.sampled_from([0.0, 90.0, -90.0, 180.0, 45.0]), st.floats(-
 def sinumeriks() -> list[str]:
     """Shipped machines with a Sinumerik."""
     found = []
-    for name in shipped_machines():
+    for name in five_axis_machines():
         try:
             control = load_control(load_machine(name).control)
         except InputError:

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import strategies as st
 
+from tests.support.machines import five_axis_machines
 from tests.support.operations import moves_of, operation_of, rapids_at
 from trunnion.arrays import Floats
-from trunnion.machines import Machine, kinematic_parameters, load_machine, shipped_machines
+from trunnion.machines import Machine, kinematic_parameters, load_machine
 from trunnion.model.toolpath import Operation
 
 
@@ -19,7 +20,7 @@ def with_speeds(name: str) -> Machine:
     return replace(machine, axes=tuple(axes))
 
 
-MACHINES = {name: with_speeds(name) for name in shipped_machines()}
+MACHINES = {name: with_speeds(name) for name in five_axis_machines()}
 
 
 def pole_of(machine: Machine) -> Floats:

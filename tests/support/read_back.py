@@ -4,17 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from tests.support.machines import at_zero
+from tests.support.machines import at_zero, five_axis_machines
 from tests.support.operations import operation_of
 from trunnion.controls import load_control
-from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines import load_machine
 from trunnion.model.toolpath import LoadTool, Moves, SpindleOn, Toolpath
 
 SINUMERIK = load_machine("yl569").control
 CONTROL = load_control(SINUMERIK)
 
 #: Every shipped machine with a control whose programs can be written.
-MACHINES = {name: replace(at_zero(name), control=SINUMERIK.unread_copy()) for name in shipped_machines()}
+MACHINES = {name: replace(at_zero(name), control=SINUMERIK.unread_copy()) for name in five_axis_machines()}
 
 
 def toolpath_of(moves: Moves) -> Toolpath:

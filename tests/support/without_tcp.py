@@ -8,12 +8,12 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from hypothesis import strategies as st
 
-from tests.support.machines import at_zero
+from tests.support.machines import at_zero, five_axis_machines
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.errors import Severity
 from trunnion.jobs.post.expected_values import expectation
-from trunnion.machines import Machine, load_machine, shipped_machines
+from trunnion.machines import Machine, load_machine
 from trunnion.model.motion import Plan
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
@@ -25,7 +25,7 @@ from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
 from trunnion.verification import ExpectedValues, Tolerances, Verification, verify
 
-NAMES = sorted(shipped_machines())
+NAMES = sorted(five_axis_machines())
 SINUMERIK = load_machine("yl569").control
 
 

@@ -52,6 +52,7 @@ JOBS = {
     "dmu65": TILTED,
     "matsuura_mx330": TILTED,
     "hs664rt": TILTED,
+    "haas_umc750": TILTED,
     "xyzac_trt": UPRIGHT,
 }
 
@@ -128,7 +129,25 @@ FAULTS = [
     ("matsuura_mx330", " G84 ", " G84 J3 ", "words"),
     ("matsuura_mx330", "G05.1 Q1", "G05.1 Q3", "words"),
     ("matsuura_mx330", "\nN210 G69", "\nN210", "turns"),
+    # Where G30 and M92 go only the machine knows; each word of contour control is ended by its own.
+    ("matsuura_mx330", " G49 G53 G0 Z0.", " G49\nG91 G30 P2 Z0.\nG90", "home"),
+    ("dmu65", "L Z+560 R0 FMAX M91", "L Z+560 R0 FMAX M92", "home"),
+    ("matsuura_mx330", "G05.1 Q1", "G05 P10000", "words"),
+    ("matsuura_mx330", "G05.1 Q1", "G08 P1", "words"),
+    # Haas
+    ("haas_umc750", " F500.", " F500.\nM71", "stops"),
+    ("haas_umc750", " F500.", " F500.\nM80", "stops"),
+    ("haas_umc750", " F500.", " F500.\nM21", "stops"),
+    ("haas_umc750", " F500.", " F500.\nM46", "words"),
+    ("yl569", "G0 B30. C90.", "G0 B30. C=DC(450)", "words"),
+    ("yl569", 'CYCLE800(0,"",0,57', 'CYCLE800(5,"",0,57', "words"),
+    ("dmu65", " M129\n", " L M94 X R0 FMAX\n", "words"),
+    ("dmu65", " M128\n", " FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\n", "words"),
     # Fidia
+    ("hs664rt", "M306 T.2", "M306 T2", "words"),
+    ("hs664rt", "M306 T.2", "M306 T.2.", "words"),
+    ("hs664rt", "N360 M306", "N355 G4 H2.\nN360 M306", "words"),
+    ("hs664rt", " R16. F750", " R16. HD1. F750", "words"),
     ("hs664rt", "N170 G55 O1", "N170", "words"),
     ("hs664rt", "N380 G55 O1", "N380", "words"),
     ("hs664rt", "N380 G55 O1", "N380 G55 O2", "offset"),

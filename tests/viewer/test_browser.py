@@ -10,10 +10,10 @@ from playwright.sync_api import Browser, Page
 from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file, open_page
 from tests.support.locations import GOLDEN
+from tests.support.machines import five_axis_machines
 from tests.support.pictures import check_picture
 from trunnion import post, read_program, write_view
 from trunnion.machines import forward
-from trunnion.machines.loading import shipped_machines
 
 pytestmark = needs_browser
 
@@ -50,7 +50,7 @@ def shown(page: Page) -> str:
 
 @pytest.mark.parametrize(
     "name",
-    [name if name in EACH_CHAIN else pytest.param(name, marks=pytest.mark.nightly) for name in shipped_machines()],
+    [name if name in EACH_CHAIN else pytest.param(name, marks=pytest.mark.nightly) for name in five_axis_machines()],
 )
 def test_the_pose_that_is_shown_is_that_of_the_forward_map(name: str, tmp_path: Path, browser: Browser) -> None:
     program = tmp_path / "program.nc"

@@ -38,7 +38,7 @@ def verification_figures(found: Verification) -> dict[str, Any]:
     """Of a program that was run and checked, with the columns of the verification."""
     run = found.run
     arcs = RunArcs.of(run)
-    axes = [axis_extent(run, k, axis, arcs) for k, axis in enumerate(run.machine.axes)]
+    axes = [axis_extent(run, k, axis, arcs) for k, axis in run.machine.own_columns]
     return {
         "motions": len(run),
         "tools": sorted({run.tools[int(index)] for index in distinct(run.tool)} - {""}),

@@ -32,6 +32,10 @@ CHAINS: Final = {
     "head_table_ac": Chain("C X | Y Z A", (_A, _C)),
     "head_head_ca": Chain("X | Y Z C A", (_A, _C)),
     "head_head_cb": Chain("| X Y Z C B", (_B, _C)),
+    "table_a": Chain("A X Y | Z", (_A,)),
+    "table_b": Chain("B X Y | Z", (_B,)),
+    "table_c": Chain("C X Y | Z", (_C,)),
+    "three_axis": Chain("X Y | Z", ()),
 }
 
 _SLIDES: Final = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}

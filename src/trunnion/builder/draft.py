@@ -226,7 +226,7 @@ def _machine(machine: Machine | None, words: Words) -> dict[str, Any]:
         bodies, remark = [], phrase("bodies_not_drawn", most=_MOST_TRIANGLES).text("what", words)
     jogs = jog_table(machine)
     told = [{"axis": each.axis.name, "what": joined((each.tool_said, each.iron_said), words)} for each in jogs.axes]
-    homes = [axis.home for axis in machine.axes]
+    homes = [axis.home for axis in machine.own_axes]
     return {"machine": {**machine_scene(machine), "homes": homes}, "bodies": bodies, "jogs": told, "remark": remark}
 
 

@@ -18,13 +18,13 @@ def definition_like(machine: Machine, name: str, words: Words = LIBRARY) -> str:
     remarks = phrase("head_of_definition", base=machine.key, name=machine.name).text("what", words)
     head = first_line("machine") + "".join(f"# {line}\n" for line in remarks.splitlines())
     head += f"extends = {written(machine.key)}\nname = {written(name)}\n"
-    parts = [*_spindle(machine, words), *("\n".join(_axis(axis, words)) for axis in machine.axes)]
+    parts = [*_spindle(machine, words), *("\n".join(_axis(axis, words)) for axis in machine.own_axes)]
     return head + "".join(f"\n{part}\n" for part in parts)
 
 
 def _spindle(machine: Machine, words: Words) -> Iterator[str]:
     lines = []
-    has_head = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in machine.axes)
+    has_head = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in machine.own_axes)
     if has_head or machine.spindle_point_is_stated:
         point = written(list(machine.spindle_point))
         what = "measure_pivot" if has_head else "measure_gauge_point"

@@ -11,10 +11,11 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any, Final
 
+from trunnion.cl import read_cl
 from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.post.result import ProofFailedError
-from trunnion.machines import Machine
+from trunnion.machines import Machine, inverse
 from trunnion.messages import LIBRARY, Words
 from trunnion.records import dataclass
 from trunnion.results import to_data
@@ -47,6 +48,19 @@ def shipped_sample() -> bytes:
     return files("trunnion.builder").joinpath("sample.cls").read_bytes()
 
 
+def sample_of(machine: Machine) -> bytes:
+    """Return the operations of the shipped CL file whose tool axes a machine reaches: all, with two rotary axes."""
+    operations = re.split(rb"^(?=TOOL PATH/)", shipped_sample(), flags=re.MULTILINE)
+    if len(machine.own_rotary) == 2:
+        return b"".join(operations)
+    return b"".join(text for text in operations if text and _reaches(machine, text))
+
+
+def _reaches(machine: Machine, text: bytes) -> bool:
+    moves = [operation.moves for operation in read_cl(_NamedBytes(text, "sample.cls")).operations]
+    return all(bool(inverse(machine, each.tip, each.axis).reachable.all()) for each in moves)
+
+
 @dataclass(frozen=True, slots=True)
 class _Sample:
     """A sample program, what its proof says, and what differs from an earlier one.
@@ -73,13 +87,13 @@ def sample_data(
     """Post and prove a CL file, and mark what differs from an earlier program; return it as JSON has it.
 
     machine  the machine
-    cl       the CL file; None: the shipped one
+    cl       the CL file; None: what the machine reaches of the shipped one
     name     of the CL file, for messages
     before   lines of the earlier program; none: nothing is marked
     words    of who looks
     """
     try:
-        result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
+        result = post(_NamedBytes(sample_of(machine) if cl is None else cl, name or "sample.cls"), machine=machine)
     except ProofFailedError as error:
         return without_program(error.result.problems, error.result.checks, words)
     except TrunnionError as error:

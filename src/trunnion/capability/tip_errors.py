@@ -50,5 +50,5 @@ def in_radians(length: float, angle: float) -> tuple[float, float]:
 
 def joints_at_zero(machine: Machine, pose: Mapping[str, float]) -> Floats:
     """Axis values (1, 5) with the tip in the workpiece zero; NaN where the slides cannot bring it there."""
-    rotary = np.array([[pose[machine.names[k]] for k in machine.rotary]])
+    rotary = np.array([[pose.get(machine.names[k], 0.0) for k in machine.rotary]])  # a missing axis stands at 0
     return slide_positions(machine, np.zeros((1, 3)), rotary)

@@ -150,6 +150,6 @@ def output_folder(output: str | None) -> Path | None:
 
 def _exceeds_rotary_speed(verification: Verification) -> bool:
     """Whether a rotary axis would have to be faster than it can."""
-    names = {axis.name for axis in verification.machine.axes if axis.is_rotary}
+    names = {axis.name for axis in verification.machine.own_axes if axis.is_rotary}
     speeds = (check for check in verification.checks if check.key == "speed")
     return any(place.wording.parameter("axis") in names for check in speeds for place in check.places)

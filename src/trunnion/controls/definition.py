@@ -295,6 +295,12 @@ class Control:
         kept = ((name, template.of_definition) for name, template in self.templates.items())
         return replace(self, templates={name: template for name, template in kept if template is not None})
 
+    def with_rotary_axes(self, count: int) -> "Control":
+        """Return the control of a machine with so many rotary axes: one prints no second one, none have no TCP."""
+        if count != 1:
+            return self if count else replace(self, tcp=False)
+        return replace(self, templates={name: each.without_secondary() for name, each in self.templates.items()})
+
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""
         plane = settings.get("plane") or self.settings.get("plane") or next(iter(self.family.PLANE_COMMANDS), "")

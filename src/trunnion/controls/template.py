@@ -10,7 +10,7 @@ Templates with conditions and loops are ``trunnion.controls.text_template``, in 
 
 import re
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import lru_cache
 from importlib.resources import files
 from typing import Final
@@ -38,6 +38,10 @@ _SHIPPED: Final = str(files("trunnion"))
 _OPTIONAL_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
 _NUMBER_FIELD = re.compile(r"\{([-+]?(?:\d+\.?\d*|\.\d+)):([A-Za-z_][A-Za-z0-9_]*)\}")
+#: A word, up to the blank before it, with a field of the secondary rotary axis.
+_SECONDARY_WORD = re.compile(r" ?[^\s\[\]]*\{\{? ?secondary\w*[^}]*\}\}?[^\s\[\]]*")
+_SEGMENT = re.compile(r"\[\[.*?\]\]|(?:(?!\[\[).)+")
+
 _LEFT = re.compile(r"[{}]|\[\[|\]\]")
 
 
@@ -120,6 +124,10 @@ class Template:
     def record_values(self) -> frozenset[str]:
         """The values of tools and operations that it asks for."""
         return frozenset()
+
+    def without_secondary(self) -> "Template":
+        """Return the template for a machine with one rotary axis: no word of the second beside one of the first."""
+        return replace(self, lines=tuple(map(_without_secondary, self.lines)))
 
     def fields(self) -> frozenset[tuple[str, str]]:
         """Return the (name, format) of every field; the format is empty where the field has none."""
@@ -207,6 +215,14 @@ def number_text(name: str, number: float, number_format: NumberFormat) -> str:
         shown = name.replace("_", " ")
         raise WordRangeError(Wording("CTL110", "number_beyond_format", name=shown, value=number, limit=limit))
     return number_format.text(number)
+
+
+def _without_secondary(line: str) -> str:
+    """Return a line without words of the secondary rotary axis; a part with no other rotary axis keeps them, and is
+    left out with them, for they are absent.
+    """
+    parts = _SEGMENT.findall(line)
+    return "".join(_SECONDARY_WORD.sub("", part) if "primary" in part else part for part in parts)
 
 
 @lru_cache(maxsize=1024)  # each setting of a control asks for those of all templates

@@ -130,9 +130,9 @@ READING_KEYS: Final = frozenset(
         "corner_feed", "cycles_along_tool", "cycles_repeat_with", "dwells", "end_in_subprogram", "extended_offsets",
         "feed_without_tcp", "home_ends_length", "home_takes_all", "kept_by", "least_increment_mm", "length_along_z",
         "m114", "m_codes", "machine_positions", "more_comments", "needs_program_number", "nested_comments",
-        "numbers_anywhere", "peck_clearance_mm", "program_digits", "program_numbers", "start_distances", "start_modes",
-        "start_plane", "swivel_axes", "tape_marks", "threads_stop_spindle", "units", "variables", "whole_feeds",
-        "whole_numbers", "words",
+        "numbers_anywhere", "peck_clearance_mm", "program_digits", "program_numbers", "reference_positions",
+        "start_distances", "start_modes", "start_plane", "swivel_axes", "tape_marks", "threads_stop_spindle",
+        "tool_change_stops", "units", "variables", "whole_feeds", "whole_numbers", "words",
     }
 )  # fmt: skip
 

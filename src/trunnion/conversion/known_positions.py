@@ -27,7 +27,7 @@ def known_positions(run: Run) -> Flags:
     retracted = behind_retracts(run)
     if zero and length and not retracted.any():
         return np.ones(count, np.bool_)
-    heads = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in run.machine.axes)
+    heads = any(axis.is_rotary and axis.mount is Mount.TOOL for axis in run.machine.own_axes)
     programmed = (run.programmed & sum(_XYZ)) != 0
     tip_programmed = run.state.xyz_is_tip.column()
     upright = _upright(run)

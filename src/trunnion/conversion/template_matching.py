@@ -39,10 +39,9 @@ class TemplatePatterns:
 
     def __init__(self, control: Control, machine: Machine) -> None:
         self._control = control
-        axes = machine.axes
-        primary, secondary = axes[machine.primary].name, axes[machine.secondary].name
-        letters = {"primary": primary, "secondary": secondary}
-        returning = {"primary_returns": primary, "secondary_returns": secondary}
+        axes = tuple(zip(("primary", "secondary"), machine.rotary_words, strict=False))
+        letters = {key: machine.names[column] for key, column in axes}
+        returning = {f"{key}_returns": machine.names[column] for key, column in axes}
         self._known = {**letters, **returning, "machine": machine.name}
         self._family_values = family_value_expressions(control)
         rules = {name: rule.one_of for name, rule in control.setting_rules.items() if rule.one_of}

@@ -95,7 +95,7 @@ def written_definition(found: ForeignMachine, base: str, name: str) -> Written:
     ]
     lines += [f"schema = 1\nextends = {written(base)}\nname = {written(name)}\n"]
     lines += _spindle(taken)
-    for axis in machine.axes:
+    for axis in machine.own_axes:
         lines += _axis(axis, {key[2]: value for key, value in taken.items() if key[:2] == ("axis", axis.name)})
     lines += _control(_control_of(machine), found.control, taken)
     return _with_rest(lines, taken, (*found.left, *outside.values()))
@@ -103,7 +103,7 @@ def written_definition(found: ForeignMachine, base: str, name: str) -> Written:
 
 def _no_place(key: Key, machine: Machine) -> Wording | None:
     """Return why a machine has no place for a value of an axis; None if it has."""
-    axis = next((each for each in machine.axes if each.name == key[1]), None)
+    axis = next((each for each in machine.own_axes if each.name == key[1]), None)
     if axis is None:
         return because("no_axis", machine=machine.key, axis=key[1])
     turns = key[2] in ("endless", "point_mm") or "_deg" in key[2]
@@ -155,7 +155,7 @@ def _sources(values: Mapping[Key, Stated]) -> str:
 
 def _homes_outside(found: ForeignMachine, machine: Machine) -> Iterator[tuple[Key, Left]]:
     """Yield homes beyond the travel that counts, which is that of the shipped machine where the files state none."""
-    for axis in machine.axes:
+    for axis in machine.own_axes:
         unit = "deg" if axis.is_rotary else "mm"
         home = found.values.get(("axis", axis.name, f"home_{unit}"))
         travel = found.values.get(("axis", axis.name, f"limits_{unit}"))
@@ -171,7 +171,7 @@ def _endless_against_limits(found: ForeignMachine, machine: Machine) -> Iterator
     """Yield axes without limits in the files, where the shipped machine has some: those stay until they are
     measured.
     """
-    for axis in machine.axes:
+    for axis in machine.own_axes:
         endless = found.values.get(("axis", axis.name, "endless"))
         if endless is not None and axis.has_limits:
             why = because("limits_count", machine=machine.key, low=f"{axis.low:g}", high=f"{axis.high:g}")
@@ -185,7 +185,7 @@ def differences(found: ForeignMachine, machine: Machine) -> Iterator[Difference]
     Lines of rotation are compared as such: a point may lie anywhere on its line, and a line that points the other way
     with the other sense is the same.
     """
-    axes = {axis.name: axis for axis in machine.axes}
+    axes = {axis.name: axis for axis in machine.own_axes}
     control: dict[str, Any] = resolve_extends(machine.control, control_library()).to_dict()
     for key, value in found.values.items():
         if key[0] == "control" and not _is_same(here := _of_control(control, key), value.value):
@@ -236,12 +236,12 @@ def _other_sense(axis: Axis, stated: Stated, line: Stated) -> Iterator[Differenc
 
 
 def _rotary(machine: Machine) -> list[tuple[str, str]]:
-    return [(axis.name, str(axis.mount)) for axis in machine.axes if axis.is_rotary]
+    return [(axis.name, str(axis.mount)) for axis in machine.own_axes if axis.is_rotary]
 
 
 def _fits(machine: Machine, found: ForeignMachine) -> bool:
     """Whether the lines of rotation have the directions that are stated."""
-    for axis in machine.axes:
+    for axis in machine.own_axes:
         stated = found.values.get(("axis", axis.name, "direction"))
         if stated is not None and not _is_parallel(axis.direction, stated.value):
             return False
@@ -256,7 +256,7 @@ def _is_parallel(one: Any, other: Any) -> bool:
 def _far(machine: Machine, found: ForeignMachine) -> float:
     """How far the limits of rotary axes are apart, degrees."""
     far = 0.0
-    for axis in machine.axes:
+    for axis in machine.own_axes:
         stated = found.values.get(("axis", axis.name, "limits_deg"))
         if stated is not None and axis.has_limits:
             far += sum(abs(a - b) for a, b in zip((axis.low, axis.high), stated.value, strict=True))

@@ -79,20 +79,20 @@ class MapFormulas:
     """All formulas of a machine.
 
     forward  of tip and tool axis
-    rotary   of the rotary axes, for each of the two solutions
+    rotary   of the rotary axes, for each solution; none where the tool axis never changes
     linear   of the linear axes
     words    without TCP; None where there are none
     flat     what is zero where the linear axes lie in a plane; None if that cannot be
     """
 
     forward: Steps
-    rotary: tuple[Steps, Steps]
+    rotary: tuple[Steps, ...]
     linear: Steps
     words: Steps | None
     flat: Expression | None
 
 
-def agreement(chain: Chain, tilt: Tilt, formulas: MapFormulas) -> Agreement:
+def agreement(chain: Chain, tilt: Tilt | None, formulas: MapFormulas) -> Agreement:
     """Return how far formulas are from forward and inverse."""
     random, largest, count = np.random.default_rng(20), np.zeros(5), 0
     evaluated = _Evaluated(chain, tilt, formulas)
@@ -127,25 +127,31 @@ def evaluator(expressions: Sequence[Expression], names: Sequence[str]) -> _Colum
 class _Evaluated:
     """Formulas as functions of columns."""
 
-    def __init__(self, chain: Chain, tilt: Tilt, formulas: MapFormulas) -> None:
+    def __init__(self, chain: Chain, tilt: Tilt | None, formulas: MapFormulas) -> None:
         self._chain, self._tilt = chain, tilt
         self._axes = [str(joint.variable) for joint in chain.joints]
         self._rotary = [str(joint.variable) for joint in chain.rotary]
         self._linear = [str(joint.variable) for joint in chain.linear]
         self._known = [each.name for each in chain.parameters]
         self._forward = self._function(formulas.forward, (*TIP, *TOOL_AXIS), self._axes)
-        self._angles = [self._function(each, self._rotary, TOOL_AXIS) for each in formulas.rotary]
+        self._angles = [self._function(each, self._rotary, TOOL_AXIS) for each in formulas.rotary] or [self._at_zero]
         self._slides = self._function(formulas.linear, self._linear, (*TIP, *self._rotary))
         self._words: _Columns | None = None
         if formulas.words is not None:
             self._words = self._function(formulas.words, self._linear, (*TIP, *self._rotary))
-        flat = Steps(chain.definitions)
-        flat.say("flat", 1 if formulas.flat is None else formulas.flat)
-        self._flat = self._function(flat, ("flat",), self._rotary)
+        self._flat: _Columns | None = None
+        if formulas.flat is not None:
+            flat = Steps(chain.definitions)
+            flat.say("flat", formulas.flat)
+            self._flat = self._function(flat, ("flat",), self._rotary)
 
     def _function(self, steps: Steps, wanted: Sequence[str], names: Sequence[str]) -> _Columns:
         whole = steps.substituted()
         return evaluator([whole[name] for name in wanted], [*names, *self._known])
+
+    def _at_zero(self, given: Mapping[str, Any]) -> Floats:
+        """Return the rotary axes where no tool axis asks for them, as the inverse has them."""
+        return np.zeros((len(given[TIP[0]]), len(self._rotary)))
 
     def poses(self, random: np.random.Generator, given: dict[str, float]) -> Floats:
         """Return random axis values (n, 5) within travel."""
@@ -155,7 +161,10 @@ class _Evaluated:
         if len(kept) == _POSES:
             return kept
         # All that the travel has is near a pole, or where the linear axes cannot follow.
-        whole = [(-_TURN, _TURN) if axis.is_rotary else end for axis, end in zip(axes, ends, strict=True)]
+        whole = [
+            (-_TURN, _TURN) if axis.is_rotary and not axis.is_missing else end
+            for axis, end in zip(axes, ends, strict=True)
+        ]
         return self._apart(random, whole, given)
 
     def _apart(
@@ -163,12 +172,16 @@ class _Evaluated:
     ) -> Floats:
         """Return random axis values (n, 5) between ends, those left out at which digits are lost."""
         low, high = np.array(ends).T
-        rotary, kept = list(self._chain.machine.rotary), np.empty((0, 5))
+        rotary, kept = list(self._chain.machine.own_rotary), np.empty((0, 5))
         for _ in range(100):
             rows = random.uniform(low, high, (4 * _POSES, 5))
-            flat = self._flat(dict(zip(self._rotary, rows[:, rotary].T, strict=True)) | given)
-            turn = np.sin(np.radians(rows[:, rotary[1]] + self._tilt.delta))
-            kept = np.concatenate([kept, rows[(np.abs(turn) > _APART) & (np.abs(flat[:, 0]) > _FLAT)]])
+            sound = np.ones(len(rows), np.bool_)
+            if self._flat is not None:
+                flat = self._flat(dict(zip(self._rotary, rows[:, rotary].T, strict=True)) | given)
+                sound &= np.abs(flat[:, 0]) > _FLAT
+            if self._tilt is not None:
+                sound &= np.abs(np.sin(np.radians(rows[:, rotary[1]] + self._tilt.delta))) > _APART
+            kept = np.concatenate([kept, rows[sound]])
             if len(kept) >= _POSES:
                 break
         return kept[:_POSES]
@@ -177,7 +190,8 @@ class _Evaluated:
         """Return the largest differences (5,): tip, tool axis, rotary axes, linear axes, words."""
         length = given[LENGTH]
         tip, axis = forward(machine, joints, length)
-        columns = dict(zip(self._axes, joints.T, strict=True))
+        own = [column for column, _ in machine.own_columns]
+        columns = dict(zip(self._axes, joints.T[own], strict=True))
         found = self._forward(columns | given)
         off_tip, off_axis = np.abs(found[:, :3] - tip).max(), np.abs(found[:, 3:] - axis).max()
         there = inverse(machine, tip, axis, length)
@@ -187,9 +201,9 @@ class _Evaluated:
         for branch, angles in enumerate(self._angles):
             turns = angles(points)
             here = points | dict(zip(self._rotary, turns.T, strict=True))
-            gap = turns - there.joints[branch][:, list(machine.rotary)]
+            gap = turns - there.joints[branch][:, list(machine.own_rotary)]
             slides = there.joints[branch][:, list(machine.linear)]
-            off_turn = np.maximum(off_turn, np.abs((gap + 180.0) % 360.0 - 180.0).max())
+            off_turn = np.maximum(off_turn, np.abs((gap + 180.0) % 360.0 - 180.0).max(initial=0.0))
             off_slide = np.maximum(off_slide, np.abs(self._slides(here) - slides).max())
             if self._words is not None:
                 off_word = np.maximum(off_word, np.abs(self._words(here) - (slides - offset)).max())
@@ -202,7 +216,8 @@ def _set_up(chain: Chain, random: np.random.Generator) -> tuple[Machine, dict[st
     if machine.workpiece_zero is None:
         away = random.uniform(-_AWAY, _AWAY, 3).tolist()
         given |= {f"a_{letter}": value for letter, value in zip(TIP, away, strict=True)}
-        x, y, z = (at - part for at, part in zip(chain.rotary[0].axis.point, away, strict=True))
+        first = chain.rotary[0].axis.point if chain.rotary else machine.spindle_point
+        x, y, z = (at - part for at, part in zip(first, away, strict=True))
         machine = replace(machine, workpiece_zero=(x, y, z))
     given.setdefault(LENGTH, float(random.uniform(20.0, _AWAY)))
     return machine, given

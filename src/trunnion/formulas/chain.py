@@ -1,5 +1,6 @@
 """The chain of a machine as symbols: what stands between the workpiece and the tool, in order."""
 
+from itertools import pairwise
 from typing import Annotated, Final
 
 import numpy as np
@@ -7,12 +8,16 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.formulas.symbols import Expression, Rows, Triple, exact_direction, number, rotation, symbol
 from trunnion.machines import Axis, Machine
+from trunnion.machines.machine import Vector
 from trunnion.messages import Wording
 from trunnion.records import dataclass
 from trunnion.results import Figure
 
 #: Parts of an offset that are smaller are zero, mm.
 _NO_OFFSET: Final = 1e-12
+
+#: Sine of the angle below which an axis is along the spindle.
+_ALONG: Final = 1e-3
 
 #: Names of tip and tool axis, which an axis cannot have.
 TIP: Final = ("x", "y", "z")
@@ -103,15 +108,21 @@ class Chain:
     parameters: tuple[Parameter, ...]
 
     @property
-    def rotary(self) -> tuple[Joint, Joint]:
-        """Both rotary axes; the first is the one next to the workpiece."""
-        first, second = (self.joints[k] for k in self.machine.rotary)
-        return first, second
+    def rotary(self) -> tuple[Joint, ...]:
+        """The rotary axes, two at most; the first is the one next to the workpiece."""
+        return tuple(joint for joint in self.joints if joint.axis.is_rotary)
+
+    @property
+    def is_tilting(self) -> bool:
+        """Whether the tool axis follows from the rotary axes: with two, and with one that is not along the spindle."""
+        alone = self.rotary[0].axis.direction if len(self.rotary) == 1 else self.machine.spindle_direction
+        along = bool(np.linalg.norm(np.cross(alone, self.machine.spindle_direction)) < _ALONG)
+        return len(self.rotary) == 2 or not along
 
     @property
     def linear(self) -> tuple[Joint, Joint, Joint]:
         """The linear axes in chain order."""
-        first, second, third = (self.joints[k] for k in self.machine.linear)
+        first, second, third = (joint for joint in self.joints if not joint.axis.is_rotary)
         return first, second, third
 
     @property
@@ -128,16 +139,11 @@ class Chain:
 def symbolic_chain(machine: Machine) -> Chain:
     """Return a machine as symbols: directions are exact where they can be, offsets that are zero are left out."""
     parameters = list[Parameter]()
-    first, second = (machine.axes[k] for k in machine.rotary)
-    offsets = {
-        first.name: _first_offset(machine, first, parameters),
-        second.name: _offset(
-            parameters,
-            "e",
-            np.subtract(second.point, first.point),
-            Wording("kinematics", "between_axes", axis=first.name, other=second.name),
-        ),
-    }
+    rotary = [machine.axes[k] for k in machine.own_rotary]
+    offsets = {axis.name: _first_offset(machine, axis, parameters) for axis in rotary[:1]}
+    for first, second in pairwise(rotary):
+        between = Wording("kinematics", "between_axes", axis=first.name, other=second.name)
+        offsets[second.name] = _offset(parameters, "e", np.subtract(second.point, first.point), between)
     zero = number(0)
     joints = tuple(
         Joint(
@@ -151,15 +157,9 @@ def symbolic_chain(machine: Machine) -> Chain:
             ),
             offsets.get(axis.name, (zero, zero, zero)),
         )
-        for axis in machine.axes
+        for axis in machine.own_axes
     )
-    gauge_point = "to_gauge_point" if machine.spindle_point_is_stated else "to_assumed_gauge_point"
-    gauge = _offset(
-        parameters,
-        "g",
-        np.subtract(machine.spindle_point, second.point),
-        Wording("kinematics", gauge_point, axis=second.name),
-    )
+    gauge = _gauge_offset(machine, rotary[-1] if rotary else None, parameters)
     spindle = _direction(parameters, "s", Wording("kinematics", "of_spindle"), machine.spindle_direction)
     length = symbol(LENGTH)
     parameters.append(Parameter(LENGTH, Wording("kinematics", "length"), machine.tool_length, "mm"))
@@ -172,10 +172,22 @@ def axis_symbol(name: str) -> str:
     return f"q_{name}" if name in _TAKEN or "_" in name else name
 
 
+def _gauge_offset(machine: Machine, last: Axis | None, parameters: list[Parameter]) -> Triple:
+    """Return the gauge point from the last rotary axis; from the workpiece zero if there is none."""
+    if last is None:
+        return _from_zero(machine, machine.spindle_point, Wording("kinematics", "zero_to_gauge_point"), parameters)
+    gauge_point = "to_gauge_point" if machine.spindle_point_is_stated else "to_assumed_gauge_point"
+    way = np.subtract(machine.spindle_point, last.point)
+    return _offset(parameters, "g", way, Wording("kinematics", gauge_point, axis=last.name))
+
+
 def _first_offset(machine: Machine, first: Axis, parameters: list[Parameter]) -> Triple:
-    about = Wording("kinematics", "from_zero", axis=first.name)
+    return _from_zero(machine, first.point, Wording("kinematics", "from_zero", axis=first.name), parameters)
+
+
+def _from_zero(machine: Machine, point: Vector, about: Wording, parameters: list[Parameter]) -> Triple:
     if machine.workpiece_zero is not None:
-        return _offset(parameters, "a", np.subtract(first.point, machine.workpiece_zero), about)
+        return _offset(parameters, "a", np.subtract(point, machine.workpiece_zero), about)
     parameters += [Parameter(f"a_{letter}", _along(about, letter), None, "mm") for letter in TIP]
     x, y, z = (symbol(f"a_{letter}") for letter in TIP)
     return x, y, z

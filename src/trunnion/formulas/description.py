@@ -10,8 +10,16 @@ from trunnion.formulas.chain import Parameter, symbolic_chain
 from trunnion.formulas.forward import FrameStep, forward_formulas, frame_steps, whole_matrix
 from trunnion.formulas.linear import dependence, linear_formulas, words_without_tcp
 from trunnion.formulas.notation import as_latex, as_text
-from trunnion.formulas.poles import Pole, ReachedCone, SolutionRange, poles_of, reached_cone, solution_range
-from trunnion.formulas.rotary import rotary_formulas, tilt_of
+from trunnion.formulas.poles import (
+    Pole,
+    ReachedCone,
+    SolutionRange,
+    one_axis_cone,
+    poles_of,
+    reached_cone,
+    solution_range,
+)
+from trunnion.formulas.rotary import one_axis_formulas, rotary_formulas, tilt_of
 from trunnion.formulas.steps import Formula, Steps, as_formula
 from trunnion.machines import Axis, Machine
 from trunnion.records import dataclass
@@ -36,14 +44,14 @@ class FrameMatrix:
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """One pair of rotary angles for a tool axis.
+    """The rotary angles for a tool axis.
 
-    rotary  formulas of both axes
-    where   which angles it has
+    rotary  formulas of the rotary axes
+    where   which angles of the second one it has; null where there is one alone
     """
 
     rotary: tuple[Formula, ...]
-    where: SolutionRange
+    where: SolutionRange | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +86,7 @@ class Kinematics:
     matrices     from each frame to the next, from the workpiece to the tool, then over all of them
     parts        parts of the matrices that formulas have by their names, where a direction is no exact number
     forward      formulas of the tip ``x y z`` and the tool axis ``i j k``; intermediate ones stand before
-    solutions    both inverse solutions
+    solutions    both inverse solutions; one with one rotary axis; none where the tool axis never changes
     linear       formulas of the linear axes for either solution
     without_tcp  words of the linear axes in a program without TCP; empty where it has none
     poles        tool axes at which a rotary axis is free
@@ -96,7 +104,7 @@ class Kinematics:
     matrices: tuple[FrameMatrix, ...]
     parts: tuple[Formula, ...]
     forward: tuple[Formula, ...]
-    solutions: tuple[Solution, Solution]
+    solutions: tuple[Solution, ...]
     linear: tuple[Formula, ...]
     without_tcp: tuple[Formula, ...]
     poles: tuple[Pole, ...]
@@ -116,26 +124,30 @@ def kinematics_of(machine: Machine) -> Kinematics:
     Raises ``MissingExtraError`` if SymPy is not installed.
     """
     chain = symbolic_chain(machine)
-    tilt = tilt_of(chain)
-    chain = replace(chain, parameters=(*chain.parameters, *tilt.parameters))
-    one, other = (rotary_formulas(chain, tilt, branch) for branch in (0, 1))
+    tilt = tilt_of(chain) if len(chain.rotary) == 2 else None
+    rotary: tuple[Steps, ...] = ()
+    if tilt is not None:
+        chain = replace(chain, parameters=(*chain.parameters, *tilt.parameters))
+        rotary = rotary_formulas(chain, tilt, 0), rotary_formulas(chain, tilt, 1)
+    elif chain.is_tilting:
+        rotary = (one_axis_formulas(chain),)
     words, flat = words_without_tcp(chain), dependence(chain)
-    formulas = MapFormulas(forward_formulas(chain), (one, other), linear_formulas(chain), words, flat)
+    formulas = MapFormulas(forward_formulas(chain), rotary, linear_formulas(chain), words, flat)
     return Kinematics(
         machine,
-        tuple(_travel(axis, str(joint.variable)) for axis, joint in zip(machine.axes, chain.joints, strict=True)),
+        tuple(_travel(axis, str(joint.variable)) for axis, joint in zip(machine.own_axes, chain.joints, strict=True)),
         chain.parameters,
         tuple(map(_matrix, (*frame_steps(chain), whole_matrix(chain)))),
         Steps(found=list(chain.definitions)).formulas(),
         formulas.forward.formulas(),
-        (
-            Solution(one.formulas(), solution_range(chain, tilt, 0)),
-            Solution(other.formulas(), solution_range(chain, tilt, 1)),
+        tuple(
+            Solution(each.formulas(), None if tilt is None else solution_range(chain, tilt, branch))
+            for branch, each in enumerate(rotary)
         ),
         formulas.linear.formulas(),
         () if words is None else words.formulas(),
-        poles_of(chain, tilt),
-        reached_cone(chain, tilt),
+        () if tilt is None else poles_of(chain, tilt),
+        one_axis_cone(machine) if tilt is None else reached_cone(chain, tilt),
         None if flat is None else as_formula("det", flat),
         agreement(chain, tilt, formulas),
     )

@@ -1,5 +1,7 @@
 """The forward map as formulas: tip and tool axis, from the tool back to the workpiece."""
 
+from functools import reduce
+
 from trunnion.formulas.chain import TIP, TOOL_AXIS, Chain, Joint
 from trunnion.formulas.steps import Steps
 from trunnion.formulas.symbols import Expression, Rows, Triple, number, plus, product, symbol, times
@@ -31,9 +33,9 @@ def frame_steps(chain: Chain) -> tuple[FrameStep, ...]:
 
 def whole_matrix(chain: Chain) -> FrameStep:
     """Return the matrix from the workpiece to the tool; where the tip is has its own formulas."""
-    first, second = chain.rotary
+    turns = [joint.turn for joint in chain.rotary]
     x, y, z = (symbol(name) for name in TIP)
-    return FrameStep("tool", "workpiece", _homogeneous(product(first.turn, second.turn), (x, y, z)))
+    return FrameStep("tool", "workpiece", _homogeneous(reduce(product, turns) if turns else _unit(), (x, y, z)))
 
 
 def forward_formulas(chain: Chain) -> Steps:

@@ -1,5 +1,6 @@
 """The inverse map of the linear axes as formulas, the rotary axes being known; and the words without TCP."""
 
+from itertools import takewhile
 from typing import Final
 
 from trunnion.formulas.chain import TIP, Chain, Joint
@@ -89,13 +90,13 @@ def _at_zero(chain: Chain) -> dict[Expression, Expression]:
 
 def _below(chain: Chain) -> list[Joint]:
     """Return the rotary axes between the workpiece and the first linear axis."""
-    return list(chain.joints[: min(chain.machine.linear)])
+    return list(takewhile(lambda joint: joint.axis.is_rotary, chain.joints))
 
 
 def _columns(chain: Chain) -> tuple[Triple, Triple, Triple]:
     """Return the directions of the linear axes, each turned by the rotary axes between the first one and it."""
     found, turns = list[Triple](), list[Joint]()
-    for joint in chain.joints[min(chain.machine.linear) :]:
+    for joint in chain.joints[len(_below(chain)) :]:
         if joint.axis.is_rotary:
             turns.append(joint)
             continue

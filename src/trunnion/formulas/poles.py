@@ -3,10 +3,12 @@
 import math
 from typing import Annotated, Final
 
+import numpy as np
+
 from trunnion.formulas.chain import Chain
 from trunnion.formulas.rotary import Tilt
 from trunnion.formulas.symbols import float_of
-from trunnion.machines import Axis
+from trunnion.machines import Axis, Machine
 from trunnion.machines.machine import Vector
 from trunnion.records import dataclass
 from trunnion.results import Figure
@@ -53,7 +55,7 @@ class SolutionRange:
 class ReachedCone:
     """Tool axes that the rotary axes reach, their limits apart: a zone about a direction.
 
-    about    unit vector in workpiece coordinates, along the first rotary axis
+    about    unit vector in workpiece coordinates, along the first rotary axis; along the spindle if there is none
     nearest  least angle to it, degrees
     farthest greatest angle to it, degrees
     """
@@ -90,6 +92,15 @@ def reached_cone(chain: Chain, tilt: Tilt) -> ReachedCone:
     together = tilt.between + tilt.of_spindle
     farthest = min(together, 360.0 - together)
     return ReachedCone(_first_direction(chain, tilt.sense), abs(tilt.between - tilt.of_spindle), farthest)
+
+
+def one_axis_cone(machine: Machine) -> ReachedCone:
+    """Return the tool axes that one rotary axis reaches, or none: all have one angle to it."""
+    own, spindle = machine.own_rotary, np.array(machine.spindle_direction)
+    about = np.array(machine.axes[own[0]].direction) if own else spindle
+    angle = math.degrees(math.atan2(float(np.linalg.norm(np.cross(about, spindle))), float(about @ spindle)))
+    i, j, k = about.tolist()
+    return ReachedCone((i, j, k), angle, angle)
 
 
 def within_a_turn(angle: float) -> float:

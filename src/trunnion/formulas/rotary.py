@@ -9,6 +9,8 @@ That gives the second angle twice; the first one turns R2 s onto u.
 """
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -90,19 +92,34 @@ def tilt_of(chain: Chain) -> Tilt:
 def rotary_formulas(chain: Chain, tilt: Tilt, branch: int) -> Steps:
     """Return the formulas of both rotary axes of one solution, 0 or 1."""
     steps = Steps(chain.definitions)
-    first, second = chain.rotary
+    second = chain.rotary[1]
     steps.say(str(second.variable), _second_angle(tilt, branch))
     spindle = steps.turn(second.turn, chain.spindle, "v")
+    _say_first_angle(steps, chain, spindle, partial(sign_along, chain, tilt, branch))
+    return steps
+
+
+def one_axis_formulas(chain: Chain) -> Steps:
+    """Return the formula of the rotary axis of a machine that has one: it turns the spindle onto the tool axis."""
+    steps = Steps(chain.definitions)
+    values = chain.values
+    _say_first_angle(steps, chain, chain.spindle, lambda part: int(math.copysign(1.0, float_of(part, values))))
+    return steps
+
+
+def _say_first_angle(steps: Steps, chain: Chain, spindle: Triple, sign_of: Callable[[Expression], int]) -> None:
+    """Note the angle about the first rotary axis that turns a direction onto the tool axis."""
+    first = chain.rotary[0]
     place = cardinal(first.direction)
     if place is None:
         steps.say(str(first.variable), _turn_about(steps, first.direction, spindle))
-        return steps
+        return
     axis, sign = place
     ahead = ((axis + 1) % 3, (axis + 2) % 3)
     one, two = ahead if sign > 0 else (ahead[1], ahead[0])
     u1, u2 = _tool_axis()[one], _tool_axis()[two]
     v1, v2 = spindle[one], spindle[two]
-    known = sign_along(chain, tilt, branch, v2 if v1 == 0 else v1) if 0 in (v1, v2) else 0
+    known = sign_of(v2 if v1 == 0 else v1) if 0 in (v1, v2) else 0
     if known and v2 == 0:
         angle = function("atan2", known * u2, known * u1)
     elif known and v1 == 0:
@@ -111,7 +128,6 @@ def rotary_formulas(chain: Chain, tilt: Tilt, branch: int) -> Steps:
         v1, v2 = _without_divisors(v1, v2)
         angle = function("atan2", u2, u1) - function("atan2", v2, v1)
     steps.say(str(first.variable), angle)
-    return steps
 
 
 def sign_along(chain: Chain, tilt: Tilt, branch: int, expression: Expression) -> int:

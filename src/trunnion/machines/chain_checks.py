@@ -28,7 +28,7 @@ def check_chain(
     slides = [k for k, axis in enumerate(axes) if not axis.is_rotary]
     _check_names(axis_tables, axes)
     if all(entry.to_dict().get("kind") in tuple(AxisKind) for entry in axis_tables) and (
-        len(rotary) != 2 or len(slides) != 3
+        len(rotary) > 2 or len(slides) != 3
     ):
         table.add_problem(
             "axis",
@@ -70,6 +70,8 @@ def _check_names(axis_tables: list[Table], axes: tuple[Axis, ...]) -> None:
 def _check_rotary_directions(
     axis_tables: list[Table], axes: tuple[Axis, ...], rotary: list[int], spindle: Vector
 ) -> None:
+    if len(rotary) < 2:
+        return
     first, second = (np.array(axes[k].direction) for k in rotary)
     names = [axes[k].name for k in rotary]
     if _sine(first, second) < PARALLEL_TOLERANCE:

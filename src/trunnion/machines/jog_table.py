@@ -83,14 +83,14 @@ class JogTable:
     order         names of the axes from the workpiece to the tool, with ``bed`` between those of both sides
     axes          in that order
     poses         single rotary axes first, then both
-    same_axis     two poses with the same tool axis
+    same_axis     two poses with the same tool axis; none where there are fewer than two rotary axes
     prefers       which of two such poses cuts begin in; ``preferred`` in English
     """
 
     order: tuple[str, ...]
     axes: tuple[AxisJog, ...]
     poses: tuple[RotaryPose, ...]
-    same_axis: tuple[RotaryPose, RotaryPose]
+    same_axis: tuple[RotaryPose, ...]
     prefers: Annotated[Wording, Figure("preferred", take=str)]
 
     @property
@@ -101,20 +101,23 @@ class JogTable:
 
 def order_of_axes(machine: Machine) -> tuple[str, ...]:
     """Return the names of the axes from the workpiece to the tool, with ``bed`` between those of both sides."""
-    order = [axis.name for axis in machine.axes]
-    bed = next((k for k, axis in enumerate(machine.axes) if axis.mount is Mount.TOOL), len(order))
+    order = [axis.name for axis in machine.own_axes]
+    bed = next((k for k, axis in enumerate(machine.own_axes) if axis.mount is Mount.TOOL), len(order))
     return (*order[:bed], "bed", *order[bed:])
 
 
 def jog_table(machine: Machine) -> JogTable:
     """Return what the definition of a machine means."""
     poses = tuple(rotary_pose(machine, values) for values in _pose_values(machine))
-    tilted = next((pose for pose in reversed(poses) if pose.in_travel), poses[-1])
+    same_axis: tuple[RotaryPose, ...] = ()
+    if len(machine.own_rotary) == 2:
+        tilted = next((pose for pose in reversed(poses) if pose.in_travel), poses[-1])
+        same_axis = tilted, rotary_pose(machine, _other_values(machine, tilted.values))
     return JogTable(
         order=order_of_axes(machine),
-        axes=tuple(_jog(machine, axis) for axis in machine.axes),
+        axes=tuple(_jog(machine, axis) for axis in machine.own_axes),
         poses=poses,
-        same_axis=(tilted, rotary_pose(machine, _other_values(machine, tilted.values))),
+        same_axis=same_axis,
         prefers=_preferred(machine),
     )
 
@@ -124,7 +127,7 @@ def rotary_pose(machine: Machine, values: Mapping[str, float]) -> RotaryPose:
 
     Axes that are not named are at zero.
     """
-    by_name = {axis.name: axis for axis in machine.axes}
+    by_name = {axis.name: axis for axis in machine.own_axes}
     inside = all(by_name[name].low <= value <= by_name[name].high for name, value in values.items())
     zero = machine.workpiece_zero or (0.0, 0.0, 0.0)
     return RotaryPose(
@@ -222,7 +225,7 @@ def _swing_of_mark(turn: Vector, what: Wording) -> Wording:
 def _preferred(machine: Machine) -> Wording:
     told = tuple(
         phrase("sign_positive" if axis.prefer is PreferredSign.POSITIVE else "sign_negative", axis=axis.name)
-        for axis in machine.axes
+        for axis in machine.own_axes
         if axis.is_rotary and axis.prefer is not PreferredSign.EITHER
     )
     return phrase("prefers_signs", signs=told) if told else phrase("prefers_neither")
@@ -230,11 +233,13 @@ def _preferred(machine: Machine) -> Wording:
 
 def _pose_values(machine: Machine) -> Iterator[dict[str, float]]:
     """Values of the rotary axes that can be seen at the machine: one axis turned, then both."""
-    axes = [machine.axes[machine.primary], machine.axes[machine.secondary]]
+    axes = [machine.axes[k] for k in machine.rotary_words]
     rest = {axis.name: 0.0 if axis.low <= 0.0 <= axis.high else axis.home for axis in axes}
     inside = [[value for value in _VALUES if axis.low <= value <= axis.high] or [axis.low, axis.high] for axis in axes]
     for axis, values in zip(axes, inside, strict=True):
         yield from ({**rest, axis.name: value} for value in values)
+    if len(axes) < 2:
+        return
     small, large = [value for value in inside[0] if abs(value) < 60.0] or inside[0], inside[1][::2]
     yield from ({axes[0].name: one, axes[1].name: other} for one, other in product(small, large))
 
@@ -267,8 +272,8 @@ def _in_workpiece(machine: Machine, vector: Vector, values: Mapping[str, float],
 
     The head goes first, from the tool to the bed; then everything turns with the table back to where the part was.
     """
-    head: Iterable[Axis] = [axis for axis in reversed(machine.axes) if axis.mount is Mount.TOOL]
-    table: Iterable[Axis] = [axis for axis in reversed(machine.axes) if axis.mount is Mount.PART]
+    head: Iterable[Axis] = [axis for axis in reversed(machine.own_axes) if axis.mount is Mount.TOOL]
+    table: Iterable[Axis] = [axis for axis in reversed(machine.own_axes) if axis.mount is Mount.PART]
     for axis in (*head, *table):
         value = values.get(axis.name, 0.0)
         if axis.is_rotary:

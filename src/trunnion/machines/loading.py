@@ -32,6 +32,7 @@ from trunnion.machines.machine import (
     PreferredSign,
     Vector,
 )
+from trunnion.machines.missing_axes import with_missing_axes
 from trunnion.messages import Wording, phrase
 
 #: Version of the schema of machine definitions; a new one makes changes to old files necessary.
@@ -57,6 +58,7 @@ _AXIS_NAME: Final = "[A-Za-z][A-Za-z0-9_]{0,7}"
 #: Shipped definitions of no builder's machine: chains to extend, and the examples of LinuxCNC.
 EXAMPLES: Final = frozenset(
     (
+        "desk_mill_a",
         "generic_head_head_ca",
         "generic_head_table_bc",
         "generic_nutated_b45_c",
@@ -153,7 +155,7 @@ def read_machine(table: Table, key: str) -> Machine:
     return Machine(
         key=key,
         name=name,
-        axes=axes,
+        axes=with_missing_axes(axes, spindle_direction),
         spindle_direction=spindle_direction,
         spindle_point=spindle_point,
         workpiece_zero=None if zero is None else _vector(zero),

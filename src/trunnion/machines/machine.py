@@ -1,4 +1,4 @@
-"""A machine tool as data: five axes in the order in which they carry each other, and a spindle.
+"""A machine tool as data: its axes in the order in which they carry each other, and a spindle.
 
 Everything is given in ONE machine frame, with all axes at zero. Order: from the workpiece to the tool.
 Units: mm and degrees; rapids in mm/min and deg/min, accelerations in mm/s^2 and deg/s^2, jerks in mm/s^3 and deg/s^3,
@@ -9,7 +9,6 @@ Limits, home and all axis values are those that the control displays and the pro
 from collections.abc import Mapping
 from dataclasses import field, replace
 from enum import StrEnum
-from functools import partial
 from typing import Annotated, Final
 
 import numpy as np
@@ -80,6 +79,7 @@ class Axis:
     jerk            mm/s^3 or deg/s^3; None where not stated
     home            displayed value, mm or deg
     home_is_stated  the definition states it; else it is assumed to be 0
+    is_missing      the machine has no such axis: it turns the tool about itself, by nothing but 0, and nobody sees it
     """
 
     name: str
@@ -98,6 +98,7 @@ class Axis:
     positive: PositiveDirection = PositiveDirection.STANDARD
     prefer: PreferredSign = PreferredSign.EITHER
     home_is_stated: bool = True
+    is_missing: Annotated[bool, NOT_DATA] = False
 
     @property
     @Figure(is_extra=True)
@@ -185,9 +186,16 @@ def _no_control() -> Table:
 _OF_AXIS: Final = ("name", "is_rotary", "carries", "endless", "limits")
 
 
+def _data_of_axes(axes: tuple[Axis, ...]) -> object:
+    return to_data([axis for axis in axes if not axis.is_missing], only=_OF_AXIS)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Machine:
-    """A five-axis machine: three linear axes and two rotary axes, FROM THE WORKPIECE TO THE TOOL.
+    """A machine: three linear axes and two rotary axes, FROM THE WORKPIECE TO THE TOOL.
+
+    A rotary axis that it has not is there as well, as a missing one (``machines.missing_axes``), so that all machines
+    have five columns. What people and programs see goes by ``own_axes`` and ``own_rotary``.
 
     spindle_direction   unit vector from tool tip to holder, all axes at zero
     spindle_point       gauge point (where tool lengths begin), mm, all axes at zero
@@ -213,7 +221,7 @@ class Machine:
 
     key: str
     name: str
-    axes: Annotated[tuple[Axis, ...], Figure(take=partial(to_data, only=_OF_AXIS))]
+    axes: Annotated[tuple[Axis, ...], Figure(take=_data_of_axes)]
     spindle_direction: Vector = (0.0, 0.0, 1.0)
     spindle_point: Vector = (0.0, 0.0, 0.0)
     workpiece_zero: Vector | None = None
@@ -244,7 +252,7 @@ class Machine:
         """
         homes = (
             MarkedValue(f"{axis.name} home_{'deg' if axis.is_rotary else 'mm'}", "", 0, "", "axis")
-            for axis in self.axes
+            for axis in self.own_axes
             if not axis.home_is_stated
         )
         gauge = MarkedValue("spindle gauge_point_mm", "", 0, "", "spindle")
@@ -257,6 +265,21 @@ class Machine:
     def names(self) -> tuple[str, ...]:
         """Names of the axes, in chain order: the columns of every joint array."""
         return tuple(axis.name for axis in self.axes)
+
+    @property
+    def own_axes(self) -> tuple[Axis, ...]:
+        """The axes that the machine has, in chain order."""
+        return tuple(axis for axis in self.axes if not axis.is_missing)
+
+    @property
+    def own_columns(self) -> tuple[tuple[int, Axis], ...]:
+        """The axes that the machine has, each with its column."""
+        return tuple((k, axis) for k, axis in enumerate(self.axes) if not axis.is_missing)
+
+    @property
+    def own_rotary(self) -> tuple[int, ...]:
+        """Columns of the rotary axes that the machine has, in chain order: none, one or two."""
+        return tuple(k for k in self.rotary if not self.axes[k].is_missing)
 
     @property
     def rotary(self) -> tuple[int, int]:
@@ -274,6 +297,8 @@ class Machine:
     def primary(self) -> int:
         """Column of the primary rotary axis (the fourth): the one on the base, or of the head on mixed machines."""
         first, second = self.rotary
+        if self.axes[second].is_missing:
+            return first
         both_in_table = self.axes[second].mount is Mount.PART
         mixed = self.axes[first].mount is Mount.PART and self.axes[second].mount is Mount.TOOL
         return second if both_in_table or mixed else first
@@ -285,9 +310,19 @@ class Machine:
         return first if self.primary == second else second
 
     @property
+    def last_rotary(self) -> int:
+        """Which of ``rotary`` (0 or 1) is the one farther from the workpiece, of those that the machine has."""
+        return max(len(self.own_rotary) - 1, 0)
+
+    @property
+    def rotary_words(self) -> tuple[int, ...]:
+        """Columns of the rotary axes that it has, in the order of their words: the primary one first."""
+        return tuple(k for k in (self.primary, self.secondary) if not self.axes[k].is_missing)
+
+    @property
     def has_rotary_head(self) -> bool:
         """Whether a rotary axis carries the tool, so that the direction of the tool length changes with it."""
-        return any(axis.is_rotary and axis.mount is Mount.TOOL for axis in self.axes)
+        return any(axis.is_rotary and axis.mount is Mount.TOOL for axis in self.own_axes)
 
     @property
     def has_single_values(self) -> bool:

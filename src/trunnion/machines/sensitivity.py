@@ -117,7 +117,7 @@ class NumberDerivative:
 def idle_numbers(machine: Machine) -> tuple[GeometryNumber, ...]:
     """Return the numbers that move nothing: a point along its own axis, a direction turned about itself."""
     found = []
-    for axis in machine.axes:
+    for axis in machine.own_axes:
         for component, letter in enumerate(_LETTERS):
             if not _matters(np.array(axis.direction), component):
                 kinds = [NumberKind.POINT, NumberKind.DIRECTION] if axis.is_rotary else [NumberKind.DIRECTION]
@@ -138,7 +138,7 @@ def derivatives(machine: Machine, joints: Floats, tool_length: float | None = No
     chain = kinematic_chain(machine, tool_length)
     length = (machine.tool_length or 0.0) if tool_length is None else tool_length
     frames = _Frames(chain, joints)
-    for joint, axis in enumerate(machine.axes):
+    for joint, axis in machine.own_columns:
         if axis.is_rotary:
             yield from _of_rotary(axis.name, joint, frames)
         else:

@@ -76,7 +76,7 @@ def unmeasured_values(
     if joints is None or not found:
         return tuple(found)
     rows = joints[np.isfinite(joints).all(axis=1)]
-    moving = {axis.name for k, axis in enumerate(machine.axes) if len(rows) and np.ptp(rows[:, k]) > 0.0}
+    moving = {axis.name for k, axis in machine.own_columns if len(rows) and np.ptp(rows[:, k]) > 0.0}
     geometry = set(_geometry_that_matters(machine, rows)) if any(each.key in _NUMBERS for each in found) else set()
     return tuple(value for value in found if _matters(value, moving, geometry))
 

@@ -120,17 +120,14 @@ class Program:
         """Return the suffix of the templates for a motion; empty if the control cannot work in its mode."""
         return self.control.template_suffix(motion.mode, self.settings)
 
-    def rotary_words(self) -> tuple[RotaryWord, RotaryWord]:
-        """Return the words of the primary and of the secondary rotary axis."""
-        machine = self.machine
-        primary, secondary = machine.primary, machine.secondary
-        return (
-            RotaryWord("primary", primary, machine.rotary.index(primary)),
-            RotaryWord("secondary", secondary, machine.rotary.index(secondary)),
-        )
+    def rotary_words(self) -> tuple[RotaryWord, ...]:
+        """Return the words of the primary and of the secondary rotary axis, as far as the machine has them."""
+        columns, keys = self.machine.rotary_words, ("primary", "secondary")
+        rotary = self.machine.rotary
+        return tuple(RotaryWord(key, k, rotary.index(k)) for key, k in zip(keys, columns, strict=False))
 
     def block_words(self, motion: Motion) -> tuple[Word, ...]:
         """Return the words of a motion's blocks in their order."""
-        axes = self.machine.axes
-        primary, secondary = (axes[word.axis].name for word in self.rotary_words())
+        machine = self.machine
+        primary, secondary = machine.names[machine.primary], machine.names[machine.secondary]
         return tuple(self.control.block_words(primary, secondary, motion.three_axis))

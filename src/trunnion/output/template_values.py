@@ -3,6 +3,7 @@
 A value is None where there is none: a template leaves out the line that names it.
 """
 
+import math
 import secrets
 from collections.abc import Mapping
 from itertools import accumulate
@@ -123,6 +124,8 @@ class TemplateValues:
         plane = None if motion.plane is None else motion.plane.matrix()
         values |= self._used
         values |= self._family.template_values(self._in_program_unit(values), plane)
+        if not control.tcp:  # a machine without TCP has no words that switch it
+            values |= dict.fromkeys(("tcp_on", "tcp_off"))
         if not values.get("tolerance"):
             given = operation.intol is not None and operation.outtol is not None
             values["tolerance"] = (
@@ -151,7 +154,7 @@ class TemplateValues:
     def _rotary_values(self, motion: Motion) -> dict[str, Value]:
         """Name and word of both rotary axes at the first row."""
         machine, words = self._program.machine, {word.key: word for word in self._program.block_words(motion)}
-        values: dict[str, Value] = {}
+        values: dict[str, Value] = dict.fromkeys(("primary", "primary_word", "secondary", "secondary_word"))
         for key, axis, column in self._program.rotary_words():
             word = words[key]
             count = int(rotary_counts(machine, axis, motion.rotary[:1, column], word.format.decimals)[0])
@@ -185,7 +188,7 @@ class TemplateValues:
 
         ``noted``: it says where it counts no rapids.
         """
-        is_left_out = noted and any(axis.rapid is None for axis in self._program.machine.axes)
+        is_left_out = noted and any(axis.rapid is None for axis in self._program.machine.own_axes)
         left_out = self._family.escape_comment(_RAPIDS_LEFT_OUT) if is_left_out else ""
         if self._program.time_token:
             return PrintedText(self._program.time_token + str(number).zfill(TIME_TOKEN_DIGITS) + left_out)
@@ -202,9 +205,10 @@ class TemplateValues:
         names = "plane_x", "plane_y", "plane_z"
         if motion.plane is None:
             return dict.fromkeys((*names, "plane_side", "plane_sign"))
-        moves, column = motion.operation.moves, self._program.machine.rotary[1]
+        last = self._program.machine.last_rotary
+        moves, column = motion.operation.moves, self._program.machine.rotary[last]
         solutions = inverse(self._program.machine, moves.tip[:1], moves.axis[:1]).joints[:, 0, column]
-        distance = solutions - motion.rotary[0, 1]
+        distance = solutions - motion.rotary[0, last]
         distance -= 360.0 * np.rint(distance / 360.0)
         lower = np.argmin(np.abs(distance)) == np.argmin(solutions)
         sign = self._solution_sign(motion)
@@ -214,7 +218,9 @@ class TemplateValues:
     def _solution_sign(self, motion: Motion) -> str:
         """Return the sign of the rotary axis farther from the workpiece, as its position is printed."""
         number_format = self._program.control.number_formats(motion.three_axis)["angle"]
-        angle, axis = number_format.rounded(float(motion.rotary[0, 1])), self._program.machine.rotary[1]
+        last = self._program.machine.last_rotary
+        angle, axis = number_format.rounded(float(motion.rotary[0, last])), self._program.machine.rotary[last]
+        angle -= 360.0 * math.ceil((angle - 180.0) / 360.0)  # as controls find it: within a turn
         has_travel_above = self._program.machine.axes[axis].high >= 10.0**-number_format.decimals
         return "+" if angle > 0.0 or (angle == 0.0 and has_travel_above) else "-"
 
@@ -222,13 +228,12 @@ class TemplateValues:
         """Return the home position, for templates that move in machine coordinates."""
         machine = self._program.machine
         linear = {axis.name: self._printed_home(axis) for axis in machine.axes if not axis.is_rotary}
-        return {
-            **{f"home_{name.lower()}": linear.get(name) for name in "XYZ"},
-            "primary_returns": machine.axes[machine.primary].name,
-            "secondary_returns": machine.axes[machine.secondary].name,
-            "primary_home": machine.axes[machine.primary].home,
-            "secondary_home": machine.axes[machine.secondary].home,
-        }
+        rotary: dict[str, Value] = {}
+        for key, column in (("primary", machine.primary), ("secondary", machine.secondary)):
+            axis = machine.axes[column]
+            rotary[f"{key}_returns"] = None if axis.is_missing else axis.name
+            rotary[f"{key}_home"] = None if axis.is_missing else axis.home
+        return {**{f"home_{name.lower()}": linear.get(name) for name in "XYZ"}, **rotary}
 
     def _printed_home(self, axis: Axis) -> float:
         """Return the home of a slide as a program can say it: in inches a last digit off it, but never beyond

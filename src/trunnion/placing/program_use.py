@@ -37,8 +37,8 @@ def other_positions(found: Placement, run: Run) -> ProgramUse | None:
     ends = list(zip(turned.min(axis=0).tolist(), turned.max(axis=0).tolist(), strict=True))
     if all(_is_within(low, high, use) for (low, high), use in zip(ends, found.best.rotary, strict=True)):
         return None
-    names = [machine.names[k] for k in machine.rotary]
-    rotary = tuple((name, low, high) for name, (low, high) in zip(names, ends, strict=True))
+    names = [machine.names[k] for k in machine.own_rotary]
+    rotary = tuple((name, low, high) for name, (low, high) in zip(names, ends, strict=False))
     return ProgramUse(rotary, _slide_margin(run, rows))
 
 

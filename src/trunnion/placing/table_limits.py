@@ -73,7 +73,7 @@ class ClampingArea:
         facts = machine.facts
         if facts.table_size_mm is None and facts.table_diameter_mm is None:
             return None
-        rotary = [machine.axes[k] for k in machine.rotary]
+        rotary = [machine.axes[k] for k in machine.own_rotary]
         under = [axis for axis in rotary if axis.mount is Mount.PART and is_upright(axis)]
         if facts.table_centre_mm is not None or not under:
             return ClampingArea(facts.table_centre_mm or (0.0, 0.0), facts.table_size_mm, facts.table_diameter_mm)

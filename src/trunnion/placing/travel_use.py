@@ -83,7 +83,7 @@ def rounded_zero(cuts: CutSet, zero: Floats) -> Floats:
 def rotary_uses(machine: Machine, positions: Floats) -> tuple[RotaryUse, ...]:
     """How the rotary axes use their travel in positions (n, 2), degrees."""
     uses = []
-    for k, column in enumerate(machine.rotary):
+    for k, column in enumerate(machine.own_rotary):
         axis, least, greatest = machine.axes[column], float(positions[:, k].min()), float(positions[:, k].max())
         margin = min(least - axis.low, axis.high - greatest)
         uses.append(RotaryUse(axis.name, least, greatest, margin, axis.low, axis.high))

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import distinct
+from trunnion.arrays import Floats, distinct
 from trunnion.errors import Problem, warning
 from trunnion.machines import Machine, inverse, spindle_speed_fault
 from trunnion.messages import Wording, phrase
@@ -30,7 +30,7 @@ _NAMED: Final = 5
 def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]:
     """Yield a warning if speeds of rotary axes are to be limited, and the definition does not state them."""
     machine, options = request.machine, request.options
-    names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
+    names = [machine.axes[column].name for column in machine.own_rotary if machine.axes[column].rapid is None]
     if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
         yield warning(file, 0, Wording("PLN420", "definition_no_rapid", machine=machine.key, names=tuple(names)))
 
@@ -158,21 +158,7 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
     machine, remedy, moves = request.machine, request.frame_remedy, operation.moves
     line, code = int(moves.line[row]), int(poses.outcome[row])
     if code == OUT_OF_REACH:
-        i, j, k = moves.axis[row]
-        return Problem(
-            file,
-            line,
-            Wording(
-                "PLN110",
-                "no_rotary_position",
-                machine=machine.key,
-                i=i,
-                j=j,
-                k=k,
-                degrees_out_of_reach=degrees_out_of_reach(machine, moves.axis[row]),
-                remedy=remedy,
-            ),
-        )
+        return Problem(file, line, _unreachable(machine, moves.axis[row], remedy))
     if code == BLOCKED:
         return Problem(
             file,
@@ -190,6 +176,18 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
     variant = "in_hole" if is_hole else "on_arc" if moves.kind[row] == Kind.ARC else "at_point"
     violation = limit_violation_text(machine, column, value)
     return Problem(file, line, Wording("PLN120", variant, violation=violation, cure=cure, remedy=remedy))
+
+
+def _unreachable(machine: Machine, axis: Floats, remedy: object) -> Wording:
+    """Return what is to be said of a tool axis (3,) that no rotary position gives."""
+    i, j, k = axis
+    own = [machine.names[column] for column in machine.own_rotary]
+    variant = ("needs_rotary_axis", "needs_second_axis", "no_rotary_position")[len(own)]
+    said = {"rotary": own[0]} if len(own) == 1 else {}
+    degrees = degrees_out_of_reach(machine, axis)
+    return Wording(
+        "PLN110", variant, machine=machine.key, i=i, j=j, k=k, degrees_out_of_reach=degrees, remedy=remedy, **said
+    )
 
 
 def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row: int) -> Wording | str:

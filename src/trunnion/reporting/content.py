@@ -121,7 +121,7 @@ def collect_content(
         operations=tuple(operation_usage(run, each, seconds, moving, cutting) for each in verification.operations),
         decisions=tuple(map(_clean_decision, decisions)),
         tip=tuple(tip_extent(run, k, cutting, arcs) for k in range(3)),
-        axes=tuple(axis_extent(run, k, axis, arcs) for k, axis in enumerate(machine.axes)),
+        axes=tuple(axis_extent(run, k, axis, arcs) for k, axis in machine.own_columns),
         units=tuple(_UNITS[inches] for inches in dict.fromkeys(run.state.inches.values.tolist())),
         simulation=simulation,
         recorded=recorded_content(verification),

@@ -83,7 +83,7 @@ def listing(
         kind = run.kind[rows].astype(np.int64)
         speed = np.where(state.spindle.part(first, end) == 0, 0.0, state.rpm.part(first, end))
         feed = np.where(kind == Kind.RAPID, np.nan, state.feed.part(first, end))
-        joints = [*_rotary(run), *(run.machine.linear if slides else ())]
+        joints = [*run.machine.rotary_words, *(run.machine.linear if slides else ())]
         number = np.where(numbers[rows] < 0, np.nan, numbers[rows])
         columns = [Column(lines[rows].astype(np.float64), 0, _LINE_WIDTH), Column(number, 0, _NUMBER_WIDTH)]
         is_known = known.part(first, end)
@@ -100,25 +100,23 @@ def listing(
     yield b"".join(_mark(text) for row, text in marks if row >= len(run))
 
 
-def _rotary(run: Run) -> tuple[int, int]:
-    """Columns of the primary and of the secondary rotary axis."""
-    return run.machine.primary, run.machine.secondary
-
-
 def _head(run: Run, program: str, slides: bool, made_by: str) -> Iterator[str]:
     machine = run.machine
-    names = [_word(machine.axes[k].name) for k in _rotary(run)]
+    names = [_word(machine.axes[k].name) for k in machine.rotary_words]
     yield f"LISTING OF {program}: what the control does with it, one line a motion"
     yield f"Machine: {_word(machine.name)}" + (f". Made by {made_by}" if made_by else "")
     yield "X Y Z: tip of the tool in the workpiece, mm, at the end of the motion, with and without TCP"
-    yield f"{names[0]}: primary rotary axis, {names[1]}: secondary rotary axis, as the machine shows them, degrees"
+    if names:
+        ranks = zip(names, ("primary", "secondary"), strict=False)
+        rotary = ", ".join(f"{name}: {rank} rotary axis" for name, rank in ranks)
+        yield f"{rotary}, as the machine shows them, degrees"
     if slides:
         placed = all(machine.is_placed(k) for k in machine.linear)
         shown = "as the machine shows them" if placed else "counted from the workpiece zero"
         yield f"SX SY SZ: linear axes, mm, {shown}"
     yield "machine: the block states positions of the machine; the tip is known again when X, Y and Z are programmed"
     yield "S: rev/min, 0 where the spindle stands. F: as programmed; a rapid has none"
-    widths = [_LINE_WIDTH, _NUMBER_WIDTH, *[_WIDTH] * (8 if slides else 5), _SPEED_WIDTH, _WIDTH]
+    widths = [_LINE_WIDTH, _NUMBER_WIDTH, *[_WIDTH] * (3 + len(names) + (3 if slides else 0)), _SPEED_WIDTH, _WIDTH]
     heads = ["LINE", "N", "X", "Y", "Z", *names, *(("SX", "SY", "SZ") if slides else ()), "S", "F"]
     texts = (head.rjust(width) for head, width in zip(heads, widths, strict=True))
     yield "".join(texts)[2:] + "         MOTION"

@@ -108,7 +108,7 @@ def _values(verification: Verification, seconds: Floats) -> dict[str, SingleFloa
     """Return the columns of axis positions, rotary speeds and feeds; ``seconds`` (n,), 0 where not known."""
     run, machine = verification.run, verification.machine
     values = {f"axis{k}": _as_float32(run.joints[:, k], run.start[k]) for k in range(len(machine.axes))}
-    for k in machine.rotary:
+    for k in machine.own_rotary:
         turned = np.abs(np.diff(run.joints[:, k], prepend=run.start[k]))
         with np.errstate(divide="ignore", invalid="ignore"):
             speed = np.where(seconds > 0.0, turned / seconds * 60.0, 0.0)
@@ -136,9 +136,9 @@ def _lines(verification: Verification) -> dict[str, Lines]:
 def _plots(verification: Verification) -> Iterator[Plot]:
     """Yield the plots: positions of the axes, rotary speeds, tip feed."""
     machine = verification.machine
-    for k in (*machine.linear, *machine.rotary):
+    for k in (*machine.linear, *machine.own_rotary):
         yield _position_plot(verification, k)
-    yield Plot("Rotary speeds", "°/min", tuple(_speed_curve(machine.axes[k], k) for k in machine.rotary), step=True)
+    yield Plot("Rotary speeds", "°/min", tuple(_speed_curve(machine.axes[k], k) for k in machine.own_rotary), step=True)
     # The slides alone cannot move the tip faster than all of them together at rapid, along the diagonal.
     diagonal = math.hypot(*(machine.axes[k].rapid or np.inf for k in machine.linear))
     limits = (round(diagonal),) if math.isfinite(diagonal) else ()

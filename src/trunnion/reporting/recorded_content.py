@@ -141,7 +141,7 @@ def _extents(verification: Verification, found: RecordedComparison) -> Iterator[
     # The block of a position that was not compared is the one before it.
     last = np.maximum.accumulate(np.where(found.row >= 0, np.arange(len(found.row)), -1))
     rows = np.where(last >= 0, found.row[last], 0)
-    for k in () if found.joints is None else (*machine.linear, *machine.rotary):
+    for k in () if found.joints is None else (*machine.linear, *machine.own_rotary):
         assert found.joints is not None
         yield extent_of(run, machine.axes[k], found.joints[:, k], rows, zero_known=is_zero_known(run, k))
     if (speeds := found.recording.values.get(SPINDLE)) is not None:
@@ -155,13 +155,13 @@ def _curves(verification: Verification, found: RecordedComparison) -> Iterator[t
     """Yield recorded columns by their names, with the column of the machine's axis: slides first, or the tip."""
     machine, joints = verification.machine, found.joints
     if joints is not None:
-        for k in (*machine.linear, *machine.rotary):
+        for k in (*machine.linear, *machine.own_rotary):
             yield machine.names[k], (k, joints[:, k])
         return
     for name, column in zip(TIP, found.tips.T, strict=True):
         yield name, (None, column)
     columns = {name.casefold(): column for name, column in found.recording.values.items()}
-    for k in machine.rotary:
+    for k in machine.own_rotary:
         yield machine.names[k], (k, columns[machine.names[k].casefold()])
 
 
@@ -169,7 +169,7 @@ def _rates(verification: Verification, found: RecordedComparison) -> Iterator[tu
     """Yield recorded velocities and accelerations of the axes by their columns, each with its plot."""
     columns = {name.casefold(): column for name, column in found.recording.values.items()}
     machine = verification.machine
-    for k in (*machine.linear, *machine.rotary):
+    for k in (*machine.linear, *machine.own_rotary):
         name, unit = clean(machine.names[k]), "°" if machine.axes[k].is_rotary else "mm"
         for what, per in RATES.items():
             column = columns.get(f"{machine.names[k]}_{what}".casefold())

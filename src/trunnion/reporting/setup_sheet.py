@@ -74,14 +74,14 @@ class CutRanges:
     start   its first block
     """
 
-    rotary: tuple[Range | None, Range | None]
+    rotary: tuple[Range | None, ...]
     rpm: Range | None
     sense: str
     feed: Range | None
     feed_per_rev: Range | None
     coolant: str
     start: BlockReference | None
-    stands: Annotated[tuple[tuple[float, ...], tuple[float, ...]], NOT_DATA] = ((), ())
+    stands: Annotated[tuple[tuple[float, ...], ...], NOT_DATA] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +166,7 @@ class SetupSheet:
     zero: tuple[float, float, float] | None
     tool_length: float | None
     system: Annotated[str, Figure("coordinates")]
-    rotary: Annotated[tuple[str, str], NOT_DATA]
+    rotary: Annotated[tuple[str, ...], NOT_DATA]
     tools: tuple[SheetTool, ...]
     operations: Annotated[tuple[SheetOperation, ...], NOT_DATA]
     start: tuple[str, ...]
@@ -196,17 +196,17 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
     # Coolant that the operation before has left on is on in this one.
     before = [event for event in run.events[:first] if event.kind == "coolant"][-1:]
     coolants = [str(event.value) for event in (*before, *run.events[first:end]) if event.kind == "coolant"]
-    axes = run.machine.primary, run.machine.secondary
+    axes = run.machine.rotary_words
     stands = [_stands(run, operation.first + np.flatnonzero(cuts), k) for k in axes]
     return CutRanges(
-        rotary=(_turns(run, joints, axes[0], cuts, stands[0]), _turns(run, joints, axes[1], cuts, stands[1])),
+        rotary=tuple(_turns(run, joints, k, cuts, each) for k, each in zip(axes, stands, strict=True)),
         rpm=_range(run.rpm[rows], cuts & (run.spindle[rows] != 0)),
         sense=", ".join(senses),
         feed=_range(feed, cuts & (mode == 94)),
         feed_per_rev=_range(feed, cuts & (mode == 95)),
         coolant=clean(", ".join(dict.fromkeys(each for each in coolants if each != "off"))),
         start=_start(run, operation),
-        stands=(stands[0], stands[1]),
+        stands=tuple(stands),
     )
 
 

@@ -41,7 +41,7 @@ def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
     """Slides that cannot bring the tool's tip to all corners of the stock while the rotary axes stand at zero."""
     corners = np.array(list(product(*zip(stock.low, stock.high, strict=True))))
     joints = slide_positions(machine, corners, np.zeros((len(corners), 2)))
-    for k, axis in enumerate(machine.axes):
+    for k, axis in machine.own_columns:
         if axis.is_rotary or not axis.has_limits or not machine.is_placed(k):
             continue
         low, high = float(joints[:, k].min()), float(joints[:, k].max())

@@ -25,7 +25,7 @@ _ROTARY: Final = ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.V
 
 def axis_names(run: Run) -> tuple[str, ...]:
     """Return the names of the axes of ``AXIS_WORDS``."""
-    return ("X", "Y", "Z", *(run.machine.axes[column].name for column in run.machine.rotary))
+    return ("X", "Y", "Z", *(run.machine.axes[column].name for column in run.machine.own_rotary))
 
 
 def axes_from_home(run: Run) -> Wording | None:
@@ -42,5 +42,5 @@ def _first_cut(run: Run) -> Wording | None:
     if not found:
         return None
     stated = int(np.bitwise_or.reduce(run.programmed[: found[0] + 1]))
-    names = [name for name, words in zip(axis_names(run), AXIS_WORDS, strict=True) if not stated & int(words)]
+    names = [name for name, words in zip(axis_names(run), AXIS_WORDS, strict=False) if not stated & int(words)]
     return phrase("axes_at_home", axes=tuple(sorted(names)), block=block_name_of(run, found[0])) if names else None

@@ -37,7 +37,7 @@ class Basis:
 
 def _without(machine: Machine, is_stated: Callable[[Axis], bool]) -> tuple[str, ...]:
     """Return the axes of which something is not stated."""
-    return tuple(axis.name for axis in machine.axes if not is_stated(axis))
+    return tuple(axis.name for axis in machine.own_axes if not is_stated(axis))
 
 
 def _no_zero(run: Run) -> Wording | None:
@@ -59,14 +59,14 @@ def _no_travel(run: Run) -> Wording | None:
 
 def _no_rapid(run: Run) -> Wording | None:
     names = _without(run.machine, lambda axis: axis.rapid is not None)
-    if len(names) == len(run.machine.axes):
+    if len(names) == len(run.machine.own_axes):
         return phrase("no_rapid")
     return phrase("no_rapid_of", axes=names) if names else None
 
 
 def _no_acceleration(run: Run) -> Wording | None:
     names = _without(run.machine, lambda axis: axis.acceleration is not None)
-    if len(names) == len(run.machine.axes):
+    if len(names) == len(run.machine.own_axes):
         return phrase("no_acceleration")
     return phrase("no_acceleration_of", axes=names) if names else None
 

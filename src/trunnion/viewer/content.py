@@ -268,7 +268,7 @@ def machine_scene(machine: Machine) -> dict[str, Any]:
                 "placed": machine.is_placed(k),
                 "displayLow": None if math.isnan(axis.display_low) else axis.display_low,
             }
-            for k, axis in enumerate(machine.axes)
+            for k, axis in machine.own_columns
         ],
     }
 

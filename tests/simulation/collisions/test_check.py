@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from tests.support.locations import TESTS
+from tests.support.machines import five_axis_machines
 from trunnion.errors import InputError, Problem
-from trunnion.machines import Machine, link_transforms, load_machine, shipped_machines
+from trunnion.machines import Machine, link_transforms, load_machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
 from trunnion.simulation.collisions import (
@@ -173,7 +174,7 @@ def test_a_gauge_point_that_is_not_stated_is_told() -> None:
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("name", shipped_machines())
+@pytest.mark.parametrize("name", five_axis_machines())
 def test_the_bodies_of_shipped_machines_are_free_at_home(name: str) -> None:
     machine = replace(load_machine(name), spindle_point_is_stated=True)
     bodies = machine_bodies(machine)

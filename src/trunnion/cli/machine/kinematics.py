@@ -36,10 +36,13 @@ def kinematics_blocks(found: Kinematics) -> Iterator[Block]:
     yield Heading(2, _said("forward"))
     yield Equations(found.forward)
     yield Heading(2, _said("inverse"))
+    if not found.solutions:
+        yield _paragraph(_said("tool_axis_stays"))
     for number, solution in enumerate(found.solutions, 1):
         yield Heading(3, _solution_text(number, solution))
         yield Equations(solution.rotary)
-    yield _paragraph(_said("whole_turns"))
+    if found.solutions:
+        yield _paragraph(_said("whole_turns"))
     yield Heading(3, _said("linear"))
     yield Equations(found.linear)
     yield from _programs(found)
@@ -82,6 +85,8 @@ def _frames(found: Kinematics) -> Iterator[Block]:
 
 def _programs(found: Kinematics) -> Iterator[Block]:
     turning = " ".join(sorted(axis.name for axis in found.axes if axis.is_rotary))
+    if not turning:
+        return
     yield Heading(2, _said("programs"))
     yield _paragraph(_said("with_tcp", rotary=turning))
     if not found.without_tcp:
@@ -93,14 +98,15 @@ def _programs(found: Kinematics) -> Iterator[Block]:
 
 def _poles(found: Kinematics) -> Iterator[Block]:
     yield Heading(2, _said("poles"))
-    lines = list(map(_pole_text, found.poles)) or [_said("no_pole")]
+    lines = list(map(_pole_text, found.poles)) or ([_said("no_pole")] if found.solutions else [])
     reach = found.reach
     near, far = (number_text(angle, 4) for angle in (reach.nearest, reach.farthest))
     if (near, far) == ("0", "180"):
         lines.append(_said("reaches_all"))
     else:
         lines.append(_said("reaches", near=near, far=far, direction=_vector_text(reach.about)))
-    lines.append(_said("solutions_meet"))
+    if len(found.solutions) == 2:
+        lines.append(_said("solutions_meet"))
     if found.dependent is not None:
         lines.append(_said("dependent"))
     yield Paragraph(tuple(lines))
@@ -120,6 +126,8 @@ def _pole_text(pole: Pole) -> str:
 
 def _solution_text(number: int, solution: Solution) -> str:
     where = solution.where
+    if where is None:
+        return _said("only_solution")
     low, high = number_text(where.low, 4), number_text(where.high, 4)
     within = tuple(
         Wording("kinematics", "range", low=number_text(first, 4), high=number_text(last, 4))

@@ -44,10 +44,12 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
     yield ""
     for jog in jogs.axes:
         yield from _axis_lines(jog)
-    yield from ("", line("where_tool_points"), line("axes_at_zero"))
-    yield from _pose_lines(jogs)
-    yield ""
-    yield from _solution_lines(jogs)
+    if jogs.poses:
+        yield from ("", line("where_tool_points"), line("axes_at_zero"))
+        yield from _pose_lines(jogs)
+    if jogs.same_axis:
+        yield ""
+        yield from _solution_lines(jogs)
     yield from ("", line("texts_of_control", control=found.control))
     for text in found.texts:
         yield f"  {text.name}"
@@ -148,10 +150,12 @@ def machine_list(machines: Sequence[Machine]) -> Iterator[str]:
 
 
 def _cells(machine: Machine) -> tuple[str, ...]:
-    rotary = [axis for axis in machine.axes if axis.is_rotary]
-    slides = [axis for axis in machine.axes if not axis.is_rotary]
+    rotary = [axis for axis in machine.own_axes if axis.is_rotary]
+    slides = [axis for axis in machine.own_axes if not axis.is_rotary]
     # As they are spoken of: from the tool to the workpiece where both are told.
     kind = "/".join(line(_PART[axis.mount]) for axis in reversed(rotary))
+    if len(rotary) < 2:
+        kind = line("kind_four_axis", mount=kind) if rotary else line("kind_three_axis")
     return (
         machine.key,
         " ".join(in_words(word_said(axis)) for axis in order_of_axes(machine)),

@@ -63,6 +63,11 @@ class TextTemplate(Template):
         """Whether its lines are not those of the program: they are not."""
         return True
 
+    def without_secondary(self) -> Template:
+        """Return the template for a machine with one rotary axis, as ``Template`` does."""
+        text = "\n".join(Template.without_secondary(self).lines)
+        return text_template(self.name, text, self.file, self.line)[0]
+
     @property
     def record_values(self) -> frozenset[str]:
         """The values of tools and operations that it asks for."""

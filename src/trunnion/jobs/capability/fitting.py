@@ -372,7 +372,7 @@ def _rotary_margins(machine: Machine, posted: PostResult) -> tuple[AxisMargin, .
     if run is None or not (run.kind != Kind.RAPID).any():
         return ()
     margins = []
-    for column in machine.rotary:
+    for column in machine.own_rotary:
         axis, values = machine.axes[column], run.joints[run.kind != Kind.RAPID, column]
         room = math.inf if axis.endless else min(float(values.min()) - axis.low, axis.high - float(values.max()))
         margins.append(AxisMargin(axis.name, "deg", room))

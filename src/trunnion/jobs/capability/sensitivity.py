@@ -126,7 +126,7 @@ def _zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> d
 
 
 def _stated_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> dict[str, float] | None:
-    names = [machine.names[k] for k in machine.rotary]
+    names = [machine.names[k] for k in machine.own_rotary]
     home = {name: machine.axis(name).home for name in names}
     if zero_at is None or zero_at == "none":
         return None

@@ -173,7 +173,7 @@ def _converted_program(
     source = as_machine(machine)
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     source, settings = with_stated(source, given["settings"], given["assume"])
-    control = load_control(source.control)
+    control = load_control(source.control).with_rotary_axes(len(source.own_rotary))
     place = stated_place(program)
     job = prepare(target_machine, settings, force=given["force"])
     if place.clamping is not None:

@@ -89,7 +89,7 @@ def _left_open(machine: Machine) -> Iterator[Wording]:
         yield phrase("zero_not_stated")
     yield phrase("lengths_not_known")
     if not machine.spindle_point_is_stated:
-        heads = [axis.name for axis in machine.axes if axis.is_rotary and axis.mount == "tool"]
+        heads = [axis.name for axis in machine.own_axes if axis.is_rotary and axis.mount == "tool"]
         yield phrase("gauge_point_open_with_head", axis=heads[-1]) if heads else phrase("gauge_point_open")
     checks: tuple[tuple[str, Callable[[Axis], bool]], ...] = (
         ("travel_open", lambda axis: not axis.endless and not axis.has_limits),
@@ -98,7 +98,7 @@ def _left_open(machine: Machine) -> Iterator[Wording]:
         ("acceleration_open", lambda axis: axis.acceleration is None),
     )
     for variant, is_open in checks:
-        if names := tuple(axis.name for axis in machine.axes if is_open(axis)):
+        if names := tuple(axis.name for axis in machine.own_axes if is_open(axis)):
             yield phrase(variant, axes=names)
     if machine.spindle_max_rpm is None:
         yield phrase("highest_speed_open")

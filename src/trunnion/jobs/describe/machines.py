@@ -84,7 +84,7 @@ def describe_machine(machine: MachineLike) -> MachineDescription:
     'the table turns 10° clockwise seen from +X; its -Y edge goes to +Z, its +Y edge to -Z'
     """
     found = as_machine(machine)
-    control = load_control(found.control)
+    control = load_control(found.control).with_rotary_axes(len(found.own_rotary))
     table = load_table(machine, machine_library(), kind="machine") if isinstance(machine, str | Path) else None
     assumed = assumptions(found, table)
     remarks = tuple(motions_in_branches(control))

@@ -164,7 +164,7 @@ def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Proble
 
 def unlimited_axes(machine: Machine) -> list[Problem]:
     """Return a warning for a machine of which not all is known that limits feeds."""
-    names = [axis.name for axis in machine.axes if axis.acceleration is None]
+    names = [axis.name for axis in machine.own_axes if axis.acceleration is None]
     if not names:
         return []
     return [warning(machine.key, 0, Wording("PLN425", "accelerations_not_stated", axes=tuple(names)))]

@@ -187,7 +187,7 @@ def prepare(
 
     Raises ``InputError`` with every setting that the control does not have or that makes no sense.
     """
-    control = load_control(machine.control)
+    control = load_control(machine.control).with_rotary_axes(len(machine.own_rotary))
     check_reading(machine)
     texts = as_texts(settings)
     control = in_units(control, texts.get("units") or control.settings.get("units", MM))

@@ -32,11 +32,16 @@ Kernels do not raise; they return status bits:
                       axis between slides, such as a quill at 90 degrees
 """
 
-from trunnion.machines.inverse.parameters import FlatArray, KinematicParameters, Pair, kinematic_parameters
+from trunnion.machines.inverse.parameters import (
+    REACH_TOLERANCE,
+    FlatArray,
+    KinematicParameters,
+    Pair,
+    kinematic_parameters,
+)
 from trunnion.machines.inverse.rotary import (
     POLE,
     POLE_TOLERANCE,
-    REACH_TOLERANCE,
     UNREACHABLE,
     branch_angles,
     solve_tilt,

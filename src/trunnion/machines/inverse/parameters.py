@@ -12,6 +12,15 @@ from trunnion.machines.machine import Machine
 #: Least volume of the box that the unit vectors of the three slides span; below it they count as dependent.
 MIN_SLIDE_VOLUME: Final = 1e-9
 
+#: How far a tool axis may lie outside the reach of the rotary axes and still count as on its edge, rad, and how near to
+#: the first one it counts as parallel to it. CL files print seven decimals, which moves a vector by up to 0.9e-7; on a
+#: tool of 100 mm that is 0.01 um.
+REACH_TOLERANCE: Final = 1e-7
+
+#: The same with fewer than two rotary axes, where every tool axis is on the edge: half a thousandth of a degree, half
+#: the last digit of a rotary word of three decimals. On a tool of 100 mm it is 0.9 um.
+FEWER_AXES_TOLERANCE: Final = 8.7e-6
+
 FlatArray: TypeAlias = tuple[float, ...]
 Pair: TypeAlias = Annotated[FlatArray, 2]
 Triple: TypeAlias = Annotated[FlatArray, 3]
@@ -28,6 +37,8 @@ class KinematicParameters(NamedTuple):
     basis_1          (9,) float  rows: two unit vectors square to the first rotary axis, the first towards w2; w1
     basis_2          (9,) float  rows: two unit vectors square to the second rotary axis, the first towards w1; w2
     sense_1          float       -1 where the third row of ``basis_1`` points against growing values
+    is_second        float       0 where the second rotary axis is missing, else 1
+    tolerance        float       how far a tool axis may lie beside what the axes reach, or beside the pole, rad
     half_difference  (2,) float  cosine and sine of (G - B)/2
     half_sum         (2,) float  cosine and sine of (G + B)/2
     phase            (2,) float  cosine and sine of the angle about w2 from w1 to the spindle
@@ -44,6 +55,8 @@ class KinematicParameters(NamedTuple):
     basis_1: Matrix
     basis_2: Matrix
     sense_1: float
+    is_second: float
+    tolerance: float
     half_difference: Pair
     half_sum: Pair
     phase: Pair
@@ -82,13 +95,15 @@ def kinematic_parameters(machine: Machine, tool_length: float | None = None) -> 
         basis_1=_flatten(basis_1),
         basis_2=_flatten(basis_2),
         sense_1=sense,
+        is_second=0.0 if machine.axes[second].is_missing else 1.0,
+        tolerance=REACH_TOLERANCE if len(machine.own_rotary) == 2 else FEWER_AXES_TOLERANCE,
         half_difference=_cos_sin(0.5 * (_angle(w1, w2) - _angle(w2, s))),
         half_sum=_cos_sin(0.5 * (_angle(w1, w2) + _angle(w2, s))),
-        phase=_flatten(spindle[:2] / math.hypot(spindle[0], spindle[1])),
+        phase=(1.0, 0.0) if machine.axes[second].is_missing else _flatten(spindle[:2] / math.hypot(*spindle[:2])),
         spindle=_flatten(spindle),
         slides=_flatten(directions[list(slides)]),
         slides_inverse=_flatten(_reciprocal(directions[list(slides)])),
-        rotary_below=tuple(int(first < k) + int(second < k) for k in slides),
+        rotary_below=tuple(sum(turning < k for turning in machine.own_rotary) for k in slides),
         first_point=_flatten(points[first] - zero),
         second_offset=_flatten(points[second] - points[first]),
         tool_offset=_flatten(tip - points[second]),
@@ -117,6 +132,8 @@ def _angle(a: Floats, b: Floats) -> float:
 def _basis(line: Floats, other: Floats) -> Floats:
     """Rows: the unit vector square to ``line`` towards ``other``, the one that makes it right-handed, the line."""
     across = _cross(_cross(line, other), line)
+    if not np.linalg.norm(across) > 1e-9:  # parallel, as a missing axis may be: any direction will do
+        across = _cross(line, np.eye(3)[int(np.argmin(np.abs(line)))])
     across = across / np.linalg.norm(across)
     return np.array([across, _cross(line, across), line])
 

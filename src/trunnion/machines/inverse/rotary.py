@@ -4,18 +4,14 @@ import math
 from typing import Final
 
 from trunnion.jit import inner
-from trunnion.machines.inverse.parameters import KinematicParameters
+from trunnion.machines.inverse.parameters import REACH_TOLERANCE, KinematicParameters
 
 #: Status bits of kernels.
 UNREACHABLE: Final = 1
 POLE: Final = 2
 
-#: How far a tool axis may lie outside the reach of the rotary axes and still count as on its edge, rad. CL files print
-#: seven decimals, which moves a vector by up to 0.9e-7; on a tool of 100 mm that is 0.01 um.
-REACH_TOLERANCE: Final = 1e-7
-
-#: How near to the first rotary axis a tool axis counts as exactly parallel to it, rad, for the same reason.
-POLE_TOLERANCE: Final = 1e-7
+#: How near to the first rotary axis a tool axis counts as exactly parallel to it, rad.
+POLE_TOLERANCE: Final = REACH_TOLERANCE
 
 
 @inner
@@ -36,7 +32,7 @@ def solve_tilt(kinematics: KinematicParameters, i: float, j: float, k: float) ->
     length = math.sqrt(across * across + u2 * u2)
     if not 0.0 < length < math.inf:  # written so that NaN is out of reach as well
         return UNREACHABLE, math.nan, math.nan, math.nan, math.nan
-    pole = across < POLE_TOLERANCE * length
+    pole = across < kinematics.tolerance * length
     if pole:
         across, length = 0.0, abs(u2)
     if u2 >= 0.0:
@@ -49,8 +45,10 @@ def solve_tilt(kinematics: KinematicParameters, i: float, j: float, k: float) ->
     between = sin_a * kinematics.half_difference[0] - cos_a * kinematics.half_difference[1]  # sin(S - G)
     half = sin_a * kinematics.half_sum[0] + cos_a * kinematics.half_sum[1]  # sin S
     off = cos_a * kinematics.half_sum[1] - sin_a * kinematics.half_sum[0]  # sin(S - A)
-    if min(min(lean, between), min(half, off)) < -0.5 * REACH_TOLERANCE:
+    if min(min(lean, between), min(half, off)) < -0.5 * kinematics.tolerance:
         return UNREACHABLE, math.nan, math.nan, math.nan, math.nan
+    if kinematics.is_second == 0.0:  # the third corner of the triangle lies on w2: the tool turns about itself
+        return POLE if pole else 0, u0, u1, 1.0, 0.0
     num, den = max(lean, 0.0) * max(between, 0.0), max(half, 0.0) * max(off, 0.0)
     return POLE if pole else 0, u0, u1, (den - num) / (den + num), 2.0 * math.sqrt(num * den) / (den + num)
 

@@ -89,7 +89,7 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
             )
         )
     problems += _rounding_problems(program, motion, cuts, value, rule, number_format)
-    heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
+    heads = [axis.name for axis in program.machine.own_axes if axis.is_rotary and axis.mount is Mount.TOOL]
     if rule == FEED_AT_TIP and heads:
         problems.append(
             Problem(

@@ -55,7 +55,7 @@ class ChosenPoses:
 def describe_pose(machine: Machine, pose: Floats) -> str:
     """Rotary values (2,), degrees, with their letters; the axis next to the workpiece comes first."""
     return " ".join(
-        f"{machine.axes[c].name} {value:.3f}" for c, value in zip(machine.rotary, pose.tolist(), strict=True)
+        f"{machine.axes[c].name} {value:.3f}" for c, value in zip(machine.own_rotary, pose.tolist(), strict=False)
     )
 
 

@@ -83,7 +83,7 @@ def choose_states(machine: Machine, moves: Moves, keep_slide_limits: bool) -> Co
     contact = contact_of(moves)
     starts = np.flatnonzero((contact != NO_CONTACT) & (np.append(NO_CONTACT, contact[:-1]) == NO_CONTACT))
     branches = states_of(machine).table[state[starts] & STATE_BITS, 0]
-    if any(a.preferred_sign for a in machine.axes) or not len(starts) or branches.min() == branches.max():
+    if any(a.preferred_sign for a in machine.own_axes) or not len(starts) or branches.min() == branches.max():
         return state
     ones = int(branches.sum())
     is_tie = 2 * ones == len(branches)
@@ -135,7 +135,7 @@ def choose_poses_in_one_pass(machine: Machine, moves: Moves, keep_slide_limits: 
     ``BRANCH_CHANGE_COST`` unless that branch is open and the pole near. In the cut all other changes are rewinds. So
     every change makes the choice more expensive.
     """
-    if any(axis.preferred_sign for axis in machine.axes) or not branches_travel_alike(machine):
+    if any(axis.preferred_sign for axis in machine.own_axes) or not branches_travel_alike(machine):
         return None
     kinematics, space = kinematic_parameters(machine), search_space_of(machine, keep_slide_limits)
     poses = PlannedPoses.empty(np.empty(len(moves), np.uint8))

@@ -163,7 +163,7 @@ def nearness_to_limits(
         if space.turn_ranges[2 * r + 1]:
             low, high = space.low[kinematics.columns[r]], space.high[kinematics.columns[r]]
             value = angle[CURRENT, states[t, 0], r] + 360.0 * states[t, 1 + r]
-            if high - low < np.inf:
+            if 0.0 < high - low < np.inf:
                 nearness += min(abs(2.0 * value - low - high) / (high - low), 1.0)
     return nearness
 

@@ -100,7 +100,7 @@ class Rewind:
 
     def seconds(self, machine: Machine, feed: float, reengage_feed_share: float) -> float:
         """How long it takes at a feed in mm/min, without acceleration; rapids count where the machine states theirs."""
-        slides = [axis.rapid for axis in machine.axes if not axis.is_rotary and axis.rapid]
+        slides = [axis.rapid for axis in machine.own_axes if not axis.is_rotary and axis.rapid]
         minutes = at = 0.0
         for row in self.rows(reengage_feed_share):
             speed = row.share * feed if row.kind is Kind.LINEAR else min(slides, default=math.inf)

@@ -82,7 +82,7 @@ class ArcMap:
         cosines = np.abs(ways.T @ ways - np.diag(lengths**2))
         if abs(lengths[0] - lengths[1]) > SAME_SCALE * lengths[0] or cosines.max() > SAME_SCALE * lengths.max() ** 2:
             return None
-        normal = np.cross(ways[:, 0], ways[:, 1]) * (float(arc.normal.sum()) / lengths[0] ** 2)
+        normal = cross(ways[:, 0], ways[:, 1]) * (float(arc.normal.sum()) / lengths[0] ** 2)
         return self.linear @ arc.centre + self.shift, normal, arc.radius * float(lengths[0])
 
 
@@ -98,7 +98,7 @@ def gap_of_turn(start: Floats, arc: Arc) -> float:
     gap = math.hypot(a - rise * x, b - rise * y, c - rise * z)
     if arc.turns or not SAME_POINT < gap < _GAP or arc.radius < _GAPS * gap:
         return 0.0
-    turns_on = float(np.cross(start - arc.centre, chord) @ arc.normal) > 0.0
+    turns_on = float(cross(start - arc.centre, chord) @ arc.normal) > 0.0
     return 0.0 if turns_on and abs(rise) < _GAPS * gap else gap
 
 
@@ -166,11 +166,11 @@ def by_angle_and_centre(start: Floats, centre: Floats, angle: float, plane: int,
 def by_points(start: Floats, through: Floats, end: Floats, turns: int) -> Arc:
     """Return the arc through an intermediate point, in any plane."""
     a, b = through - start, end - start
-    normal = np.cross(a, b)
+    normal = cross(a, b)
     size = float(normal @ normal)
     if size < SAME_POINT * max(float(a @ a), float(b @ b), SAME_POINT):
         raise ArcError(Wording("NC320", "three_points_circle_lie_line"))
-    centre = start + (np.cross(normal, a) * float(b @ b) + np.cross(b, normal) * float(a @ a)) / (2.0 * size)
+    centre = start + (cross(normal, a) * float(b @ b) + cross(b, normal) * float(a @ a)) / (2.0 * size)
     radius = float(np.linalg.norm(start - centre))
     if not SAME_POINT < radius < MAX_RADIUS:
         raise ArcError(Wording("NC320", "three_points_circle_make_no"))
@@ -185,7 +185,7 @@ def tangential(start: Floats, end: Floats, heading: Floats | None, plane: int, t
     length = float(np.linalg.norm(way))
     if length < SAME_POINT or float(np.linalg.norm(chord)) < SAME_POINT:
         raise ArcError(Wording("NC320", "no_direction_circle_could_go"))
-    left = np.cross(normal_of(plane, False), way / length)
+    left = cross(normal_of(plane, False), way / length)
     across = float(left @ chord)
     if abs(across) < SAME_POINT * float(chord @ chord):
         return None
@@ -193,6 +193,12 @@ def tangential(start: Floats, end: Floats, heading: Floats | None, plane: int, t
     if float(np.abs(centre).max()) > MAX_RADIUS:
         return None
     return by_centre(start, end, centre, plane, across < 0.0, turns)
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Return the vector product of two vectors (3,), bit for bit as ``np.cross``, which is slow for a single pair."""
+    (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
+    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
 
 
 def _chord(start: Floats, end: Floats, plane: int) -> Floats:
@@ -203,7 +209,7 @@ def _chord(start: Floats, end: Floats, plane: int) -> Floats:
 
 def _from_chord(start: Floats, end: Floats, chord: Floats, height: float, normal: Floats, turns: int) -> Arc:
     """Return the arc whose centre is at a height over the middle of the chord, to its left about the normal."""
-    left = np.cross(normal, chord)
+    left = cross(normal, chord)
     centre = start + 0.5 * chord + height * left / np.linalg.norm(left)
     middle = np.asarray(centre)
     radius = float(np.linalg.norm(start - middle))

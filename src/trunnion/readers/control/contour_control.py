@@ -67,6 +67,7 @@ class CornerWord(NamedTuple):
     left_out    the control makes none where an element leaves the working plane, or none follows; else it stops there
     least_turn  radians: a contour that turns by less has no corner
     modal       it is in force until it is switched off, so that nobody has asked for a corner here
+    of_lines    it stands between two lines alone, tangent or not
     """
 
     word: str
@@ -78,6 +79,7 @@ class CornerWord(NamedTuple):
     least_turn: float = 0.0
     left_out: bool = False
     modal: bool = False
+    of_lines: bool = False
 
 
 class ContourControl(SetupControl):
@@ -308,6 +310,8 @@ class ContourControl(SetupControl):
         compensation = self.modal.compensation
         if compensation.current != compensation.part(self.row - 1, self.row)[0]:
             raise ContourError(Wording("NC324", "compensation_changes"))
+        if word.of_lines:
+            contours.check_chamfered(before, behind)
         angle = contours.corner_turn(before, behind, plane)
         if not angle or abs(angle) < word.least_turn:
             return None

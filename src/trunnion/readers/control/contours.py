@@ -54,7 +54,7 @@ class Element:
 
     def direction(self, at: Floats) -> Floats:
         """Return its direction at one of its points, a unit vector; that of a helix without its rise."""
-        way = self.end - self.start if self.arc is None else np.cross(self.arc.normal, at - self.arc.centre)
+        way = self.end - self.start if self.arc is None else arcs.cross(self.arc.normal, at - self.arc.centre)
         length = float(np.linalg.norm(way))
         if length < arcs.SAME_POINT:
             raise ContourError(Wording("NC324", "no_direction"))
@@ -65,7 +65,7 @@ class Element:
         if self.arc is None:
             return float((last - first) @ self.direction(first))
         a, b, normal = first - self.arc.centre, last - self.arc.centre, self.arc.normal
-        return self.arc.radius * math.atan2(float(np.cross(a, b) @ normal), float(a @ b))
+        return self.arc.radius * math.atan2(float(arcs.cross(a, b) @ normal), float(a @ b))
 
     @property
     def length(self) -> float:
@@ -88,14 +88,19 @@ class Corner(NamedTuple):
 def corner_turn(before: Element, behind: Element, plane: int) -> float:
     """Return the angle by which the contour turns at a corner, radians, positive to the left; 0 where it goes on."""
     first, second = before.direction(before.end), behind.direction(behind.start)
-    angle = math.atan2(float(np.cross(first, second)[plane]), float(first @ second))
+    angle = math.atan2(float(arcs.cross(first, second)[plane]), float(first @ second))
     return 0.0 if abs(angle) < SAME_DIRECTION else angle
+
+
+def check_chamfered(before: Element, behind: Element) -> None:
+    """Raise ``ContourError`` if one of the two elements of a chamfer is a circle, tangent or not."""
+    if before.arc is not None or behind.arc is not None:
+        raise ContourError(Wording("NC324", "chamfer_beside_circle"))
 
 
 def chamfer(before: Element, behind: Element, side: float) -> Corner:
     """Return the chamfer that cuts ``side`` off both lines."""
-    if before.arc is not None or behind.arc is not None:
-        raise ContourError(Wording("NC324", "chamfer_beside_circle"))
+    check_chamfered(before, behind)
     for element in (before, behind):
         _check_length(side, element)
     corner = before.end
@@ -144,7 +149,7 @@ def _centres(before: Element, behind: Element, radius: float, left: Floats) -> l
     circles = [element.arc for element in moved if element.arc is not None]
     if not circles:
         first, second = (element.direction(element.start) for element in lines)
-        across = np.cross(left, second)
+        across = arcs.cross(left, second)
         along = float((lines[1].start - lines[0].start) @ across) / float(first @ across)
         return [lines[0].start + first * along]
     if lines:
@@ -157,7 +162,7 @@ def _centres(before: Element, behind: Element, radius: float, left: Floats) -> l
             return []
         square = distance**2 + circles[0].radius ** 2 - circles[1].radius ** 2
         middle = circles[0].centre + between * (square / (2.0 * distance**2))
-        out = np.cross(left, between / distance)
+        out = arcs.cross(left, between / distance)
     rest = circles[0].radius ** 2 - float(np.sum((middle - circles[0].centre) ** 2))
     if rest < 0.0:
         return []
@@ -167,7 +172,7 @@ def _centres(before: Element, behind: Element, radius: float, left: Floats) -> l
 def _offset(element: Element, distance: float, left: Floats) -> Element:
     """Return the element moved to the side to which ``left`` turns its direction."""
     if element.arc is None:
-        shift = distance * np.cross(left, element.direction(element.start))
+        shift = distance * arcs.cross(left, element.direction(element.start))
         return Element(element.start + shift, element.end + shift)
     arc = element.arc
     radius = arc.radius - distance * math.copysign(1.0, float(arc.normal @ left))
@@ -193,7 +198,7 @@ def lead_line(contour_point: Floats, direction: Floats, length: float) -> Lead:
 
 def lead_arc(contour_point: Floats, direction: Floats, radius: float, angle: float, normal: Floats) -> Lead:
     """Return the way off a contour point on an arc of an angle, degrees, that turns about ``normal``."""
-    centre = contour_point + radius * np.cross(normal, direction)
+    centre = contour_point + radius * arcs.cross(normal, direction)
     point = centre + _turned(contour_point - centre, normal, math.radians(angle))
     return Lead(point, arcs.Arc(point, centre, normal, radius))
 
@@ -205,11 +210,11 @@ def lead_to(contour_point: Floats, direction: Floats, radius: float, target: Flo
     """
     way = target - contour_point
     way[plane] = 0.0
-    across = float(np.cross(direction, way)[plane])
+    across = float(arcs.cross(direction, way)[plane])
     if abs(across) < arcs.SAME_POINT:
         raise ContourError(Wording("NC324", "straight_ahead"))
     normal = arcs.normal_of(plane, clockwise=across < 0.0)
-    centre = contour_point + radius * np.cross(normal, direction)
+    centre = contour_point + radius * arcs.cross(normal, direction)
     out = target - centre
     out[plane] = 0.0
     distance = float(np.linalg.norm(out))
@@ -223,4 +228,4 @@ def lead_to(contour_point: Floats, direction: Floats, radius: float, target: Flo
 
 def _turned(vector: Floats, normal: Floats, angle: float) -> Floats:
     """Return a vector of a plane turned about its normal, radians."""
-    return np.asarray(vector * math.cos(angle) + np.cross(normal, vector) * math.sin(angle))
+    return np.asarray(vector * math.cos(angle) + arcs.cross(normal, vector) * math.sin(angle))

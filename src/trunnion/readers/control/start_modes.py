@@ -56,7 +56,7 @@ _OF_TCP: Final = {
 def with_tcp_off(machine: Machine, mode: str, modes: Mapping[str, str]) -> Mapping[str, str]:
     """Return start modes, and TCP off under a name, by the word that a control with TCP has for it."""
     control = control_of(machine)
-    if not control.flag("tcp", True):
+    if not machine.own_rotary or not control.flag("tcp", True):
         return modes
     return {**modes, mode: control.table("settings").text(_KEY_OF_TCP_OFF)}
 

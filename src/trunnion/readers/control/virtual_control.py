@@ -54,7 +54,7 @@ class VirtualControl(ContourControl, ABC):
     shortest       how endless rotary axes reach plain words: True by the shorter way, False not so, None as the control
     compensation_style    how it compensates in a plane, a key of ``compensation.styles.STYLES``; 0: not known
     compensates_in_space  radius compensation is across the tool, by a word for it (G41.2, CUT3DC)
-    rotary_names   letters of the rotary axes
+    rotary_names   letters of the rotary axes that the machine has
     """
 
     compensation_style = UNKNOWN_STYLE
@@ -68,7 +68,7 @@ class VirtualControl(ContourControl, ABC):
         self.compensates_in_space = False
         # Where the last drilling cycle was judged: it is called for each hole of a block.
         self._drilled_line = 0
-        self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.rotary)
+        self.rotary_names = tuple(machine.axes[column].name.upper() for column in machine.own_rotary)
 
     def _fault_at(self, fault: Wording, line: int) -> None:
         """Note an error at a line of the program, or at the present one for 0."""
@@ -176,6 +176,7 @@ class VirtualControl(ContourControl, ABC):
                 continue
             value, mode = axes[name]
             rule = self.turn_rule(which, mode)
+            self._judge_turn(which, value, mode)
             if self._is_incremental(mode):
                 self.resolve_rows()
                 value += float(self.current_joints[self.machine.rotary[which]])
@@ -184,6 +185,18 @@ class VirtualControl(ContourControl, ABC):
             rules |= rule << (4 * which)
             bits |= int(ProgrammedWord.FIRST) << which
         return RotaryTarget((values[0], values[1]), rules, bits)
+
+    def _judge_turn(self, which: int, value: float, mode: PositionMode) -> None:
+        """Note a position beyond one turn of an endless axis that a word takes by a way of its own: an alarm."""
+        axis = self.machine.axes[self.machine.rotary[which]]
+        if not axis.endless or mode not in (PositionMode.SHORTEST, PositionMode.POSITIVE, PositionMode.NEGATIVE):
+            return
+        start = -180.0 if axis.output is AngleOutput.SYMMETRIC else 0.0
+        if not start <= value < start + 360.0:
+            self.note(
+                Wording("NC215", "beyond_turn", axis=axis.name, value=value, start=start, end=start + 360.0),
+                Severity.ERROR,
+            )
 
     def rotary_position(self, values: Sequence[float]) -> RotaryTarget:
         """Return the target of a positioning of both rotary axes that the control itself makes."""

@@ -50,7 +50,7 @@ _SILENT: Final = frozenset(
 )  # fmt: skip
 
 #: Effects that no path shows and no CL file asks for: programs are told of them.
-_ALTERING: Final = frozenset({"door opens", "clamp opens", "brake on", "brake off"})
+_ALTERING: Final = frozenset({"brake on", "brake off"})
 
 #: Kinds of effects of which one excludes another.
 _ONE_MODE: Final = ("spindle", "tcp", "door", "clamp", "brake")
@@ -324,6 +324,9 @@ class KnownWords:
                 )
             case _ if effect == HOME:
                 control.go_home()
+            case "door opens" | "clamp opens":
+                what = "door_opens" if kind == "door" else "clamp_opens"
+                control.note_wait(Wording("NC226", what, word=word.word), word.word)
             case _ if effect in _ALTERING:
                 control.add_event("unasked", word.word)
             case _ if kind == "spindle":

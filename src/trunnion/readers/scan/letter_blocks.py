@@ -9,6 +9,7 @@ What letters and signs mean in a language is in the table made by ``letter_table
 anything is written: a line that turns out not to be plain has no effect.
 """
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -62,7 +63,7 @@ _C: Final = 67
 
 
 def letter_table(
-    rotary: tuple[str, str],
+    rotary: Sequence[str],
     *,
     comment: str = "",
     assign: str = "",
@@ -72,7 +73,7 @@ def letter_table(
 ) -> Codes:
     """Return the meaning of each byte to ``read_blocks``, (256,) uint8.
 
-    rotary      names of the two rotary axes
+    rotary      names of the rotary axes, two at most
     comment     the sign of a comment that extends to the end of the line
     assign      a sign that may stand between the letter of an axis and its number
     gaps        whether blanks may stand there

@@ -87,7 +87,7 @@ def device_model(program: TwinProgram, further: Iterable[Item] = ()) -> ET.Eleme
 def _axes(components: ET.Element, machine: Machine) -> None:
     axes = ET.SubElement(components, "Axes", id="axes", name="axes")
     listed = ET.SubElement(axes, "Components")
-    for column, axis in enumerate(machine.axes):
+    for column, axis in machine.own_columns:
         kind, name = ("Rotary" if axis.is_rotary else "Linear"), axis.name
         element = ET.SubElement(listed, kind, id=f"axis_{name}", name=name)
         measured = ("ANGLE", "DEGREE") if axis.is_rotary else ("POSITION", "MILLIMETER")

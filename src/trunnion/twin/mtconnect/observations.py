@@ -37,7 +37,9 @@ class Observations(ABC):
     def __init__(self, program: TwinProgram) -> None:
         self.program = program
         self.values = {"avail": "AVAILABLE", "estop": "ARMED", "mode": "AUTOMATIC", "main_program": program.name}
-        self.conditions = dict.fromkeys(("system", *(f"{axis.name}_travel" for axis in program.machine.axes)), _NORMAL)
+        self.conditions = dict.fromkeys(
+            ("system", *(f"{axis.name}_travel" for axis in program.machine.own_axes)), _NORMAL
+        )
         self.last = datetime.fromtimestamp(0.0, UTC)
 
     @abstractmethod
@@ -120,7 +122,7 @@ def _values_at(program: TwinProgram, snapshots: Snapshots, k: int) -> dict[str, 
     }
     if UNAVAILABLE in values["tip"]:
         values["tip"] = UNAVAILABLE
-    for column, axis in enumerate(machine.axes):
+    for column, axis in machine.own_columns:
         shown = displayed(machine, column, snapshots.joints[k : k + 1, column])
         values[f"{axis.name}_actual"] = shown_number(float(shown[0]))
         values[f"{axis.name}_state"] = "TRAVEL" if snapshots.moving[k, column] else "STOPPED"

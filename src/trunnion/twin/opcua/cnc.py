@@ -148,7 +148,7 @@ async def _channel(space: Space, program: TwinProgram) -> None:
 
 async def _tool_centre_point(space: Space, machine: Machine, path: str) -> None:
     """Positions of the tip: without frames of the program, base and workpiece coordinates are the same here."""
-    rotary = {machine.names[k]: display_range(machine, k) for k in machine.rotary}
+    rotary = {machine.names[k]: display_range(machine, k) for k in machine.own_rotary}
     for frame in ("PosTcpWcs", "PosTcpBcs"):
         for name in FRAME:
             await _position(space, f"{path}.{frame}{name}", f"tip.{name}", "MMT", -1e5, 1e5)

@@ -41,7 +41,7 @@ _SPEED_REACHED: Final = 0.5
 def machine_axes(machine: Machine) -> tuple[tuple[str, int], ...]:
     """Names and columns of the axes as a control numbers them: slides by their letters, then rotary axes."""
     slides = sorted((machine.names[k], k) for k in machine.linear)
-    rotary = sorted((machine.names[k], k) for k in machine.rotary)
+    rotary = sorted((machine.names[k], k) for k in machine.own_rotary)
     return (*slides, *rotary)
 
 

@@ -43,6 +43,7 @@ class _HomeMotions:
     named           (k, 5) bool  the axes that their blocks name
     at_home         (k, 5) bool  the axes that machine coordinates have put at home at their ends, endless ones whatever
                                  their turn
+    of_builder      (k,) bool    they count from a place that only the machine knows (M92, G30)
     """
 
     rows: Ints
@@ -50,6 +51,7 @@ class _HomeMotions:
     before: Floats
     named: Flags
     at_home: Flags
+    of_builder: Flags
 
     @staticmethod
     def of(run: Run) -> "_HomeMotions":
@@ -57,13 +59,30 @@ class _HomeMotions:
         rows = rows[~np.isin(rows, [event.before_row for event in run.events if event.kind == "retract"])]
         joints, before = run.positions(rows).joints, run.positions(rows - 1).joints
         off = joints - run.machine.home
-        for k, axis in enumerate(run.machine.axes):
+        for k, axis in run.machine.own_columns:
             if axis.endless:
                 off[:, k] -= 360.0 * np.rint(off[:, k] / 360.0)
         words = np.array(_axis_words(run.machine))
         named = (run.programmed[rows][:, None] & words) != 0
         at_home = (np.abs(off) <= home_tolerance(run, rows)) & MachinePositions.of(run).at(rows)
-        return _HomeMotions(rows, joints, before, named, at_home)
+        of_builder = _counts_from_builder(run, rows)
+        return _HomeMotions(rows, joints, before, named, at_home & ~(named & of_builder[:, None]), of_builder)
+
+    def only_of_builder(self, machine: Machine) -> bool:
+        """Whether all that move linear axes count from a place that only the machine knows, and there are such."""
+        linear = self.named[:, list(machine.linear)].any(axis=1)
+        return bool(linear.any() and self.of_builder[linear].all())
+
+
+def _counts_from_builder(run: Run, rows: Ints) -> Flags:
+    """Which rows of the machine frame go to places that only the machine knows, (k,) bool."""
+    noted = [each for each in run.diagnostics if each.wording.variant in _PLACES_OF_BUILDER]
+    blocks = {(each.file, each.line) for each in noted}
+    if not blocks:
+        return np.zeros(len(rows), np.bool_)
+    return np.array(
+        [(run.files[run.state.file[row]], int(run.lines[row])) in blocks for row in rows.tolist()], np.bool_
+    )
 
 
 def _axis_words(machine: Machine) -> list[int]:
@@ -136,7 +155,7 @@ def _check_motions(context: Context) -> Check:
     motions = _HomeMotions.of(context.run)
     if not len(motions.rows):
         return _check_retracts_by_word(context)
-    if not (motions.at_home & motions.named).any():
+    if not (motions.at_home & motions.named).any() or motions.only_of_builder(context.run.machine):
         return _check_other_positions(context)
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
     stated = context.run.machine.home_at
@@ -160,7 +179,8 @@ def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
         elsewhere = np.flatnonzero(motions.named[k] & ~motions.at_home[k]).tolist()
         away = [machine.axes[c].name for c in elsewhere if c not in free]
         if away:
-            yield context.place(row, 0.0, Wording("home", "elsewhere", axes=tuple(away)))
+            said = "place_of_builder" if motions.of_builder[k] else "elsewhere"
+            yield context.place(row, 0.0, Wording("home", said, axes=tuple(away)))
         if run.kind[row] != Kind.RAPID:
             yield context.place(row, 0.0, Wording("home", "at_feed"))
         not_retracted = k == 0 or row != motions.rows[k - 1] + 1

@@ -86,7 +86,7 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
     whole travel; with a zero also with their limits for a tool without length, which they must not leave either.
     """
     machine, added = context.run.machine, added_lengths(context.run)
-    for k, axis in enumerate(machine.axes):
+    for k, axis in machine.own_columns:
         low, high = motion.extremes[k].tolist()
         if low > high or not axis.has_limits:
             continue
@@ -141,14 +141,14 @@ def _machine_margins(context: Context) -> Iterator[_Margin]:
 
 def check_speed(context: Context, motion: AxisMotion) -> Check:
     """Shares of rapid speed; the control slows down where more than all of it is needed, so this never fails."""
-    if not any(axis.rapid for axis in context.run.machine.axes):
+    if not any(axis.rapid for axis in context.run.machine.own_axes):
         return Check("speed", True, None)
     return replace(_check_shares(context, motion.speed, "speed"), coverage=coverage_of(context, motion.speed_seen))
 
 
 def check_acceleration(context: Context, motion: AxisMotion) -> Check:
     """Shares of acceleration; the control slows down where more than all of it is needed, so this never fails."""
-    if not any(axis.acceleration for axis in context.run.machine.axes):
+    if not any(axis.acceleration for axis in context.run.machine.own_axes):
         return Check("acceleration", True, None)
     check = _check_shares(context, motion.acceleration, "acceleration")
     return replace(check, coverage=coverage_of(context, motion.change_seen))

@@ -16,7 +16,7 @@ from trunnion.verification.checks.approach_order import not_in_turn
 from trunnion.verification.checks.compensation_faults import compensated_askew, compensated_blind
 from trunnion.verification.checks.lengths_at_part import lengths_lost_at_part
 from trunnion.verification.checks.low_rapids import low_rapids, rapids_at_unknown_heights, skipped_retracts
-from trunnion.verification.checks.smoothing_faults import wide_tolerances
+from trunnion.verification.checks.smoothing_faults import unset_tolerances, wide_tolerances
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.event_words import event_word
 from trunnion.verification.kinematics.unknown_cuts import cuts_from_unknown_places
@@ -64,6 +64,8 @@ def check_modal_state(context: Context) -> Check:
     good = "good_feed" if isinstance(context, ComparedContext) else "good_feed_and_spindle"
     check = check_from_places("modal", places, Wording("modal", good))
     unasked = tuple(phrase("unasked_plane", word=word, block=context.block_name(row)) for row, word in planes)
+    if isinstance(context, ComparedContext):
+        unasked += tuple(unset_tolerances(context))
     check = replace(check, missing=unasked)
     if not len(rows := rapids_at_unknown_heights(context)):
         return check

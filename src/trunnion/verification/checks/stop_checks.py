@@ -32,6 +32,9 @@ _TOLERANCE: Final = 1.01e-3
 #: The M word that changes the workpiece, unless a definition declares another meaning.
 _CHANGES_PART: Final = "M60"
 
+#: Words that open the door, or what holds the part, as readers note them.
+_OPENS: Final = frozenset({"door_opens", "clamp_opens"})
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _FoundStop:
@@ -160,18 +163,22 @@ def _changes_in_holes(context: ComparedContext) -> Iterator[Place]:
 
 
 def _waits_at_part(context: ComparedContext) -> Iterator[Place]:
-    """Yield words at which the machine waits for a signal or stops with an alarm while the tool is at the part."""
+    """Yield words at which the machine waits for a signal, stops with an alarm, or opens its door or what holds the
+    part, while the tool is at the part.
+    """
     run, matching = context.run, context.matching
-    noted = {(each.file, each.line) for each in run.diagnostics if each.code == "NC226"}
+    noted = {(each.file, each.line): each.wording.variant for each in run.diagnostics if each.code == "NC226"}
     away = None
     for place, event in enumerate(run.events if noted else ()):
-        if event.kind != "unasked" or (run.files[event.file], event.line) not in noted:
+        variant = noted.get((run.files[event.file], event.line))
+        if event.kind != "unasked" or variant is None:
             continue
         pair = matching.nc.count_before(event.before_row)
         away = away or stands_away(context)
         within = _is_within_operation(context, pair)
         if (within or not away(place)) and not _follows_insert(context, min(pair, len(matching.cl) - 1)):
-            yield context.place_of_event(event, 0.0, Wording("stops", "waits_at_part", word=str(event.value)))
+            said = "opens_at_part" if variant in _OPENS else "waits_at_part"
+            yield context.place_of_event(event, 0.0, Wording("stops", said, word=str(event.value)))
 
 
 def _unknown_words_at_work(context: ComparedContext) -> Iterator[Place]:

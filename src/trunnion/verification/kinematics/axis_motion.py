@@ -148,7 +148,7 @@ class AxisMotionAnalyzer:
         self._add_lines(first, positions, tcp, machine_frame)
         if self._timer is not None:
             self._timer.add(first, positions, feeds)
-        for k, axis in enumerate(run.machine.axes):
+        for k, axis in run.machine.own_columns:
             if axis.rapid is not None:
                 motion.speed[k].add(first, shares[0, k])
             if axis.acceleration is not None:

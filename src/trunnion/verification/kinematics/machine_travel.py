@@ -72,7 +72,7 @@ def _beyond(run: Run, rows: Ints) -> Iterator[MachinePosition]:
     machine = run.machine
     joints, near_home = run.positions(rows).joints, home_tolerance(run, rows)
     known, steps = MachinePositions.of(run).known, run.state.machine_steps.at(rows)
-    for column, axis in enumerate(machine.axes):
+    for column, axis in machine.own_columns:
         values = joints[:, column]
         named = np.ones(len(rows), np.bool_)
         if not axis.is_rotary:

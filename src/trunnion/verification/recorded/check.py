@@ -180,7 +180,7 @@ def _used(compared: RecordedComparison, machine: Machine) -> Iterator[tuple[int,
     """Axes with limits: column, lowest and highest recorded value."""
     if compared.joints is None:
         return
-    for k, axis in enumerate(machine.axes):
+    for k, axis in machine.own_columns:
         values = compared.joints[:, k][np.isfinite(compared.joints[:, k])]
         if axis.has_limits and len(values):
             yield k, float(values.min()), float(values.max())

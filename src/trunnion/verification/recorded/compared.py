@@ -156,7 +156,7 @@ def _poses(machine: Machine, recording: Recording) -> tuple[Floats | None, Float
         raise InputError(Problem(recording.file, 1, Wording("TWN321", "two_columns_axis", doubled=doubled[0].upper())))
     missing = [machine.names[k] for k, name in enumerate(names) if name not in columns]
     has_tip = all(name in columns for name in TIP)
-    if missing and not (has_tip and all(names[k] in columns for k in machine.rotary)):
+    if missing and not (has_tip and all(names[k] in columns for k in machine.own_rotary)):
         raise InputError(
             Problem(
                 recording.file,
@@ -182,7 +182,7 @@ def _poses(machine: Machine, recording: Recording) -> tuple[Floats | None, Float
         )
     joints = np.zeros((len(recording), 5))
     for k, name in enumerate(names):
-        if name in columns and (not missing or k in machine.rotary):
+        if name in columns and (not missing or k in machine.own_rotary):
             joints[:, k] = columns[name]
     tip, axis = forward(machine, joints)
     if not missing:

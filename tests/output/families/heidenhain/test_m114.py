@@ -10,8 +10,9 @@ import pytest
 
 import trunnion
 from tests.support.locations import GOLDEN
+from tests.support.machines import five_axis_machines
 from tests.support.reading import close
-from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.readers import run_program
 
@@ -106,7 +107,7 @@ def test_points_between_that_only_one_of_two_programs_has_are_another_path(way: 
     assert "its tip leaves its line by" in str(found.first) or way == "off"
 
 
-@pytest.mark.parametrize("name", shipped_machines())
+@pytest.mark.parametrize("name", five_axis_machines())
 def test_each_shape_of_machine_goes_where_it_goes_without_tcp(name: str, tmp_path: Path) -> None:
     """Heads and tables, with the control of an iTNC 530: axis positions row by row, and the proof of both."""
     ours = tmp_path / "ours.toml"

@@ -19,6 +19,22 @@ def test_a_dwell_with_a_point_is_in_seconds(words: str, seconds: float, tmp_path
     assert [event.value for event in run.events if event.kind == "dwell"] == [pytest.approx(seconds)]
 
 
+@pytest.mark.parametrize("words", ["J2", "J2.", "J9"])
+def test_a_thread_may_be_left_faster_than_it_was_cut(words: str, tmp_path: Path) -> None:
+    plain, faster = (read(tmp_path, f"G98 G84 X1. Z-5. R2. {more} F500.") for more in ("", words))
+    assert faster.errors == plain.errors == ()
+    assert faster.joints.tolist() == plain.joints.tolist()
+
+
+def test_a_tool_change_switches_the_spindle_and_coolant_off(tmp_path: Path) -> None:
+    run = read(tmp_path, "M3\nM8\nT6 M6\nG0 X1.")
+    assert [(each.kind, each.value) for each in run.events if each.kind in ("spindle", "coolant")][-2:] == [
+        ("spindle", "off"),
+        ("coolant", "off"),
+    ]
+    assert read(tmp_path, "M3\nM8\nT6 M6\nG0 X1.", "matsuura_mx330").spindle[-1] == 1
+
+
 @pytest.mark.parametrize("machine", ["haas_umc750", "matsuura_mx330"])
 def test_an_end_of_scaling_and_h0_on_the_way_home_change_no_path(machine: str, tmp_path: Path) -> None:
     """G50 ends G51, which is an error of its own; H0 names no length, and home counts in the machine's frame."""
@@ -36,7 +52,10 @@ def test_an_end_of_scaling_and_h0_on_the_way_home_change_no_path(machine: str, t
         ("G4 X2.", "the time of a dwell is P"),
         ("G98 G83 X1. Z-5. R2. I2. J.5 K1. F100.", "describes pecks or a retract"),
         ("G98 G83 X1. Z-5. R2. Q2. K3 F100.", "describes pecks or a retract"),
-        ("G98 G84 X1. Z-5. R2. J2 F500.", "describes pecks or a retract"),
+        ("G98 G84 X1. Z-5. R2. J12 F500.", "describes pecks or a retract"),
+        ("G98 G81 X1. Z-5. R2. J2 F500.", "describes pecks or a retract"),
+        ("M29", "unknown word M29"),
+        ("M46 P10", "unknown word M46"),
         ("G98 G81 X1. Z-5. R2. L3 F100.", "L repeats a cycle with G91 only"),
         ("G98 G81\nX1. Z-5. R2. F100.", "a cycle without a position, Z and R"),
         ("G98 G86 X1. Z-5. R2. F100.", "unknown word G86"),

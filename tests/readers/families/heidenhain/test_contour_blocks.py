@@ -95,6 +95,7 @@ def test_inches_are_those_of_the_program(run: Runner) -> None:
         ("L X+40\nRND R5\nL Y+44", "RND: 5.0000 mm of an element that is 4.0000 mm long would be cut off"),
         ("L X+40\nCHF 5\nL Y+44", "CHF: 5.0000 mm of an element that is 4.0000 mm long would be cut off"),
         ("CC X+10 Y+60\nC X+30 Y+60 DR+\nCHF 4\nL X+60", "CHF: a chamfer stands between two straight lines"),
+        ("L X+40\nCC X+40 Y+60\nC X+60 Y+60 DR+\nCHF 4\nL Y+80", "CHF: a chamfer stands between two straight lines"),
         ("L X+40\nRND R5\nL X+20", "RND: the contour goes back the way it came"),
         ("L X+40\nRND R5\nL Z+20", "RND: an element leaves the working plane"),
         ("L X+40\nRND R5\nL Y+60 FMAX", "RND: an element is at rapid"),

@@ -124,6 +124,9 @@ def test_ct_of_the_manual(run: Runner) -> None:
 
 
 def test_ct_without_a_direction_is_an_error(run: Runner) -> None:
+    beside = [f"{word} has no use in this block" for word in ("AR", "CR", "I")]
+    for word, said in zip(("AR=30", "CR=20", "I20"), beside, strict=True):
+        assert said in _texts(run(f"{HEAD}X40\nCT X60 Y20 {word}\n"), Severity.ERROR)
     assert any("no direction" in text for text in _texts(run(f"{HEAD}Z5\nCT X60 Y20\n"), Severity.ERROR))
 
 

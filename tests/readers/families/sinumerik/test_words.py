@@ -168,6 +168,25 @@ def test_ways_of_endless_axes(run: Runner) -> None:
     assert rotary(run("TRAORI\nC350\nC10", shortest=False))[:, 1].tolist() == [350.0, 10.0]
 
 
+def test_a_way_to_a_position_beyond_one_turn_is_an_alarm(run: Runner) -> None:
+    for word in ("DC(440.5)", "DC(-10)", "ACP(360)", "ACN(400)"):
+        (error,) = run(f"C={word}").errors
+        assert "which DC(), ACP() and ACN() do not take" in error.text
+    assert run("C=AC(440.5)\nC=DC(0)\nC=DC(359.999)").errors == ()
+
+
+def test_a_pole_changes_no_path_and_a_polar_position_is_an_error(run: Runner) -> None:
+    plain, said = run("G1 X5 F100\nX7"), run("G1 X5 F100\nG111 X0 Y0\nX7")
+    assert said.errors == ()
+    close(said.tip, plain.tip, atol=0.0)
+    assert run("G1 X5 F100\nG111 X0 Y0\nAP=30 RP=7").errors
+
+
+def test_a_dwell_of_seconds_and_revolutions_is_an_error(run: Runner) -> None:
+    (error,) = run("G4 F2 S3").errors
+    assert "it takes seconds or revolutions" in error.text
+
+
 def test_an_axis_that_writes_its_turns_takes_the_number(run: Runner) -> None:
     machine = replace(load_machine("mikron_600u"), control=load_machine("yl569").control)
     result = run("TRAORI\nC350\nC725", machine=machine)

@@ -10,6 +10,11 @@ _FEED: Final = "FEDRAT/MMPM,500.0\n"
 _OP2: Final = HEAD.replace("OP1", "OP2")
 _LEANING2: Final = LEANING.replace("OP1", "OP2").replace("TOOL,1,ADJUST,1", "TOOL,2,ADJUST,2") + FOOT
 _TILTED: Final = CLEAR.replace("0.0,0.0,1.0", "0.0,0.6,0.8") + _FEED + "GOTO/10.0,0.0,5.0\n"
+_TILTED_OVER: Final = CLEAR + _FEED + "GOTO/10.0,0.0,5.0,0.6,0.0,0.8\n"
+_THREE_AXIS: Final = '[control]\nextends = "linuxcnc"\n' + "".join(
+    f'[[axis]]\nname = "{name}"\nkind = "linear"\ncarries = "tool"\ndirection = {line}\n'
+    for name, line in (("X", [1, 0, 0]), ("Y", [0, 1, 0]), ("Z", [0, 0, 1]))
+)
 _FAN: Final = (
     CLEAR
     + "RAPID\nGOTO/80,0,60,0.8,0,0.6\nCYCLE/BORE,NODRAG,90,RAPTO,3,FEDTO,-12,RTRCTO,9,MMPM,90\nGOTO/32,0,24,0.8,0,0.6\n"
@@ -151,6 +156,10 @@ CURES: Final = (
            "CYCLE/OFF", head=CLEAR),
     Cure("PLN110", "no_rotary_position", post("generic_nutated_b45_c"),
          HEAD + "GOTO/20,0,5,0,0.98480775,-0.17364818\n" + FOOT, (),
+         cured_by=post("generic_head_head_ca")),
+    Cure("PLN110", "needs_second_axis", post("desk_mill_a"), _TILTED_OVER + FOOT, (), {"zero": "-150,-90,-120"},
+         cured_by=post("generic_head_head_ca")),
+    Cure("PLN110", "needs_rotary_axis", on_machine(_THREE_AXIS), _TILTED_OVER + FOOT, (),
          cured_by=post("generic_head_head_ca")),
     Cure("PLN530", "tools_program_without", post("generic_head_head_ca"), LEANING + FOOT + _LEANING2,
          ((_LEANING2, ""),),

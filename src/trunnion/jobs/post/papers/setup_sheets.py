@@ -81,11 +81,11 @@ def setup_sheet(
     """
     run, machine = verification.run, program.machine
     content = collect_content(replace(verification, program=Path(verification.program).name), program.control.name)
-    shown = tuple(displayed_extent(*each) for each in zip(machine.axes, content.axes, strict=True))
+    shown = tuple(displayed_extent(*each) for each in zip(machine.own_axes, content.axes, strict=True))
     content = replace(content, axes=shown)
     calls = ToolCalls(program).calls
     operations = tuple(_operations(program, verification, content.operations, [call for call, *_ in calls]))
-    rotary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
+    rotary = tuple(machine.names[k] for k in machine.rotary_words)
     return SetupSheet(
         content=content,
         version=MADE_BY,
@@ -111,8 +111,8 @@ def setup_sheet(
 def _untimed(machine: Machine) -> str:
     """Return what times leave out because the definition does not state it."""
     left_out = (
-        ("rapids", any(axis.rapid is None for axis in machine.axes)),
-        ("speeding_up", any(axis.acceleration is None for axis in machine.axes)),
+        ("rapids", any(axis.rapid is None for axis in machine.own_axes)),
+        ("speeding_up", any(axis.acceleration is None for axis in machine.own_axes)),
         ("tool_changes", machine.facts.tool_change_s is None),
     )
     names = tuple(on_sheet(what) for what, is_left_out in left_out if is_left_out)
@@ -325,10 +325,11 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
     cuts = np.flatnonzero(run.kind != Kind.RAPID)
     if len(cuts):
         joints = run.positions(cuts[:1]).joints[0]
-        axes = list(zip(rotary, (run.machine.primary, run.machine.secondary), strict=True))
+        axes = list(zip(rotary, run.machine.rotary_words, strict=True))
         shown = {k: float(run.machine.axes[k].displayed(joints[k : k + 1], 3)[0]) for _, k in axes}
         turned = ", ".join(f"{name} {shown[k] + 0.0:.3f}°" for name, k in axes)
-        yield on_sheet("axes_at_first_cut", turned=turned)
+        if turned:
+            yield on_sheet("axes_at_first_cut", turned=turned)
     if program.effective_setting("restart") == "on":
         yield on_sheet("enter_anywhere")
     else:

@@ -78,10 +78,11 @@ class FanucControl(Rs274Control):
 
     def _make_table(self, whole_feeds: bool, vectors: bool, turning: bool) -> Codes:
         """Return a letter table; ``whole_feeds`` if a whole number after F counts as it is."""
-        first, second = self.rotary_names
         # Rotary words are no plain words where the tool axis is a vector, or where they must not turn axes.
-        plain = ("", "") if vectors or not turning else (first, second)
-        need_point = "" if self.settings.calculator else f"XYZ{first}{second}IJK" + ("" if whole_feeds else "F")
+        plain = () if vectors or not turning else self.rotary_names
+        need_point = (
+            "" if self.settings.calculator else f"XYZ{''.join(self.rotary_names)}IJK" + ("" if whole_feeds else "F")
+        )
         return letter_table(plain, gaps=True, need_point=need_point, vector="IJK" if vectors else "")
 
     @property
@@ -109,6 +110,17 @@ class FanucControl(Rs274Control):
             said = said if count == 1 else said.within("first_of_kind", count=count)
             diagnostics = [*diagnostics, replace(first, wording=said, file=files[int(first.file)])]
         return super().finish(files, comments, diagnostics)
+
+    def change_tool(self) -> None:
+        """Change to the selected tool; some controls switch the spindle and coolant off with it."""
+        super().change_tool()
+        if not self.settings.tool_change_stops:
+            return
+        if self.modal.spindle.current:
+            self.add_event("spindle", "off")
+        flowing = next((each.value for each in reversed(self.events) if each.kind == "coolant"), "off")
+        if flowing != "off":
+            self.add_event("coolant", "off")
 
     # Frames
 

@@ -22,6 +22,10 @@ from trunnion.readers.rs274.word_table import Word
 _MAX_HOLES: Final = 10_000
 
 
+#: J of a thread on the controls that have it there.
+_TIMES_AS_FAST: Final = range(1, 10)
+
+
 class CycleInterpreter(OffsetInterpreter):
     """Keeps what holds from block to block: the words of the cycles, and the height before them."""
 
@@ -207,8 +211,14 @@ class CycleInterpreter(OffsetInterpreter):
         others = "" if self.motion_code in cycles.SHIFTED else "IJ"
         if settings.repeat_letter == "L":
             others = "K" if self.motion_code == cycles.FINE_BORE else "IJK"
+            others = "IK" if self._leaves_thread_faster(block) else others
         if found := [letter for letter in others if letter in block.words]:
             raise BlockError(Wording("NC220", "peck_word_not_simulated", word=found[0]))
+
+    def _leaves_thread_faster(self, block: Block) -> bool:
+        """Whether J of a thread says how many times as fast as it was cut it is left, spindle and feed alike."""
+        times = block.words.get("J")
+        return self.motion_code in words.THREADS and times is not None and times.value in _TIMES_AS_FAST
 
     def _check_dwell(self, block: Block) -> None:
         settings = self.control.settings

@@ -17,6 +17,7 @@ from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR
 from trunnion.readers.families.fanuc import words
+from trunnion.readers.families.fanuc.contour_modes import ContourModes
 from trunnion.readers.families.fanuc.corners import cut_corner
 from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
@@ -55,6 +56,7 @@ class FanucInterpreter(CycleInterpreter):
         self._compensates_from = -1
         self._limits_set_at = 0
         self._polar = PolarPositions(self.control)
+        self._contour_modes = ContourModes(self._note)
         self._needs_number = self.control.settings.needs_program_number
         self._nurbs = NurbsBlocks(self.control)
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
@@ -181,7 +183,7 @@ class FanucInterpreter(CycleInterpreter):
             angles += self._polar.letters[1] if self._is_polar(block) else ""
             plain = {letter for word in self.table.words("G", block.g) for letter in word.values}
             if in_cycle:
-                plain.add(control.settings.repeat_letter)
+                plain.update(control.settings.counts_in_cycles({self.motion_code, *block.g}))
             if words.JUMP_ON_INPUT in block.m:
                 plain.add("Q")
             control.scale(block, angles=angles, plain=plain)
@@ -220,10 +222,7 @@ class FanucInterpreter(CycleInterpreter):
         return word.act == "tcp" or super()._changes_something(word, block)
 
     def _contour_control(self, word: Word, block: Block) -> None:
-        if "Q" not in block.words:
-            self._note(Wording("NC215", "g5_1_needs_q1_q0"), Severity.ERROR)
-        elif (written := f"{word.text} Q{block.words['Q'].value:g}") in words.SMOOTHING:
-            self._note(Wording("NC224", "smooths_path", word=written), Severity.ERROR)
+        self._contour_modes.switch(word, block)
 
     def _exact_stop(self, word: Word, block: Block) -> None:
         self.control.add_exact_stop(word.sets)
@@ -324,6 +323,7 @@ class FanucInterpreter(CycleInterpreter):
         left += [self._length_word] if has_length and not control.sets_behind_use("length") else []
         left += ["G68.2"] if control.tilted and not control.plane_of_pose else []
         left += ["G16"] if self._polar.on else []
+        left += self._contour_modes.on
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
         return left
 

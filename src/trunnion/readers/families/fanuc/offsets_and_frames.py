@@ -154,9 +154,7 @@ class OffsetInterpreter(CallInterpreter):
         axes, settings = self._axis_words(block), control.settings
         if not axes and not settings.home_takes_all:
             raise BlockError(Wording("NC210", "home_needs_axes"))
-        if word.numbered:
-            which = block.take("P")
-            self._note(Wording("NC224", "second_reference", which=which or 2), Severity.WARNING)
+        which = int(block.take("P") or 2) if word.numbered else 1
         self._counter.count_motions(1)
         motion, control.motion = control.motion, RAPID
         before = control.programmed_position.copy()
@@ -164,7 +162,11 @@ class OffsetInterpreter(CallInterpreter):
         if moving and (set(moving) - set("XYZ") or not np.array_equal(before, self._target(moving))):
             control.move(moving, None)
         names = axes or dict.fromkeys((*"XYZ", *control.rotary_names))
-        control.go_to_machine({name: float(control.machine.axis(name).home) for name in names})
+        stated = settings.reference_positions.get(which, {})
+        if which > 1 and not stated.keys() >= names.keys():
+            self._note(Wording("NC224", "second_reference", which=which), Severity.WARNING)
+        goal = {name: float(control.machine.axis(name).home) for name in names}
+        control.go_to_machine({name: stated.get(name, home) for name, home in goal.items()})
         control.motion = motion
         if settings.home_ends_length:
             self._end_length_at_home()

@@ -6,11 +6,12 @@ from dataclasses import field
 from typing import Final
 
 from trunnion.compensation.styles import TYPE_A, UNKNOWN_STYLE
+from trunnion.definitions import Table
 from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.mode_words import END_OF_CYCLES
 from trunnion.readers.control.start_modes import MOTION, PLANE_OF_POSE, check_start_modes
-from trunnion.readers.families.fanuc.words import MORE_OFFSETS, NO_PLANE_OF_POSE, TABLE, is_own_word
+from trunnion.readers.families.fanuc.words import MORE_OFFSETS, NO_PLANE_OF_POSE, TABLE, THREADS, is_own_word
 from trunnion.readers.program.declared_variables import read_variables
 from trunnion.readers.program.forms import read_form
 from trunnion.readers.program.settings import family_of, reading_of, unit_of
@@ -44,6 +45,9 @@ _SECONDS: Final = 0.001
 #: How radius compensation begins and ends, by its name: no manual at hand says what type B makes of all corners.
 _STYLES: Final = {"A": TYPE_A, "B": UNKNOWN_STYLE}
 
+#: P of G30.
+REFERENCE_POINTS: Final = (2, 3, 4)
+
 #: Common variables.
 VARIABLE: Final = re.compile(r"#[1-9][0-9]{2}")
 
@@ -71,6 +75,8 @@ class Settings:
     extended_offsets  the highest P of G54.1, or of the word that the control has in its place
     whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
     variables  values of common variables that the control has when a program starts
+    reference_positions  where G30 P2 to P4 go, machine positions by axis, mm and degrees, as far as they are stated
+    tool_change_stops  a tool change switches the spindle and coolant off
     """
 
     calculator: bool = False
@@ -91,6 +97,8 @@ class Settings:
     kept_by: str = KEPT_BY
     extended_offsets: int = HIGHEST_EXTENDED
     variables: Mapping[str, float] = field(default_factory=dict)
+    reference_positions: Mapping[int, Mapping[str, float]] = field(default_factory=dict)
+    tool_change_stops: bool = False
     states_numbers: bool = True
 
     def length(self, inches: bool) -> float:
@@ -103,6 +111,13 @@ class Settings:
     def extended_word(self) -> str:
         """The word that selects an extended work offset: G54.1, or what the control has in its place."""
         return self.words.own_text(MORE_OFFSETS)
+
+    def counts_in_cycles(self, codes: Collection[int]) -> str:
+        """Return the letters of a cycle, or of a block that selects one, whose numbers count: repeats, and how many
+        times as fast a thread is left.
+        """
+        leaves_faster = self.repeat_letter == "L" and not THREADS.isdisjoint(codes)
+        return self.repeat_letter + ("J" if leaves_faster else "")
 
     @property
     def angle(self) -> float:
@@ -159,6 +174,19 @@ class Settings:
             block.words["P"] = Number(dwell.value / _SECONDS)
 
 
+def _reference_positions(table: Table, machine: Machine) -> dict[int, dict[str, float]]:
+    """Return where G30 takes axes, machine positions by P and axis."""
+    own = table.table("reference_positions")
+    axes = [axis.name.upper() for axis in machine.axes]
+    found = dict[int, dict[str, float]]()
+    for number in REFERENCE_POINTS:
+        positions = own.table(f"P{number}")
+        found[number] = {name: positions.number(name) for name in axes if name in positions}
+        positions.report_unread_keys()
+    own.report_unread_keys()
+    return found
+
+
 def start_modes_of(words: WordMeanings) -> Mapping[str, str]:
     """Return the modes with which a control starts, by the words that it has for them."""
     if NO_PLANE_OF_POSE not in words.g.values():
@@ -194,6 +222,8 @@ def settings_of(machine: Machine) -> Settings:
         kept_by=table.text("kept_by", KEPT_BY),
         variables=read_variables(table, VARIABLE, "#500"),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
+        tool_change_stops=table.flag("tool_change_stops", False),
+        reference_positions=_reference_positions(table, machine),
         states_numbers="whole_numbers" in table,
     )
     table.report_unread_keys()

@@ -18,7 +18,9 @@ _REGISTER: Final = whole(0, 999)
 TABLE: Final = WordTable(
     *COMMON_WORDS,
     Word("G4", "dwell", act="dwell", letters="PXU", when=_BEHIND, moves=False),
-    Word("G5", effect=_NONE, letters="P", values={"P": one_of(0, 10000)}, moves=False),
+    Word(
+        "G5", effect=_NONE, act="contour_control", letters="P", values={"P": one_of(0, 10000)}, moves=False,
+    ),
     Word(
         "G5.1", "AI contour control; axes are chosen by 0, as `X0`; `Q2` and `Q3`, which smooth the path: an error, or "
         "declared", effect=_NONE, act="contour_control", letters="QRXYZABC",
@@ -28,7 +30,7 @@ TABLE: Final = WordTable(
     Word("G6.1", "a smooth curve is not simulated", effect=_ERROR, letters="XYZPR", moves=False),
     Word("G6.2", "a NURBS: see below", group="motion", letters="PKXYZR"),
     Word("G7.1", "cylindrical interpolation is not simulated", effect=_ERROR, letters="ABC"),
-    Word("G8", effect=_NONE, letters="P", values={"P": one_of(0, 1)}, moves=False),
+    Word("G8", effect=_NONE, act="contour_control", letters="P", values={"P": one_of(0, 1)}, moves=False),
     Word("G9", "event `exact_stop`: `block`", effect=_NONE, act="exact_stop", sets="block"),
     Word("G10", "sets a work offset", act="set_data", letters="LP", when=_BEHIND, moves=False, numbered=True),
     Word("G11", effect=_NONE),
@@ -51,8 +53,8 @@ TABLE: Final = WordTable(
     Word("G28", "home, by the programmed point", act="go_home", when=_BEHIND, moves=False),
     Word("G29", "back from the reference position: not simulated", effect=_ERROR, letters="XYZABC", moves=False),
     Word(
-        "G30", "home as by `G28`, and a warning", act="go_home", when=_BEHIND, values={"P": whole(2, 4)}, moves=False,
-        numbered=True,
+        "G30", "to the reference position `P`, 2 unless it is there; one that the definition does not state is read as "
+        "home, with a warning", act="go_home", when=_BEHIND, values={"P": whole(2, 4)}, moves=False, numbered=True,
     ),
     Word("G31", "a skip is taken as a straight line", effect=_ERROR, act="line", letters="P"),
     Word("G33", "thread cutting is taken as a straight line", effect=_ERROR, act="line", group="motion", letters="Q"),

@@ -90,7 +90,7 @@ class FidiaControl(Rs274Control):
         self.usual_modes["offset"] = OFFSET_BASE + 1
         self.start_modes = _start_modes_of(machine)
         self.tcp_words = _tcp_words_of(machine)
-        self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
+        self.letter_table = letter_table(self.rotary_names, gaps=True)
         self.settings = settings_of(machine)
         self.own_words = self.settings.words
         self.modal.feed_path.set(0, int(self.settings.feed_path))

@@ -22,9 +22,10 @@ from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram
 from trunnion.readers.rs274.word_interpreter import WordInterpreter
 from trunnion.readers.rs274.word_table import Word
 
-#: A tool's number may follow a point: T.1.
-_TOOL = re.compile(r"T\.?([0-9]{1,9})")
-_TOOL_CHANGES: Final = frozenset({6, 306})
+#: A tool's number follows a point: T.1. Without it, it is a tool of M6 alone: of M306 no source has that.
+_TOOL = re.compile(r"T(\.?)([0-9]{1,9})(?![0-9.])")
+_BY_POINT: Final = 306
+_TOOL_CHANGES: Final = frozenset({6, _BY_POINT})
 
 
 class _NoParameters:
@@ -51,6 +52,8 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
         super().__init__(path, machine, options)
         # The tool that the present block calls.
         self._tool: str | None = None
+        # The present block has the two letters of a time.
+        self._has_time = self._without_point = False
 
     def _make_control(self) -> FidiaControl:
         return FidiaControl(self._machine, self._note, shortest=self._options.shortest)
@@ -73,14 +76,19 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
             text = text[: tool.start()] + text[tool.end() :]
         # The time of a dwell has two letters.
         reader = block_reader(text.replace("HD", "H"), NO_ARITHMETIC, _NO_PARAMETERS)
+        self._has_time = "HD" in text
+        self._without_point = tool is not None and not tool[1]
         block = self._read_block(reader)
         if block.assignments:
             raise BlockError(Wording("NC220", "parameters_not_simulated"))
-        self._tool = None if tool is None else tool.group(1)
+        self._tool = None if tool is None else tool[2]
         self._execute_words(block)
 
     def _scale_words(self, block: Block) -> None:
         super()._scale_words(block)
+        if (words.DWELL in block.g) != self._has_time and "H" in block.words:
+            block.take("H")
+            self._note(Wording("NC213", "unused_word", word="HD" if self._has_time else "H"), Severity.ERROR)
         if words.DWELL in block.g:  # behind all other G words
             self._dwell(self.table.words("G", [words.DWELL])[0], block)
             if self._axis_words(block):
@@ -93,6 +101,8 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
     def _before_motion(self, codes: Sequence[Word], block: Block) -> None:
         if self._tool is not None and _TOOL_CHANGES.isdisjoint(block.m):
             self._note(Wording("NC362", "tool_only_chosen", tool=self._tool), Severity.WARNING)
+        if self._without_point and _BY_POINT in block.m:
+            self._note(Wording("NC210", "tool_without_point", tool=self._tool), Severity.ERROR)
 
     # Words
 

@@ -1,6 +1,7 @@
 """The virtual control of a TNC."""
 
 from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from trunnion.readers.families.heidenhain.leads import LeadControl
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.scan_kernel import letter_table
 from trunnion.readers.families.heidenhain.settings import START_MODES, has_m114
+
+#: What ends TCP, by what switches it on.
+_TCP_ENDS: Final = {"M128": "M129", "FUNCTION TCPM": "FUNCTION RESET TCPM"}
 
 
 class HeidenhainControl(LeadControl):
@@ -58,16 +62,24 @@ class HeidenhainControl(LeadControl):
         self._tool_sizes: dict[str, dict[str, float]] = {}
         # The row before which the last tool was fetched.
         self._fetched_from = -1
+        # The word that has switched TCP on: M128 or FUNCTION TCPM; empty: another one, or none.
+        self._tcp_word = ""
         # The preset that cycle 247 has activated before the first motion at the part; None: none.
         self._head_preset: int | None = None
         super().__init__(machine, note, shortest=shortest)
         self.modal.feed_path.set(0, int(FeedPath.AXES))
-        self._letter_tables = letter_table((self.rotary_names[0], self.rotary_names[1])), letter_table(("", ""))
+        self._letter_tables = letter_table(self.rotary_names), letter_table(("", ""))
 
     @property
     def letter_table(self) -> Codes:
         """The letter table for the present modes: rotary words are plain only if they are positions of one axis."""
         return self._letter_tables[self.spatial_angles_active or (self.tilted and not self.tcp)]
+
+    def switch_tcp_by(self, word: str, *, on: bool) -> None:
+        """Note which of ``M128`` and ``FUNCTION TCPM`` switches TCP on, and that it ends by a word of the other one."""
+        if not on and self.tcp and self._tcp_word not in ("", word):
+            self.note(Wording("NC341", "ended_by_other", on=self._tcp_word, off=_TCP_ENDS[word]), Severity.ERROR)
+        self._tcp_word = word if on else ""
 
     def set_tcp(self, on: bool) -> None:
         """M128, M129 and the like."""
@@ -169,7 +181,7 @@ class HeidenhainControl(LeadControl):
 
     def feed_at_tip(self, on: bool) -> None:
         """M116: F is that of the tip where rotary tables turn; M117: a degree counts as a millimetre."""
-        heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
+        heads = [axis.name for axis in self.machine.own_axes if axis.is_rotary and axis.mount is Mount.TOOL]
         if on and heads:
             self.note(Wording("NC241", "feed_of_head_unknown", axes=tuple(heads)), Severity.WARNING)
         self._feed_path = FeedPath.TIP if on else FeedPath.AXES

@@ -326,6 +326,7 @@ class HeidenhainInterpreter(PathInterpreter):
             case ["TCPM", *_]:
                 tcpm_block(self.control, words(rest.replace("TCPM", "", 1)), self._note)
             case ["RESET", "TCPM"]:
+                self.control.switch_tcp_by("FUNCTION TCPM", on=False)
                 self.control.spatial_angles_active = False
                 self.control.set_tcp(False)
             case ["MODE", "MILL"]:

@@ -20,6 +20,7 @@ from trunnion.readers.families.heidenhain.words import (
     M_CALL,
     M_CALL_MODAL,
     M_COOLANTS,
+    M_DISPLAY,
     M_EVENTS,
     M_FEED_AT_TIP,
     M_FEED_IN_DEGREES,
@@ -109,6 +110,7 @@ class MFunctions:
         elif code in (M_TCP, M_TCP_OFF):
             if code == M_TCP or control.tcp:
                 control.judge_within_compensation(f"M{code}")
+            control.switch_tcp_by("M128", on=code == M_TCP)
             control.spatial_angles_active = False
             control.set_tcp(code == M_TCP)
             if code == M_TCP:
@@ -162,6 +164,9 @@ class MFunctions:
                 self._note(Wording("NC220", "m_not_simulated", code=code, does=text), Severity.ERROR)
         if code == M_POINT_FILTER and (distance := arguments.get("T")) is not None:
             control.add_tolerance(distance * control.length_unit)
+        for letter in arguments if code == M_DISPLAY else ():
+            if letter not in control.rotary_names:
+                self._note(Wording("NC230", "no_rotary_axis", word=f"M{code}", axis=letter), Severity.ERROR)
         if code == M_TILTING_AXES and arguments and arguments.keys() != set(control.rotary_names):
             names = " and ".join(sorted(arguments))
             self._note(Wording("NC220", "m_tilting_alone_not_simulated", code=code, names=names), Severity.ERROR)

@@ -171,7 +171,7 @@ class PathInterpreter(FlowInterpreter):
         side = block.sizes.pop("CHF", 0.0)
         if not side > 0.0:
             raise KlartextError(Wording("NC210", "corner_needs_size", word="CHF"))
-        self._corner(block, CornerWord("CHF", side * self.control.length_unit, chamfer=True))
+        self._corner(block, CornerWord("CHF", side * self.control.length_unit, chamfer=True, of_lines=True))
 
     def _corner(self, block: Block, corner: CornerWord) -> None:
         """Round or chamfer the corner: besides its size the block takes a feed alone, which counts for the corner."""

@@ -94,10 +94,10 @@ def _axial(
         raise KlartextError(Wording("NC210", "plane_axial_takes", axes=tuple(control.rotary_names)))
     control.resolve_rows()
     current = [float(control.current_joints[column]) for column in control.machine.rotary]
-    for name, now in zip(control.rotary_names, current, strict=True):
+    for name, now in zip(control.rotary_names, current, strict=False):
         if name not in values and abs(now) > _AT_ZERO:
             raise KlartextError(Wording("NC351", "plane_axial_leaves_out", axis=name, position=now))
-    first, second = (values.get(name, 0.0) for name in control.rotary_names)
+    first, second = (values.get(name, 0.0) for name in (*control.rotary_names, "", "")[:2])
     control.tilt_axial((first, second), positioning)
     store_rotary_angles(parameters, control, (first, second))
 
@@ -166,6 +166,7 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
     if len(names) % 2:
         note(Wording("NC215", "tcpm_unexpected", found=names[-1]), Severity.ERROR)
     control.judge_within_compensation("FUNCTION TCPM")
+    control.switch_tcp_by("FUNCTION TCPM", on=True)
     control.set_tcp(True)
     control.limit_compensating_feed(None)
     control.spatial_angles_active = spatial_angles
@@ -178,6 +179,6 @@ def store_rotary_angles(parameters: Parameters, control: HeidenhainControl, rota
     """Store the rotary position of a plane in Q120 (A), Q121 (B) and Q122 (C)."""
     if rotary is None:
         return
-    found = dict(zip(control.rotary_names, rotary, strict=True))
+    found = dict(zip(control.rotary_names, rotary, strict=False))
     for number, name in zip((120, 121, 122), "ABC", strict=True):
         parameters[f"Q{number}"] = found.get(name, 0.0)

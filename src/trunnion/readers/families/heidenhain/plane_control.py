@@ -158,7 +158,8 @@ class PlaneControl(VirtualControl):
         inside = [pair for pair in pairs if tool_orientation.is_in_travel(self.machine, pair)]
         sequence = positioning.sequence
         if sequence:
-            inside = [pair for pair in inside if pair[1] * sequence > 0.0 or abs(pair[1]) < _ZERO]
+            last = self.machine.last_rotary
+            inside = [pair for pair in inside if pair[last] * sequence > 0.0 or abs(pair[last]) < _ZERO]
         if not inside:
             self.note(
                 Wording("NC350", "plane_outside_sequence", sign="-" if sequence < 0 else "+")

@@ -9,6 +9,7 @@ Units:  those of the program.
 A line that turns out not to be plain has no effect.
 """
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -35,7 +36,7 @@ _Z: Final = 90
 _TILDE: Final = 126
 
 
-def letter_table(rotary: tuple[str, str]) -> Codes:
+def letter_table(rotary: Sequence[str]) -> Codes:
     """Return the slot of each byte, (256,) uint8, 0 for none; ``rotary`` are the names of the rotary axes, or empty."""
     table = np.zeros(256, np.uint8)
     slots = {"F": FEED, "R": COMPENSATION, "X": SLIDE, "Y": SLIDE + 1, "Z": SLIDE + 2}

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from trunnion.readers.program.word_values import one_of, whole
+from trunnion.readers.program.word_values import between, one_of, whole
 
 
 def _words(text: str) -> frozenset[str]:
@@ -37,6 +37,7 @@ M_SECOND_MACHINE: Final = 92
 M_SHORTEST: Final = 126
 M_NOT_SHORTEST: Final = 127
 M_TCP: Final = 128
+M_DISPLAY: Final = 94
 M_TCP_OFF: Final = 129
 M_AT_ENDS: Final = 114
 M_AT_ENDS_OFF: Final = 115
@@ -77,7 +78,7 @@ M_AFTER_MOTION: Final = M_PROGRAM_ENDS | {
 #: M functions that the path does not depend on.
 M_WITHOUT_PATH_EFFECT: Final = {
     90: "constant contour speed at corners",
-    94: "the display of rotary axes comes back below 360",
+    M_DISPLAY: "the display of rotary axes comes back below 360",
     97: "small contour steps",
     101: "replacement tools",
     102: "no replacement tools",
@@ -145,7 +146,7 @@ M_NOT_SIMULATED: Final = {
 
 #: Words that belong to an M function if they follow it.
 M_ARGUMENTS: Final = {
-    94: _words("X Y Z A B C U V W"),
+    M_DISPLAY: _words("X Y Z A B C U V W"),
     103: _words("F"),
     M_AT_ENDS: _words("A B C"),
     118: _words("X Y Z A B C U V W VT"),
@@ -176,7 +177,7 @@ PRESET: Final = 247
 TOLERANCE_WORDS: Final = {(1, "T"): True, (2, "HSC-MODE"): one_of(0, 1), (2, "TA"): True}
 
 #: Values of the words that belong to an M function.
-M_VALUES: Final = {(120, "LA"): whole(0, 99)}
+M_VALUES: Final = {(120, "LA"): whole(0, 99), (M_RETRACT, "MB"): between(0.0, 1e5)}
 
 #: Its path is simulated without the tool radius.
 BORE_MILLING: Final = 208

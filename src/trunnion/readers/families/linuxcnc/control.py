@@ -100,7 +100,7 @@ class LinuxcncControl(Rs274Control):
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.start_modes = _start_modes_of(machine)
-        self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", gaps=True)
+        self.letter_table = letter_table(self.rotary_names, comment=";", gaps=True)
         self.system = 1
         self._offset_values: dict[int, Offset] = {}
         self.axis_offset = np.zeros(6)

@@ -28,7 +28,7 @@ class OffsetInterpreter(OWordInterpreter):
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
-        home = {axis.name: float(axis.home) for axis in machine.axes}
+        home = {axis.name: float(axis.home) for axis in machine.own_axes}
         self._stored_positions = {"G28": home, "G30": home}
 
     def _make_control(self) -> LinuxcncControl:

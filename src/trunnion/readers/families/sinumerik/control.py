@@ -68,7 +68,7 @@ class SinumerikControl(VirtualControl):
         super().__init__(machine, note, shortest=shortest)
         if self._settings.unit:  # as G700 and G710 do: feeds count in it too
             self.set_units(self._settings.unit == "inch", True)
-        self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
+        self.letter_table = letter_table(self.rotary_names, comment=";", assign="=")
 
     def add_exact_stop(self, mode: str) -> None:
         """Record a G code of exact stops, which counts until ``smooth`` switches, or another one."""
@@ -204,6 +204,8 @@ class SinumerikControl(VirtualControl):
         if any(abs(value) * self.length_unit > MAX_POSITION for value, _ in params.values()):
             raise arcs.ArcError(Wording("NC320", "circle_numbers_no_machine"))
         if self.motion == TANGENT:
+            for word in sorted(params.keys() - {"TURN"}):
+                self.note(Wording("NC213", "unused_word", word=word), Severity.ERROR)
             return arcs.tangential(start, end, self.end_direction(), self.plane_axis, turns)
         if self.motion != THROUGH:
             return self._plane_arc(params, in_plane, turns, start, end)

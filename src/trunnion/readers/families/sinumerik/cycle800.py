@@ -10,6 +10,9 @@ from trunnion.readers.families.sinumerik.control import SinumerikControl
 from trunnion.readers.families.sinumerik.settings import settings_of
 from trunnion.readers.families.sinumerik.words import SWIVEL_DIRECTIONS, SWIVEL_RETRACTS, SWIVEL_STYLES
 
+#: _FR: back along the tool by the way _FR_I, mm.
+_BY_WAY = 5.0
+
 #: Larger values are mistakes of the program.
 MAX_ARGUMENT = 1e7
 
@@ -61,6 +64,8 @@ def swivel(control: SinumerikControl, call: Call) -> None:
         )
     if control.modal.edge.current == 0:
         note(Wording("NC340", "cycle800_works_tool_length_d0"), Severity.ERROR)
+    if retract == _BY_WAY and numbers[14] <= 0.0:
+        note(Wording("NC215", "cycle800_retracts_into_part", way=numbers[14]), Severity.ERROR)
     if retract:
         note(Wording("NC224", "cycle800_retracts_first_fr_not", retract=retract), Severity.WARNING)
     origin = control.length_unit * np.array(before)
@@ -71,7 +76,7 @@ def swivel(control: SinumerikControl, call: Call) -> None:
     if int(mode) >> 6 == 3:
         # The values are those of the first and the second rotary axis of the swivel data.
         names = settings_of(control.machine).swivel_axes
-        rotary = tuple(control.machine.names[k] for k in control.machine.rotary)
+        rotary = tuple(control.machine.names[k] for k in control.machine.own_rotary)
         if names not in (rotary, rotary[::-1]):
             note(Wording("NC224", "cycle800_direct_axes_unknown", mode=mode), Severity.ERROR)
         direct = (angles[0], angles[1]) if names != rotary[::-1] else (angles[1], angles[0])

@@ -79,6 +79,7 @@ ONCE: Final = _words("""
 #: positions, tolerances, feeds and tools, or they are errors.
 NOTHING: Final = _words("""
     SBLON SBLOF DISPLOF DISPLON ACTBLOCNO EXTERN WORKPIECE GROUP_BEGIN GROUP_END GROUP_ADDEND G290
+    G110 G111 G112
     """)
 
 

@@ -139,7 +139,9 @@ class WordInterpreter(CallInterpreter):
                 assert word in FRAMES or word in WITHOUT_PATH_EFFECT or word == "SUPA" or word.startswith("ORI")
 
     def _dwell(self, block: Block) -> None:
-        if block.feed is not None:
+        if block.feed is not None and block.speed is not None:
+            self._note(Wording("NC216", "two_times", word="G4"), Severity.ERROR)
+        elif block.feed is not None:
             self.control.add_event("dwell", block.feed)
         elif block.speed is not None:
             self.control.add_event("dwell", -block.speed)
