@@ -92,11 +92,25 @@ def test_holes_are_measured_from_the_height_of_r(tmp_path: Path) -> None:
         (command("G2", X=5.0, R=9.0), "operation POCKET: G2 without I, J and K"),
         (command("G91"), "operation POCKET: G91 is not known"),
         (command("G83", Z=-20.0, R=3.0), "operation POCKET: G83 without a peck"),
+        (command("M6", T=5), "operation POCKET: M6 T5 loads another tool"),
     ],
 )
 def test_what_is_not_followed_is_refused_by_the_name_of_its_operation(wrong: Thing, why: str, tmp_path: Path) -> None:
     with pytest.raises(trunnion_post.RefusedError, match=why):
         read(tmp_path, operation(*START, wrong))
+
+
+def test_a_rapid_ends_a_cycle() -> None:
+    drill, away = command("G81", X=1.0, Y=2.0, Z=-20.0, R=3.0, F=2.0), command("G0", X=50.0)
+    lines = trunnion_post.Writer().job([operation(*START, drill, away, command("G80"))]).splitlines()
+    assert lines[-6:-2] == ["GOTO/1,2,3", "CYCLE/OFF", "RAPID", "GOTO/50,2,20"]
+
+
+def test_a_label_is_one_line_of_text(tmp_path: Path) -> None:
+    cut = (*START, command("M6", T=4), command("G1", Z=0.0, F=1.0), command("(a\nGOTO/9,9,9)"))
+    (found,) = read(tmp_path, operation(*cut, label="A$\nPOCKET 3/8")).operations
+    assert found.name == "A POCKET 3/8"
+    assert found.moves.tip.tolist() == [[1, 2, 20], [1, 2, 0]]
 
 
 def test_inactive_operations_and_fixtures(tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ _CYCLES = {"G73": "DRILL,BRKCHP", "G81": "DRILL", "G82": "DRILL", "G83": "DRILL,
 #: Axis about which arcs turn, by the word of their plane.
 _PLANES = {"G17": (0.0, 0.0, 1.0), "G18": (0.0, 1.0, 0.0), "G19": (1.0, 0.0, 0.0)}
 #: Words that say what this post takes for granted.
-_GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94", "G54", "G55", "G56", "G57", "G58", "G59", "M6"}
+_GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94", "G54", "G55", "G56", "G57", "G58", "G59"}
 _OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59"}
 _COOLANTS = {"Flood": "FLOOD", "Mist": "MIST"}
 _SWITCHES = {"M7": "COOLNT/MIST", "M8": "COOLNT/FLOOD", "M9": "COOLNT/OFF", "M0": "STOP", "M1": "OPSTOP"}
@@ -51,7 +51,8 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
 
     Raises ``RefusedError`` with the operation's name where there is no program.
     """
-    arguments = shlex.split(argstring or "")
+    argstring = argstring or ""
+    arguments = shlex.split(argstring.replace("\\", "/") if os.name == "nt" else argstring)
     writer = Writer()
     text = writer.job(objects)
     if "--cl-only" in arguments:
@@ -105,6 +106,11 @@ def _number(value: Any) -> float:
 def _text(value: float) -> str:
     text = (f"{value:.6f}").rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
+
+
+def _line(text: Any) -> str:
+    """Return a text that is one line of a statement: a dollar sign would continue it."""
+    return " ".join(re.sub(r"[\x00-\x1f\x7f\x85\u2028\u2029$]", " ", str(text)).split())
 
 
 def _listed(*values: float) -> str:
@@ -192,7 +198,7 @@ class Writer:
             getattr(given, "Base", None), "ToolController", None
         )
         controller = controller or self._controller
-        label = str(given.Label).replace(",", " ").replace("$", " ").strip()
+        label = _line(str(given.Label).replace(",", " "))
         self._name = label
         if controller is None:
             raise RefusedError(f"operation {label}: it has no tool")
@@ -204,7 +210,7 @@ class Writer:
         self._used[name] = self._offset
         bit = getattr(controller, "Tool", None)
         head = [
-            "TOOL PATH/{},TOOL,{}".format(name, str(controller.Label).replace("$", " ")),
+            f"TOOL PATH/{name},TOOL,{_line(controller.Label)}",
             tool_statement(bit),
             "MSYS/0,0,0,1,0,0,0,1,0",
             f"LOADTL/{controller.ToolNumber}",
@@ -217,7 +223,7 @@ class Writer:
         if mode not in (*_COOLANTS, "None", ""):
             raise RefusedError(f"operation {label}: coolant {mode} is not known")
         head += ["COOLNT/" + _COOLANTS.get(mode, "")] * (mode in _COOLANTS)
-        body = _Path(self._name, self._at, speed)
+        body = _Path(self._name, self._at, speed, int(controller.ToolNumber))
         for command in commands:
             body.command(command)
         if not body.moved:
@@ -238,7 +244,7 @@ def _head(objects: Sequence[Any]) -> list[str]:
     if box is None:
         return []
     sizes = [box.XMax - box.XMin, box.YMax - box.YMin, box.ZMax - box.ZMin, box.XMin, box.YMin, box.ZMin]
-    return ["PARTNO/" + str(job.Label), "$$-> STOCK / BOX," + _listed(*sizes)]
+    return ["PARTNO/" + _line(job.Label), "$$-> STOCK / BOX," + _listed(*sizes)]
 
 
 def _code(name: str) -> str:
@@ -260,11 +266,12 @@ class _Path:
     moved  something of it is motion
     """
 
-    def __init__(self, operation: str, at: list[float | None], speed: float) -> None:
+    def __init__(self, operation: str, at: list[float | None], speed: float, tool: int) -> None:
         self.moved = False
         self._operation = operation
         self._at = at
         self._speed = speed
+        self._tool = tool
         self._lines: list[str] = []
         self._feed = ""
         self._plane = _PLANES["G17"]
@@ -280,7 +287,7 @@ class _Path:
         """Add a command."""
         name, words = _code(command.Name), command.Parameters
         if name.startswith("("):
-            self._lines.append("$$ " + name.strip("()").replace("/", " ").replace("->", " ").strip())
+            self._lines.append("$$ " + _line(name.strip("()").replace("/", " ").replace("->", " ")))
             return
         if turned := [word for word in "ABC" if abs(words.get(word, 0.0)) > 1e-9]:
             raise self._refused(f"{command.Name} has the rotary word {turned[0]}, which says no plane")
@@ -302,7 +309,9 @@ class _Path:
             self._lines.append("SPINDL/RPM,{},{}".format(_text(words["S"]), "CLW" if name == "M3" else "CCLW"))
         elif name == "M5":
             self._lines.append("SPINDL/OFF")
-        elif name not in _GRANTED:
+        elif name == "M6" and words.get("T", self._tool) != self._tool:
+            raise self._refused(f"M6 T{words['T']:g} loads another tool than that of the operation")
+        elif name != "M6" and name not in _GRANTED:
             raise self._refused(f"{command.Name} is not known")
 
     def _refused(self, why: str) -> RefusedError:
@@ -322,8 +331,8 @@ class _Path:
         start = list(self._at)
         for k, word in enumerate("XYZ"):
             self._at[k] = words.get(word, self._at[k])
+        self._end_cycle()
         if name != "G0":
-            self._end_cycle()
             before = self._feed
             if self._take_feed(words) != before:
                 self._lines.append("FEDRAT/MMPM," + self._feed)
