@@ -41,3 +41,27 @@ def test_a_post_that_is_stopped_says_what_it_has_replaced(
         "stopped: complete before that, all files of the new job: part.mpf"
     )
     assert (tmp_path / "part.mpf").exists()
+
+
+@needs_fork
+@pytest.mark.parametrize(
+    "words",
+    [
+        "check part.toml",
+        "survey . --machine yl569",
+        "test part.toml",
+        "test .",
+        "batch . --action verify --machine yl569",
+    ],
+)
+def test_a_project_and_a_folder_settle_what_stands_in_the_folders_within(
+    words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = old_job(tmp_path)
+    stopped_between_moves(folder)
+    monkeypatch.chdir(folder)
+    Path("part.toml").write_text('machine = "yl569"\n[[setup]]\ncl = ["a.cls"]\noutput = "nc/one.mpf"\n')
+    Path("a.cls").write_bytes((YL569 / "2_hub_rough.cls").read_bytes())
+    main(words.split())
+    assert "warning: a job that was stopped has been rolled back: " in capsys.readouterr().err
+    assert {name: text for name, text in left(folder).items() if name in OLD} == OLD

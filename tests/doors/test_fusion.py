@@ -140,7 +140,7 @@ REFUSED: Final[list[tuple[dict[str, Any], str]]] = [
     (within(["rapid5", (0, 0, 60), (0, 0, 1)]), "operation 'FACE': a tool axis is no unit vector"),
     (within(["line5", (0, 0, 60), (10, 0, 30), 500.0], axis=UP), "operation 'FACE': a tool axis is no unit"),
     (within(["line5", (0, 0, 60), (0, 0, 1), 5.0, 2], axis=UP), "operation 'FACE': a feed of a five-axis move"),
-    (within(["arc", (0, 25, 50), (0, 0, 1), 90.0, 0.0, 100.0, 270.0]), "operation 'FACE': an arc whose ends"),
+    (within(["arc", (0, 25, 50), (0, 0, 1), 90.0, 0.0, 100.0, 100.0]), "operation 'FACE': an arc whose ends"),
     (within(["compensation", 1]), "operation 'FACE': radius compensation of the type ''"),
     (within(["compensation", 1], parameters={"operation:compensationType": "inverseWear"}),
      "operation 'FACE': radius compensation of the type 'inverseWear'"),

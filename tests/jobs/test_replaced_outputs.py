@@ -142,3 +142,45 @@ def test_a_result_replaces_no_result_of_another_command(
     assert f"holds a result of trunnion {_OWNERS.get(other, other)}, and would be replaced" in capsys.readouterr().err
     shutil.copy(TESTS / "golden/results/info.json", "a.json")
     assert main(["info", "part.cls", "--json", "a.json"]) == 0
+
+
+#: Commands that make pages, and those that may replace them.
+PAGES = (
+    ("post part.cls --machine yl569 --output b.mpf --report p.html", ("post", "impeller")),
+    ("post part.cls --machine yl569 --output b.mpf --sheet p.html", ("post", "impeller")),
+    ("verify part.mpf --machine yl569 --report p.html", ("verify",)),
+    ("info part.cls --plot p.html", ("info",)),
+    ("sensitivity part.mpf --machine yl569 --report p.html", ("sensitivity",)),
+    ("view part.mpf --machine yl569 --output p.html", ("view",)),
+    ("survey . --machine yl569 --report p.html", ("survey",)),
+    ("simulate part.mpf --machine yl569 --stock part.stl --tools t.json --report p.html", ("simulate", "impeller")),
+)
+
+
+def test_a_page_replaces_no_page_of_another_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill_folder(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(YL569 / "2_hub_rough.cls", "part.cls")
+    shutil.copy(YL569 / "2_hub_rough.expected.mpf", "part.mpf")
+    pages = {}
+    for words, commands in PAGES[:-1]:
+        main(words.split())
+        pages[words] = Path("p.html").read_bytes()
+        assert writers(pages[words][:1000]) == commands, words
+        Path("p.html").unlink()
+    capsys.readouterr()
+    for words, (own, *_) in PAGES:
+        for other, commands in PAGES[:-1]:
+            if own not in commands:
+                Path("p.html").write_bytes(pages[other])
+                assert main(words.split()) == 2, (words, other)
+                said = f"p.html: error: holds a result of trunnion {' or '.join(commands)}, and would be replaced"
+                assert said in capsys.readouterr().err, (words, other)
+                assert Path("p.html").read_bytes() == pages[other]
+    report = PAGES[2][0].replace(".html", ".json")
+    main(PAGES[0][0].replace(".html", ".json").split())
+    before = Path("p.json").read_bytes()
+    assert main(report.split()) == 2, "a report of post is none of verify"
+    assert Path("p.json").read_bytes() == before

@@ -88,5 +88,5 @@ def _render_builder(start: Mapping[str, Any], words: Words) -> bytes:
     modules = ((_WEB / f"{name}.js").read_text(encoding="utf-8") for name in _MODULES)
     style, body = ((_WEB / name).read_text(encoding="utf-8") for name in ("style.css", "body.html"))
     script, texts = bundle((*shared, *modules)), page_texts("builder", words.language)
-    shell = PageShell(str(start["title"]), "\n" + style, body, script, words.language, texts)
+    shell = PageShell(str(start["title"]), "\n" + style, body, script, words.language, texts, "build")
     return shell.head(start, embedded=False) + shell.foot()

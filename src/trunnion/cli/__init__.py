@@ -125,7 +125,10 @@ def _carry_out(given: "Given") -> int:
     from trunnion.options.kinds import FileIn, FileOut
     from trunnion.options.option import outputs
 
-    if any(given.values[each.name] for each in given.job.options if isinstance(each.kind, FileIn | FileOut)):
+    named = (
+        each for each in given.job.options if isinstance(each.kind, FileIn | FileOut) or "FOLDER" in each.value_name
+    )
+    if any(given.values[each.name] for each in named):
         from trunnion.cli.stopped_jobs import settle_stopped_jobs
 
         settle_stopped_jobs(given)

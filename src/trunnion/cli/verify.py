@@ -57,5 +57,5 @@ def _run_manifest(given: Given) -> int:
 def _report_data(verification: Verification) -> Any:
     """Return what a report of the verification has, as data (docs/report.md)."""
     sink = io.BytesIO()
-    add_report(verification, sink, "report.json", ())
+    add_report(verification, sink, "report.json", None)
     return json.loads(sink.getvalue())

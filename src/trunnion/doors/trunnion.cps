@@ -27,7 +27,7 @@ minimumChordLength = spatial(0.01, MM);
 minimumCircularRadius = spatial(0.01, MM);
 maximumCircularRadius = spatial(10000, MM);
 minimumCircularSweep = toRad(0.01);
-maximumCircularSweep = toRad(180); // ends and centre then say all of an arc; a full circle comes as two
+maximumCircularSweep = toRad(120); // ends and centre then say all of an arc, and a half circle cannot hide its sense
 allowHelicalMoves = true;
 allowSpiralMoves = false;
 allowedCircularPlanes = undefined; // any plane
@@ -555,11 +555,11 @@ function onCircular(clockwise, cx, cy, cz, x, y, z, feed) {
   var sweep = Math.atan2(dot(cross(n, u), v), dot(u, v));
   sweep = (sweep < 0) ? sweep + 2 * Math.PI : sweep;
   var off = Math.abs(sweep - getCircularSweep());
-  if (state.isFiveAxis || Math.abs(norm(u) - norm(v)) > small()) {
+  if (state.isFiveAxis || Math.abs(norm(u) - norm(v)) > small() || getCircularSweep() > toRad(150)) {
     linearize(tolerance);
     return;
   }
-  if (Math.min(off, Math.abs(2 * Math.PI - off)) > 0.01) { // a full circle turns by 0 as well
+  if (off > 0.01) {
     refuse("an arc whose ends contradict its angle (" + number(toDeg(sweep), 3) + " and " + number(toDeg(getCircularSweep()), 3) + " degrees)");
     return;
   }

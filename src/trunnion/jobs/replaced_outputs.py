@@ -53,6 +53,15 @@ BY_NAME: Final[Mapping[str, re.Pattern[bytes]]] = MappingProxyType(
     }
 )
 
+#: What a page says of the command that has made it; those of earlier versions say nothing.
+_MADE_BY: Final = re.compile(rb'.{0,300}<meta name="generator" content="trunnion (\w+)">', re.DOTALL)
+
+#: Commands that write what is made for others.
+_ALSO: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({"post": ("impeller",), "simulate": ("impeller",)})
+
+#: A key with the name of a program.
+_PROGRAM: Final = rb'"program": "(?:[^"\\]|\\.)*",\s*'
+
 #: How the data of a command's result begin behind their schema, and the commands that write such.
 RESULTS: Final[Mapping[re.Pattern[bytes], tuple[str, ...]]] = MappingProxyType(
     {
@@ -67,9 +76,11 @@ RESULTS: Final[Mapping[re.Pattern[bytes], tuple[str, ...]]] = MappingProxyType(
             rb'"passed": \w+,\s*"output": ': ("convert",),
             rb'"passed": \w+,\s*"programs": ': ("simulate", "impeller"),
             rb'"passed": \w+,\s*"proven": ': ("verify",),
-            rb'"program": "[^"]*",\s*"machine": "': ("sensitivity",),
-            rb'"program": "[^"]*",\s*"machine": \{': ("post", "verify", "impeller"),
-            rb'"program": "[^"]*",\s*"title": ': ("post", "place", "impeller"),
+            _PROGRAM + rb'"command": "post"': ("post", "impeller"),
+            _PROGRAM + rb'"command": "verify"': ("verify",),
+            _PROGRAM + rb'"machine": "': ("sensitivity",),
+            _PROGRAM + rb'"machine": \{': ("post", "verify", "impeller"),
+            _PROGRAM + rb'"title": ': ("post", "place", "impeller"),
             rb'"programs": \[\s*(\]|\{\s*"output": )': ("post", "impeller"),
             rb'"same": ': ("diff",),
         }.items()
@@ -126,7 +137,10 @@ def _refusal(option: Option, file: Path, command: str) -> Wording:
 
 
 def writers(head: bytes) -> tuple[str, ...]:
-    """Return the commands whose data begin so; none where it is not known, as of lists."""
+    """Return the commands whose pages or data begin so; none where it is not known, as of lists."""
+    if found := _MADE_BY.match(head):
+        command = found[1].decode()
+        return (command, *_ALSO.get(command, ()))
     return next((commands for begins, commands in RESULTS.items() if begins.match(head)), ())
 
 

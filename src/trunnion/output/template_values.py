@@ -3,6 +3,7 @@
 A value is None where there is none: a template leaves out the line that names it.
 """
 
+import math
 import secrets
 from collections.abc import Mapping
 from itertools import accumulate
@@ -219,6 +220,7 @@ class TemplateValues:
         number_format = self._program.control.number_formats(motion.three_axis)["angle"]
         last = self._program.machine.last_rotary
         angle, axis = number_format.rounded(float(motion.rotary[0, last])), self._program.machine.rotary[last]
+        angle -= 360.0 * math.ceil((angle - 180.0) / 360.0)  # as controls find it: within a turn
         has_travel_above = self._program.machine.axes[axis].high >= 10.0**-number_format.decimals
         return "+" if angle > 0.0 or (angle == 0.0 and has_travel_above) else "-"
 

@@ -18,7 +18,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats
 from trunnion.errors import Problem
 from trunnion.messages import Wording
-from trunnion.model.toolpath import BlockSkip, CutterComp, Event, Kind, Moves, Operation, Phase
+from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Event, Kind, Moves, Operation, Phase, SpindleOn
 from trunnion.planning.linearization.row_insertion import insert_rows
 from trunnion.records import dataclass
 
@@ -67,7 +67,7 @@ def with_safe_ways(file: str, operation: Operation, rows: SkipRows) -> tuple[Ope
     """
     if not any(isinstance(event, BlockSkip) and event.on for event in operation.events):
         return operation, []
-    added, problems = dict[Stretch, list[_Row]](), list[Problem]()
+    added, problems = dict[Stretch, list[_Row]](), list(_skipped_starts(file, operation))
     for stretch in skipped_stretches(operation):
         path = _Path(operation, rows)
         if rows.from_home[stretch.first]:
@@ -80,7 +80,9 @@ def with_safe_ways(file: str, operation: Operation, rows: SkipRows) -> tuple[Ope
             path = _Path(operation, rows)
         if not 0 < stretch.first < stretch.end < len(operation.moves):
             continue
-        if rows.holes[stretch.end] and rows.from_home[stretch.first : stretch.end].any():
+        if rows.holes[stretch.end] and (
+            rows.from_home[stretch.first : stretch.end].any() or path.turns_to_hole(stretch)
+        ):
             line = int(operation.moves.line[stretch.end])
             problems.append(Problem(file, line, Wording("CTL460", "tool_axis_turns")))
             continue
@@ -93,6 +95,22 @@ def with_safe_ways(file: str, operation: Operation, rows: SkipRows) -> tuple[Ope
         except _UnsafeError:
             problems.append(way_skipped(file, operation, stretch))
     return (_with_rows(operation, added) if added else operation), problems
+
+
+def _skipped_starts(file: str, operation: Operation) -> Iterator[Problem]:
+    """Yield spindle and coolant before the first point that an OPSKIP holds: their words are those of the way to it,
+    which is never skipped.
+    """
+    on: BlockSkip | None = None
+    for event in operation.events:
+        if event.row > 0:
+            return
+        if isinstance(event, BlockSkip):
+            on = event if event.on else None
+        elif on is not None and isinstance(event, SpindleOn | Coolant):
+            word = "SPINDL" if isinstance(event, SpindleOn) else "COOLNT"
+            said = Wording("CTL460", "start_skipped", word=word, on=on.line, operation=operation.name)
+            yield Problem(file, event.line, said)
 
 
 def _begun_behind(operation: Operation, stretch: Stretch) -> Operation:
@@ -148,6 +166,12 @@ class _Path:
         at = [isinstance(event, BlockSkip) and event.line == stretch.on for event in within].index(True)
         high = self._is_high(row, operation.moves.axis[row])
         return operation.moves.kind[row] == Kind.RAPID and not self.rows.holes[row] and high and at == len(within) - 1
+
+    def turns_to_hole(self, stretch: Stretch) -> bool:
+        """Whether a hole is right behind a stretch without holes in which the tool turns to it, and not at home."""
+        if self.rows.holes[stretch.first - 1 : stretch.end].any() or self.rows.from_home[stretch.end]:
+            return False
+        return _turns(self.operation.moves, stretch.first - 1, stretch.end)
 
     def begins_circle(self, stretch: Stretch) -> bool:
         """Whether a circle begins where a stretch ends, and the tool is elsewhere without the stretch."""

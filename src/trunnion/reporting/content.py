@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, ClassVar, Final
+from typing import Annotated, ClassVar, Final, Literal
 
 import numpy as np
 
@@ -43,8 +43,8 @@ _UNITS: Final = {False: "mm", True: "inch"}
 class ReportContent:
     """Everything in a report except its plots.
 
-    ``rapids`` counts rapid motions, ``untimed`` motions whose time is not known; ``units`` are those that the program
-    counts in, which the report does not: its lengths are mm.
+    ``command`` has made it. ``rapids`` counts rapid motions, ``untimed`` motions whose time is not known; ``units`` are
+    those that the program counts in, which the report does not: its lengths are mm.
     """
 
     SCHEMA: ClassVar[int] = 2
@@ -74,6 +74,7 @@ class ReportContent:
         SimulationContent | None, Figure(take=attrgetter("data"), is_optional=True, after="operations")
     ] = None
     recorded: Annotated[RecordedContent | None, Figure(is_optional=True, after="simulation")] = None
+    command: Annotated[Literal["post", "verify"], Figure(after="program")] = "verify"
     clamping: Annotated[
         Clamping | None,
         Figure("turn_deg", take=attrgetter("turn"), after="program_units"),
@@ -133,7 +134,7 @@ def collect_content(
 
 
 def refused_content(machine: Machine, program: str, problems: Sequence[Problem]) -> ReportContent:
-    """Return the content for a program that was refused before it was run: one check, with the problems as places."""
+    """Return the content for a program that ``post`` refused before it was run: one check, with problems as places."""
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     places = tuple(
         Place(0, -1, math.nan, problem.wording.with_cure(), problem.file, problem.line, code=problem.code)
@@ -147,6 +148,7 @@ def refused_content(machine: Machine, program: str, problems: Sequence[Problem])
         machine=clean(machine.name),
         control=clean(_control_name(machine)),
         made="",
+        command="post",
         standing=Standing(passed=False, ok=0, failed=1, not_checked=0, warnings=len(problems) - len(errors)),
         checks=(_clean_check(check),),
         motions=0,

@@ -31,11 +31,11 @@ def render_page(content: ReportContent, series: PlotSeries, words: Words = LIBRA
     with in_language(words):
         title = f"{content.program}: {verdict_word(content.verdict).lower()}"
         body = page_body(content)
-    yield from plot_page(title, body, parts, words, pictures=content.simulation is not None)
+    yield from plot_page(title, body, parts, words, command=content.command, pictures=content.simulation is not None)
 
 
 def plot_page(
-    title: str, body: str, parts: Sequence[PlotSeries], words: Words = LIBRARY, *, pictures: bool = False
+    title: str, body: str, parts: Sequence[PlotSeries], words: Words = LIBRARY, *, command: str, pictures: bool = False
 ) -> Iterator[bytes]:
     """Yield a page with plots, piece by piece.
 
@@ -43,12 +43,13 @@ def plot_page(
     body      HTML from the body tag, with ``main`` open, up to the plots
     parts     what is plotted, each in a section of its own
     words     of who asks
+    command   that makes it
     pictures  the body has pictures
     """
     levels = [list(detail_levels(part)) for part in parts]
     scripts = (_read_vendored("uPlot.iife.min.js"), _read_asset("unpack.js") + _read_asset("page.js"))
     with in_language(words):
-        head = _head(title, scripts, pictures)
+        head = _head(title, scripts, pictures, command)
         sections = [plot_section(part, own) for part, own in zip(parts, levels, strict=True)]
     yield head.encode()
     yield body.encode()
@@ -80,11 +81,11 @@ def _read_vendored(name: str) -> str:
     return f"\n/*\n{licence}\n*/\n" + vendor.joinpath(name).read_text(encoding="utf-8")
 
 
-def _head(title: str, scripts: Sequence[str], pictures: bool) -> str:
+def _head(title: str, scripts: Sequence[str], pictures: bool, command: str) -> str:
     """Return the head of the page, with its style and a policy that allows only ``scripts``."""
     style = _read_vendored("uPlot.min.css") + _read_asset("page.css")
     sources = " ".join(source_hash(script) for script in scripts)
     images = "img-src data:; " if pictures else ""
     allowed = f"script-src {sources}; style-src {source_hash(style)}; {images}"
     policy = f"default-src 'none'; {allowed}base-uri 'none'; form-action 'none'"
-    return page_head(title, style, policy)
+    return page_head(title, style, policy, command)

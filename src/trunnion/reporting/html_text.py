@@ -64,12 +64,20 @@ def _labelled(row: str, names: Sequence[str]) -> str:
     return _CELL.sub(lambda cell: f'{cell[0]} data-of="{next(of_cells, "")}"', row)
 
 
-def page_head(title: str, style: str, policy: str) -> str:
-    """Return the beginning of a page up to its body; ``policy`` says what it may load and run."""
+def made_by(command: str) -> str:
+    """Return the element that says which command has made a page: no other command replaces it."""
+    return f'<meta name="generator" content="trunnion {command}">'
+
+
+def page_head(title: str, style: str, policy: str, command: str) -> str:
+    """Return the beginning of a page up to its body; ``policy`` says what it may load and run, ``command`` what has
+    made it.
+    """
     return f"""<!DOCTYPE html>
 <html lang="{language_tag()}">
 <head>
 <meta charset="utf-8">
+{made_by(command)}
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">

@@ -38,7 +38,7 @@ def render_path_page(
     allowed = f"script-src {source_hash(script)}; style-src {source_hash(style)}"
     policy = f"default-src 'none'; {allowed}; base-uri 'none'; form-action 'none'"
     with in_language(words):
-        head = page_head(title, style, policy)
+        head = page_head(title, style, policy, "info")
         said = {name: escape(label(name)) for name in _TEXTS}
         status = _status(sum(len(path.points) for path in paths), tolerance)
     data = {

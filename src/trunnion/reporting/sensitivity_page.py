@@ -53,7 +53,7 @@ def render_sensitivity_page(content: SensitivityContent, series: PlotSeries, wor
     """Yield the page in the language of who asks, piece by piece."""
     with in_language(words):
         title, body = label("sensitivity_title", program=content.program), _body(content)
-    yield from plot_page(title, body, [series], words)
+    yield from plot_page(title, body, [series], words, command="sensitivity")
 
 
 def _body(content: SensitivityContent) -> str:

@@ -17,6 +17,7 @@ from trunnion.reporting.html_text import (
     format_limit,
     format_number,
     format_range,
+    made_by,
     note_lines,
     prose,
     source_hash,
@@ -46,6 +47,7 @@ def sheet_page(sheet: SetupSheet) -> bytes:
 <html lang="{language_tag()}">
 <head>
 <meta charset="utf-8">
+{made_by("post")}
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{escape(on_sheet("title_of", program=sheet.content.program))}</title>

@@ -51,7 +51,7 @@ def _page(content: SimulationContent) -> str:
         f"<div><dt>{escape(label(name))}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in content.facts
     )
     title = label("simulation_title", program=content.title, verdict=verdict_word(content.verdict).lower())
-    return f"""{page_head(title, style, policy)}<body>
+    return f"""{page_head(title, style, policy, "simulate")}<body>
 <main>
 <header>
 {verdict_banner(content.verdict, _said(content))}

@@ -96,7 +96,7 @@ def render_survey_page(content: SurveyContent) -> bytes:
 </body>
 </html>
 """
-    return (page_head(title, style, policy) + body).encode()
+    return (page_head(title, style, policy, "survey") + body).encode()
 
 
 def _rates(rates: Sequence[RateRow]) -> str:

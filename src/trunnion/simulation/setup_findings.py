@@ -96,7 +96,10 @@ class SimulationFinding:
 
 @dataclass(frozen=True, slots=True)
 class NearMiss:
-    """Two bodies that come near each other: where nearest, and how near, mm; the rest as in ``SimulationFinding``."""
+    """Two bodies that come near each other: where nearest, and how near, mm; the rest as in ``SimulationFinding``.
+
+    The distance is 0 where a shank rubs along the stock.
+    """
 
     between: tuple[str, str]
     file: str
@@ -112,6 +115,11 @@ class NearMiss:
     row: Annotated[int, NOT_DATA] = -1
     first_line: Annotated[int, Figure(after="block")] = 0
     first_block: Annotated[int, Figure(none=-1, after="first_line")] = -1
+
+    @property
+    def rubs(self) -> bool:
+        """Whether a shank rubs along a wall that stands higher than the flutes."""
+        return self.distance == 0.0
 
     @property
     def stretch(self) -> str:
@@ -132,8 +140,9 @@ class NearMiss:
     def said(self) -> Wording:
         """What comes near what, how near and where."""
         one, other = map(word_said, self.between)
-        place = position(self.place)
-        return _when_skipped(self, phrase("finding_near", one=one, other=other, distance=self.distance, place=place))
+        where = {"one": one, "other": other, "place": position(self.place)}
+        found = phrase("finding_rubs", **where)
+        return _when_skipped(self, found if self.rubs else phrase("finding_near", **where, distance=self.distance))
 
     def __str__(self) -> str:
         """Return what comes near what, how near and where."""

@@ -26,7 +26,7 @@ from trunnion.simulation.stock.deviation import Excess, Gouges, lacking_at_start
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.solids import StockShape, make_stock
 from trunnion.simulation.stock.spans import Spans
-from trunnion.simulation.tools.pieces import RevolvedPieces
+from trunnion.simulation.tools.pieces import RevolvedPieces, revolved_pieces
 from trunnion.simulation.tools.profile import ToolShape
 
 #: Gouges that are nearer to each other along the path than so many cells are one.
@@ -40,7 +40,7 @@ _FACETS: Final = 0.25
 class CuttingModel:
     """What is simulated: the solids, the cell, how far motions may be off (``tolerance``), mm.
 
-    near  distance from the stock from which on shank and holder are told, mm; 0: only where they meet it
+    near  distance from the stock from which on shank and holder are told, mm; 0: only where they meet it or rub on it
     """
 
     stock: StockShape
@@ -183,7 +183,7 @@ def _measured(
 ) -> Iterator[Chunk]:
     """Cut stock with one of the programs."""
     program = programs[number]
-    pieces, _ = tool_pieces(program, model, model.near)
+    pieces, _ = tool_pieces(program, model, with_near=True)
     idle = idle_rows(program.run, spindle_turns(program.run))
     rows = CutRows(0, program.end, idle, _offset(programs, number))
     return measure(cutter, program.run, pieces, rows, threads=threads, progress=progress)
@@ -209,7 +209,7 @@ def _simulate(
     start_volume, operations = stock.volume, list[OperationCut]()
     total, done, error = sum(program.end for program in programs), 0, 0.0
     for number, program in enumerate(programs):
-        pieces, off = tool_pieces(program, model, model.near)
+        pieces, off = tool_pieces(program, model, with_near=True)
         error, tell = max(error, off), _shifted(progress, done, total)
         if shares is None:
             chunks = _measured(model, programs, number, Cutter(stock, design, model.tolerance), threads, tell)
@@ -305,15 +305,21 @@ def _shifted(progress: Callable[[int, int], None] | None, before: int, total: in
 
 
 def tool_pieces(
-    program: SimulatedProgram, model: CuttingModel, near: float = 0.0
+    program: SimulatedProgram, model: CuttingModel, *, with_near: bool = False
 ) -> tuple[dict[int, RevolvedPieces], float]:
-    """Return the pieces of each tool by its index in the run, with what stands ``near`` mm around, and how far they are
-    off,
-    mm."""
-    found, error, tolerance = {}, 0.0, _FACETS * model.tolerance
+    """Return the pieces of each tool by its index in the run, and how far they are off, mm.
+
+    ``with_near``: and those around shank and holder, which show what they come near to.
+    """
+    found, error, facets = {}, 0.0, _FACETS * model.tolerance
     for index, name in enumerate(program.run.tools):
         if name in program.tools:
-            found[index], off = pieces_with_near(program.tools[name], near, tolerance)
+            shape = program.tools[name]
+            found[index], off = (
+                pieces_with_near(shape, model.near, model.tolerance, facets)
+                if with_near
+                else revolved_pieces(shape, facets)
+            )
             error = max(error, off)
     return found, error
 
@@ -333,8 +339,7 @@ def _operations(
         current.volumes.append(rows.removed)
         current.gouged += float(rows.gouged.sum())
         current.findings += row_findings(run, rows, program.tools[name], model.limit, turning)
-        if model.near > 0.0:
-            current.near += near_findings(run, rows, program.tools[name], model.near, model.tolerance)
+        current.near += near_findings(run, rows, program.tools[name], model.near, model.tolerance)
         current.air.append(air_cuts(run, rows))
     if current is not None:
         yield current

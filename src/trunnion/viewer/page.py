@@ -50,7 +50,7 @@ def render_view(content: ViewContent, words: Words = LIBRARY, *, embedded: bool)
     offline.
     """
     title, texts = content.scene["title"], page_texts("viewer", words.language)
-    shell = PageShell(title, "\n" + _read("style.css"), _body(title), _script(), words.language, texts)
+    shell = PageShell(title, "\n" + _read("style.css"), _body(title), _script(), words.language, texts, "view")
     types = {name: "f" if column.dtype == np.float32 else "i" for name, column in content.columns.items()}
     yield shell.head({**content.said(words), "columns": types}, embedded=embedded)
     if embedded:

@@ -11,7 +11,7 @@ from typing import Final
 
 from trunnion.records import dataclass
 from trunnion.reporting.html_plots import script_json
-from trunnion.reporting.html_text import escape, source_hash
+from trunnion.reporting.html_text import escape, made_by, source_hash
 from trunnion.viewer.language import language_tag
 
 _WEB: Final = files("trunnion.viewer") / "web"
@@ -30,6 +30,7 @@ class PageShell:
     script    of ``bundle``
     language  that it speaks, of ``LANGUAGES``
     texts     what it says in that language, by the keys of its body and its script
+    command   that makes it
     """
 
     title: str
@@ -38,6 +39,7 @@ class PageShell:
     script: str
     language: str
     texts: Mapping[str, str]
+    command: str
 
     def head(self, data: object, *, embedded: bool) -> bytes:
         """All up to the data, which is JSON in the element ``scene``; ``embedded``: more of it follows in the page."""
@@ -50,6 +52,7 @@ class PageShell:
 <html lang="{language_tag(self.language)}" data-embedded="{str(embedded).lower()}">
 <head>
 <meta charset="utf-8">
+{made_by(self.command)}
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{escape(self.title)}</title>

@@ -160,7 +160,9 @@ def test_examples_come_after_the_machines_of_builders_and_are_marked(tmp_path: P
 
 
 def test_examples_are_shipped_and_named_as_what_they_are() -> None:
-    shipped = {name for name in shipped_machines() if load_machine(name).name.startswith(("Generic", "LinuxCNC"))}
+    shipped = {
+        name for name in shipped_machines() if load_machine(name).name.startswith(("Generic", "LinuxCNC", "Desk"))
+    }
     assert shipped == EXAMPLES
 
 

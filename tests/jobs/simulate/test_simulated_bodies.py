@@ -194,3 +194,21 @@ def test_the_example_stands_on_the_table_and_is_checked_with_the_machine(project
     found = trunnion.simulate(project)
     assert found.verdict.startswith("nothing found; stands on 11 values nobody measured; assumed: ")
     assert (found.remarks, found.not_checked) == ((), ())
+
+
+def test_a_shank_as_thick_as_its_flutes_rubs_along_a_wall_that_a_pass_before_has_left(tmp_path: Path) -> None:
+    deeper = SLOT.replace("N70", "G0 Z20\nG0 X-20\nG0 Z-9\nN65 G1 X70\nN70")
+    found = simulate(tmp_path, deeper, tools=["1=flat:10,length=60,flutes=6"])
+    assert found.passed
+    assert near_stock(found) == [("shank of tool 1", 65, 0.0)]
+    assert found.near[0].place[2] == pytest.approx(-1.5, abs=1.5)
+    assert "rubs" in str(found.near[0])
+    assert "rubs" in found.verdict
+    again = simulate(tmp_path, deeper, tools=["1=flat:10,length=60,flutes=6"], near=2.0)
+    assert [one[1:] for one in near_stock(again) if one[1] == 65] == [(65, 0.0)]
+    for other in ("flutes=6,shank=9.8", "flutes=6,neck=9.8,shank=10,neck_length=9", "flutes=9"):
+        assert not near_stock(simulate(tmp_path, deeper, tools=[f"1=flat:10,length=60,{other}"]))
+    (one,) = simulate(tmp_path, SLOT.replace("Z-5", "Z-9"), tools=["1=flat:10,length=60,flutes=6"]).findings
+    assert one.kind == "shank into stock"
+    wider = deeper.replace("N60 G1 X70 F500", "N60 G1 X70 F500\nG1 Y1\nX-20\nY-1\nX70\nY0")
+    assert not near_stock(simulate(tmp_path, wider, tools=["1=flat:10,length=60,flutes=6"]))

@@ -214,7 +214,7 @@ class Stream:
         self, centre: Vector, normal: Vector, degrees: float, ends: Sequence[Vector], radius: float, *,
         rise: float = 0.0, feed: float = 600.0,
     ) -> None:  # fmt: skip
-        """An arc about ``normal`` by the right-hand rule; ``ends`` are those of its parts, none above a half circle."""
+        """An arc about ``normal`` by the right-hand rule; ``ends`` are those of its parts of 120 degrees at most."""
         self._event("arc", centre, normal, degrees, rise, feed)
         self._feeding(feed)
         for end in ends:

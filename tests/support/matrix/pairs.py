@@ -17,6 +17,7 @@ from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.controls import Control, control_library, load_control
+from trunnion.controls.definition_files import load_control_table
 from trunnion.families import FAMILIES as CONTROL_FAMILIES
 from trunnion.families import load_writer
 from trunnion.jobs.inputs.stated_setup import apply_setup
@@ -86,7 +87,10 @@ def pair_of(control: str, name: str, folder: Path) -> Pair:
     file = folder / f"{name}_{control}.toml"
     slides = [axis.name for axis in load_machine(name).axes if not axis.is_rotary]
     room = "".join(f'[[axis]]\nname = "{slide}"\nlimits_mm = [-3000, 3000]\n' for slide in slides)
-    file.write_text(f'extends = "{name}"\n[control]\nextends = "{control}"\n{room}', encoding="utf-8")
+    # Whether a machine's control has TCP is said of its own control, not of these.
+    tcp = str(load_control(load_control_table(control)).tcp).lower()
+    text = f'extends = "{name}"\n[control]\nextends = "{control}"\ntcp = {tcp}\n{room}'
+    file.write_text(text, encoding="utf-8")
     machine = load_machine(file)
     return Pair(control, file, machine, load_control(machine.control))
 

@@ -132,8 +132,13 @@ def simultaneous(draw: st.DrawFn, machine: Machine) -> str:
 
 
 def off_the_pole(draw: st.DrawFn, machine: Machine) -> str:
-    """As ``simultaneous``, with the second rotary axis on one side of its zero, where the pole is."""
+    """As ``simultaneous``, with the second rotary axis on one side of its zero, where the pole is.
+
+    A machine with one rotary axis has no pole.
+    """
     axis = machine.axes[machine.rotary[1]]
+    if axis.is_missing:
+        return simultaneous(draw, machine)
     share = -axis.low / (axis.high - axis.low)
     above = axis.high > -axis.low
     return _cut(draw, machine, (share + 0.1 * (1.0 - share), 0.98) if above else (0.02, 0.9 * share))

@@ -156,4 +156,16 @@ _PREPARE: Final = job(
     ],
 )  # fmt: skip
 
-JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION, _PREPARE)
+_FREECAD: Final = job(
+    "freecad", "put the post for FreeCAD where FreeCAD looks, or take it back",
+    Option("step", "", Choice(("install",), "install"), "what is done"),
+    Option("remove", "--remove", Switch(), "take it back"),
+    Option("folder", "--folder", Text("FOLDER"), "folder of FreeCAD's macros, where it is another than by default"),
+    run="freecad:run",
+    examples=[
+        ("trunnion freecad install", "from now on FreeCAD's jobs have the post trunnion"),
+        ("trunnion freecad install --remove", "no longer"),
+    ],
+)  # fmt: skip
+
+JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION, _FREECAD, _PREPARE)

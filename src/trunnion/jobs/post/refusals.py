@@ -7,7 +7,7 @@ from dataclasses import replace
 from trunnion.errors import Problem, TrunnionError
 from trunnion.jobs.post.result import PostResult, ProofFailedError
 from trunnion.jobs.post.stages import Posting, Proof
-from trunnion.jobs.verify.reports import write_post_report, write_refusal
+from trunnion.jobs.verify.reports import OfPost, write_post_report, write_refusal
 from trunnion.messages import Wording
 
 
@@ -32,7 +32,7 @@ def refused(posting: Posting, proof: Proof, result: PostResult) -> ProofFailedEr
     if job.papers.report is not None:
         assert result.proof is not None
         words = posting.observer.words
-        write_post_report(result.proof, job.papers.report, result.decisions, result.simulation, words)
+        write_post_report(result.proof, job.papers.report, OfPost(result.decisions, result.simulation), words)
         posting.target.files.remember_alone(job.papers.report)
     failed = tuple(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
     wording = Wording("CTL910", "can_be_forced" if job.can_force else "nothing_written", failed=failed)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.result_output import written_text
-from trunnion.jobs.verify.reports import write_post_report
-from trunnion.messages import Wording
+from trunnion.jobs.verify.reports import OfPost, write_post_report
+from trunnion.messages import LIBRARY, Wording
 from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -114,7 +114,7 @@ class PostResult:
         if self.verification is None:
             raise InputError(Problem(str(file), 0, Wording("CTL920", "nothing_proven")))
         assert self.proof is not None
-        write_post_report(self.proof, file, self.decisions, self.simulation)
+        write_post_report(self.proof, file, OfPost(self.decisions, self.simulation), LIBRARY)
 
 
 class ProofFailedError(RefusedError):

@@ -157,14 +157,17 @@ class SimulationResult(Grounded):
         return joined((self._found_said(), *meanings, *self.not_judged, *self.grounds.wordings()), words)
 
     def _found_said(self) -> Wording:
+        rubs = sum(each.rubs for each in self.near)
+        rubbing = phrase("rubs_counted", count=rubs)
         if self.passed:
-            return phrase("nothing_found")
+            return phrase("nothing_but_rubs", rubs=rubbing) if rubs else phrase("nothing_found")
         errors = sum(remark.severity is Severity.ERROR for remark in self.remarks)
         beyond = sum(not each.check.passed for each in self.travel)
         parts = (
             phrase("findings_counted", count=len(self.findings)),
             *([phrase("errors_counted", count=errors)] if errors else []),
             *([phrase("programs_beyond", count=beyond)] if beyond else []),
+            *([rubbing] if rubs else []),
         )
         return phrase("must_not_run", found=parts)
 

@@ -14,23 +14,26 @@ from trunnion.jobs.result_output import check_report_name
 from trunnion.machines import Machine
 from trunnion.messages import LIBRARY, Wording, Words, phrase
 from trunnion.model.motion import Decision
+from trunnion.records import dataclass
 from trunnion.verification import Verification
 
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.simulate.result import SimulationResult
 
 
-def write_post_report(
-    verification: Verification,
-    file: FilePath,
-    decisions: Sequence[Decision],
-    simulation: "SimulationResult | None",
-    words: Words = LIBRARY,
-) -> None:
-    """Write the report of a post as ``write_report`` does, with what its simulation found."""
+@dataclass(frozen=True, slots=True, eq=False)
+class OfPost:
+    """What the report of a post has beside its proof: the decisions of the planner, and what a simulation found."""
+
+    decisions: Sequence[Decision]
+    simulation: "SimulationResult | None" = None
+
+
+def write_post_report(verification: Verification, file: FilePath, of_post: OfPost | None, words: Words) -> None:
+    """Write the report of a post, or without one of a verification, as ``write_report`` does."""
     place = check_report_name(file)
     with atomic_file(place, inputs=verified_files(verification)) as sink:
-        add_report(verification, sink, place.name, decisions, simulation, words)
+        add_report(verification, sink, place.name, of_post, words)
 
 
 def write_report(
@@ -60,7 +63,7 @@ def write_report(
         result is about.
     """
     if isinstance(result, Verification):
-        write_post_report(result, file, decisions, None, words)
+        write_post_report(result, file, OfPost(decisions) if decisions else None, words)
         return
     from trunnion.jobs.simulate.report import write_simulation_report
     from trunnion.jobs.simulate.result import SimulationResult
@@ -74,11 +77,10 @@ def add_report(
     verification: Verification,
     sink: BinaryIO,
     name: str,
-    decisions: Sequence[Decision],
-    simulation: "SimulationResult | None" = None,
+    of_post: OfPost | None,
     words: Words = LIBRARY,
 ) -> None:
-    """Write a report into a file that appears later; with what a simulation found, if there was one.
+    """Write a report of a post, or without one of a verification, into a file that appears later.
 
     Raises ``InputError`` when the verification has no columns.
     """
@@ -89,13 +91,16 @@ def add_report(
     from trunnion.reporting.write import render_report
 
     content = None
-    if simulation is not None:
+    if of_post is not None and of_post.simulation is not None:
         from trunnion.jobs.simulate.report import simulation_content
 
-        content = simulation_content(simulation)
+        content = simulation_content(of_post.simulation)
         # How long it was computed differs each time, and the same post gives the same bytes.
         content = replace(content, data={key: value for key, value in content.data.items() if key != "seconds"})
-    collected = collect_content(verification, decisions=decisions, simulation=content)
+    collected = collect_content(
+        verification, decisions=() if of_post is None else of_post.decisions, simulation=content
+    )
+    collected = replace(collected, command="verify" if of_post is None else "post")
     sink.writelines(render_report(Path(name), collected, collect_series(verification), words))
 
 

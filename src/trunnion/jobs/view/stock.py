@@ -21,7 +21,7 @@ from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.machines import Machine
-from trunnion.messages import Wording, joined, phrase
+from trunnion.messages import Wording, joined, phrase, word_said
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.finding import What
@@ -127,7 +127,9 @@ def _found(one: SimulationFinding | NearMiss) -> Wording:
     """Return what does what, how deep or how near, and where; in which meaning of the program, if it has several."""
     first, second = one.between
     place = position(one.place)
-    if isinstance(one, NearMiss):
+    if isinstance(one, NearMiss) and one.rubs:
+        what = phrase("finding_rubs", one=word_said(first), other=word_said(second), place=place)
+    elif isinstance(one, NearMiss):
         what = phrase("near_each_other", first=first, second=second, distance=one.distance, place=place)
     else:
         kind = phrase(_KINDS[one.kind])

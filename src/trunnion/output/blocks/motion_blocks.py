@@ -187,11 +187,12 @@ class MotionBlockWriter:
             raise error.at(self._file, event.line) from None
 
     def _is_on_arc(self, words: Mapping[str, int]) -> bool:
-        """Whether G2 or G3 is in force where radius compensation is switched, at which controls stop with an alarm."""
+        """Whether G2 or G3 may be in force where compensation is switched: controls stop with an alarm there."""
         if "cutter_comp" not in words:
             return False
+        motion = self.writer.modal_state().get("motion")
         arcs = [self.control.codes[f"arc_{way}"] for way in ("clockwise", "counterclockwise")]
-        return self.writer.modal_state().get("motion") in [self.writer.to_count("motion", code) for code in arcs]
+        return motion is None or motion in [self.writer.to_count("motion", code) for code in arcs]
 
     def needs_motion(self, event: WordEvent | ChangedWords) -> bool:
         """Whether the words of an event make no block alone, as ``RL`` does not."""

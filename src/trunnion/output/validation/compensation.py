@@ -90,9 +90,10 @@ def register_problems(program: Program) -> list[Problem]:
 
 
 def skipped_side_problems(program: Program, motion: Motion) -> list[Problem]:
-    """Refuse CUTCOM within OPSKIP that waits for the motion behind it, where its words make no block alone.
+    """Refuse CUTCOM within OPSKIP that waits for the motion behind it, where its words make no block alone; and before
+    OPSKIP, if it waits for a motion within.
 
-    That motion is not skipped, so the words could not be skipped either.
+    Words and motion are one block, which is skipped or not.
     """
     control = program.control
     bare = {word.name for word in control.words if word.bare}
@@ -101,11 +102,14 @@ def skipped_side_problems(program: Program, motion: Motion) -> list[Problem]:
     skips = False
     for event in motion.operation.events:
         if isinstance(event, BlockSkip):
-            if waiting is not None and not event.on and waiting.row == event.row:
+            if waiting is not None and skips and not event.on and waiting.row == event.row:
                 wording = Wording("CTL460", "cutcom_waits", side=waiting.side, off=event.line)
                 problems.append(Problem(program.file_of(motion.operation), waiting.line, wording))
+            elif waiting is not None and not skips and event.on and waiting.row == event.row:
+                wording = Wording("CTL460", "cutcom_skipped", side=waiting.side, on=event.line)
+                problems.append(Problem(program.file_of(motion.operation), waiting.line, wording))
             skips, waiting = event.on, None
-        elif isinstance(event, CutterComp) and skips:
+        elif isinstance(event, CutterComp):
             words = control.family.event_words(event, control.codes, control.coolant)
             waiting = event if bare.issuperset(words) else None
     return problems

@@ -1,11 +1,13 @@
 """Events within radius compensation across which the control would not see the next corner."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints
+from trunnion.arrays import Flags, Ints
 from trunnion.errors import Problem
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
@@ -32,17 +34,66 @@ _STILL: Final = 1e-6
 #: A motion no longer than this may be none once it is printed, mm.
 _NOT_PRINTED: Final = 1e-3
 
+#: Motions across the tool between CUTCOM on and off: with fewer nobody knows where the tool goes.
+_LEAST_MOTIONS: Final = 2
+
 #: A line that begins so is a comment.
 _COMMENT_SIGNS: Final = ("(", ";")
 
 
 def corner_problems(program: Program, motion: Motion) -> list[Problem]:
-    """Refuse stops, and more blocks without motion than the control reads ahead, within CUTCOM."""
+    """Refuse stops, and more blocks without motion than the control reads ahead, within CUTCOM: as the blocks are, and
+    with those skipped that may be.
+    """
     events = motion.operation.events
     if motion.mode.goes_straight or not any(isinstance(event, CutterComp) for event in events):
         return []
     operation = motion.as_written()
-    across, rows = _moves_across(operation), len(operation.moves)
+    across, skipped = _moves_across(operation), _skipped(operation)
+    found = _corner_problems(program, motion, operation, across)
+    if found or not skipped.any():
+        return found
+    # A block that is skipped is one without motion.
+    operation = replace(operation, events=tuple(_not_skipped(operation.events)))
+    found = _corner_problems(program, motion, operation, np.where(skipped & (across != 0), -1, across))
+    if found or not program.control.own_blocks:  # words within a motion begin and end with it
+        return found
+    return list(_sides_alone(program.file_of(motion.operation), operation, across > 0, skipped))
+
+
+def _sides_alone(file: str, operation: Operation, across: Flags, skipped: Flags) -> Iterator[Problem]:
+    """Yield CUTCOM of which less than the motion that begins it and another one are left without the skipped ones."""
+    sides = [event for event in operation.events if isinstance(event, CutterComp)]
+    for event, end in pairwise(sides):
+        rows = slice(event.row, end.row)
+        left = np.count_nonzero(across[rows] & ~skipped[rows])
+        if event.side != "OFF" and end.side == "OFF" and skipped[rows].any() and left < _LEAST_MOTIONS:
+            yield Problem(file, event.line, Wording("CTL460", "side_alone", side=event.side, off=end.line))
+
+
+def _skipped(operation: Operation) -> Flags:
+    """Which rows (n,) may be skipped."""
+    skipped, begin = np.zeros(len(operation.moves), np.bool_), -1
+    for event in operation.events:
+        if isinstance(event, BlockSkip):
+            if not event.on and begin >= 0:
+                skipped[begin : event.row] = True
+            begin = event.row if event.on else -1
+    return skipped
+
+
+def _not_skipped(events: Iterable[Event]) -> Iterator[Event]:
+    """Yield the events but for the sides of compensation that may be skipped."""
+    skips = False
+    for event in events:
+        skips = event.on if isinstance(event, BlockSkip) else skips
+        if not (skips and isinstance(event, CutterComp)):
+            yield event
+
+
+def _corner_problems(program: Program, motion: Motion, operation: Operation, across: Ints) -> list[Problem]:
+    """As ``corner_problems`` of an operation; ``across``: as ``_moves_across`` has it."""
+    events, rows = operation.events, len(operation.moves)
     control = program.control
     ahead = control.blocks_in_compensation
     sides = [event for event in events if isinstance(event, CutterComp)]

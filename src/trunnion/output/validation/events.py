@@ -119,7 +119,14 @@ def _from_home(program: Program, motion: Motion) -> Iterator[Problem]:
     if len(skips) < 2 or not skips[0].on or skips[0].row > 0 or skips[1].row in (0, len(moves)):
         return
     row = skips[1].row
-    if moves.kind[row] != Kind.RAPID or any(cycle.row <= row < end for cycle, end in cycle_row_ranges(operation)):
+    settings = program.effective_settings(operation) | {"orientation": "angles"}
+    # The tool length that the first motion takes on is not skipped.
+    has_words = "length" in program.control.family.first_block_words(motion, "1", 1, settings)
+    if (
+        has_words
+        or moves.kind[row] != Kind.RAPID
+        or any(cycle.row <= row < end for cycle, end in cycle_row_ranges(operation))
+    ):
         yield Problem(program.file_of(operation), int(moves.line[row]), Wording("CTL460", "tool_axis_turns"))
 
 

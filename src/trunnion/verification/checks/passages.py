@@ -86,7 +86,9 @@ def _passages(context: ComparedContext) -> Iterator[tuple[Sequence[int], float]]
         way = _Way(context, legs[0], down)
         if (len(legs) == 1 or _are_halves(run, legs)) and _comes_from_home(run, legs[0], across):
             # Whatever the settings: above all points a leg is harmless. A plane has first legs of its own.
-            if run.state.follows_at(np.array(legs))[0] and way.comes_down_from(context.highest_point(way.axis)):
+            if (run.state.follows_at(np.array(legs))[0] or run.state.plane[legs[0]] < 0) and way.comes_down_from(
+                context.highest_point(way.axis)
+            ):
                 yield unbroken.tolist(), math.inf
         elif _begins_operation(context, arrives) and (height := way.height) is not None:
             yield unbroken.tolist(), height - context.highest_point(way.axis)
@@ -175,8 +177,13 @@ class _Way:
         self._is_free = at_rapid and not turned and not (words and moved) and not run.state.machine_frame.at(rows).any()
 
     def comes_down_from(self, height: float) -> bool:
-        """Whether the last row goes straight down, and all before it end at a height or above."""
-        return self._is_free and self._goes_down() and bool(self._heights[1:-1].min() >= height - self._near)
+        """Whether the last row goes straight down or ends at a height or above, as all before it do."""
+        ends_above = bool(self._heights[-1] >= height - self._near)
+        return (
+            self._is_free
+            and (ends_above or self._goes_down())
+            and bool(self._heights[1:-1].min() >= height - self._near)
+        )
 
     @property
     def height(self) -> float | None:

@@ -49,6 +49,24 @@ CURES: Final = (
     _line("NC222", "", "IF $A_IN[1]==1 GOTOF ON\nG1 X10 F100\nON:", "G1 X10 F100"),
     _line("NC143", "", "IF R9==1\nENDIF", "R9=2\nIF R9==1\nENDIF"),
     _line("NC215", "speed_below_zero", "S-500", "S500"),
+    _line("NC215", "beyond_turn", "G1 C=DC(440.5) F100", "G1 C=DC(80.5) F100"),
+    _line(
+        "NC215",
+        "cycle800_retracts_into_part",
+        'CYCLE800(5,"",0,57,0,0,0,0,0,0,0,0,0,1,-50)',
+        'CYCLE800(5,"",0,57,0,0,0,0,0,0,0,0,0,1,50)',
+    ),
+    _line("NC216", "two_times", "G4 F1 S5", "G4 F1"),
+    _line(
+        "NC351",
+        "ends_other_mode",
+        "G5 P10000\nG1 X10. F100.\nG5.1 Q0",
+        "G5 P10000\nG1 X10. F100.\nG5 P0",
+        on="matsuura_mx330",
+    ),
+    _line(
+        "NC341", "ended_by_other", "M128\nL X+10 F100\nFUNCTION RESET TCPM", "M128\nL X+10 F100\nM129", on="mikron_600u"
+    ),
     _line("NC160", "endproc_without_proc", "ENDPROC", ""),
     _line("NC212", "behind_statement", "R1=1\nIF R1==1\nENDIF M8", "R1=1\nIF R1==1\nENDIF\nM8"),
     _line("NC212", "alone_in_block", "G4 F0.5 M8", "G4 F0.5\nM8"),

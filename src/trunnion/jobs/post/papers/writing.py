@@ -17,7 +17,7 @@ from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.result_output import Target
-from trunnion.jobs.verify.reports import add_report
+from trunnion.jobs.verify.reports import OfPost, add_report
 from trunnion.messages import LIBRARY, Words
 from trunnion.output.program import Program
 from trunnion.records import dataclass
@@ -68,9 +68,8 @@ class PostPapers:
         files, places = target.files, target.papers
         if verification is not None and "report" in places:
             name = places["report"].name
-            add_report(
-                verification, files.add_paper(places["report"]), name, result.decisions, result.simulation, self.words
-            )
+            of_post = OfPost(result.decisions, result.simulation)
+            add_report(verification, files.add_paper(places["report"]), name, of_post, self.words)
         if verification is not None and "sheet" in places:
             place = places["sheet"]
             data = self._sheet(verification, place.path.suffix.lower())

@@ -1,0 +1,392 @@
+"""Trunnion's post for FreeCAD: writes CL of a job, and has Trunnion post and prove it.
+
+FreeCAD runs this file in its own Python: it uses the standard library alone, and of FreeCAD only what is handed to
+``export``. ``trunnion freecad install`` puts it where FreeCAD looks, and beside it how to run Trunnion.
+
+In:     the objects of a job with their ``Path.Commands``: mm, F in mm per second, words modal, arc centres relative.
+Out:    CL in Trunnion's own profile, mm and mm/min, in the coordinate system of the job.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import shlex
+import subprocess
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+TOOLTIP = "Trunnion: an NC program that is proven before it appears, with its report, or the reason why there is none."
+TOOLTIP_ARGS = """--machine NAME   the machine, as trunnion machines lists it, or its file
+--set KEY=VALUE  a setting of the post; may be repeated
+--cl-only        write the CL file in place of the program
+Other options are those of trunnion post.
+"""
+UNITS = "G21"
+MACHINE_NAME = "Trunnion"
+
+#: Says how Trunnion is run: written by ``trunnion freecad install``.
+_COMMAND_FILE = "trunnion_post.json"
+
+_MOVES = {"G0": 0, "G1": 1, "G2": 2, "G3": 3}
+_CYCLES = {"G73": "DRILL,BRKCHP", "G81": "DRILL", "G82": "DRILL", "G83": "DRILL,DEEP", "G84": "TAP", "G85": "BORE"}
+#: Axis about which arcs turn, by the word of their plane.
+_PLANES = {"G17": (0.0, 0.0, 1.0), "G18": (0.0, 1.0, 0.0), "G19": (1.0, 0.0, 0.0)}
+#: Words that say what this post takes for granted.
+_GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94", "G54", "G55", "G56", "G57", "G58", "G59"}
+_OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59"}
+_COOLANTS = {"Flood": "FLOOD", "Mist": "MIST"}
+_SWITCHES = {"M7": "COOLNT/MIST", "M8": "COOLNT/FLOOD", "M9": "COOLNT/OFF", "M0": "STOP", "M1": "OPSTOP"}
+
+
+class RefusedError(Exception):
+    """A job that no program is made of; its text names the operation."""
+
+
+def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
+    """Write the program of a job to a file; ``-`` writes none. Return its text.
+
+    Raises ``RefusedError`` with the operation's name where there is no program.
+    """
+    argstring = argstring or ""
+    arguments = shlex.split(argstring.replace("\\", "/") if os.name == "nt" else argstring)
+    writer = Writer()
+    text = writer.job(objects)
+    if "--cl-only" in arguments:
+        if filename != "-":
+            Path(filename).write_text(text, encoding="utf-8")
+        return text
+    program = Path("freecad.nc" if filename == "-" else filename).resolve()
+    source = program.with_suffix(".apt")
+    source.write_text(text, encoding="utf-8")
+    given = [] if "--report" in arguments else ["--report", str(program.with_suffix(".html"))]
+    if len(writer.offsets) > 1:
+        given += ["--set", "work_offset=" + writer.offset_setting()]
+    _post([str(source), "--output", str(program), *given, *arguments], writer.begins)
+    return program.read_text(encoding="utf-8", errors="replace")
+
+
+def _post(arguments: Sequence[str], begins: Sequence[tuple[int, str]]) -> None:
+    """Run ``trunnion post``, and say what it says."""
+    try:
+        command = json.loads(Path(__file__).with_name(_COMMAND_FILE).read_text(encoding="utf-8"))["command"]
+    except (OSError, ValueError, KeyError) as error:
+        raise RefusedError(f"Trunnion is not installed for FreeCAD: run trunnion freecad install ({error})") from error
+    own = {key: value for key, value in os.environ.items() if key not in ("PYTHONHOME", "PYTHONPATH")}
+    done = subprocess.run(
+        [*command, "post", *arguments], capture_output=True, text=True, check=False, env=own, encoding="utf-8"
+    )
+    said = "\n".join(with_operation(line, begins) for line in (done.stdout + done.stderr).splitlines())
+    print(said)
+    if done.returncode:
+        raise RefusedError(said)
+
+
+def with_operation(line: str, begins: Sequence[tuple[int, str]]) -> str:
+    """Return a line of Trunnion with the name of the operation whose line of the CL file it names.
+
+    begins  first line and name of each operation, in order
+    """
+    found = re.match(r".*?:(\d+): ", line)
+    names = [name for first, name in begins if found and first <= int(found.group(1))]
+    return f"{line} (operation {names[-1]})" if names and names[-1] not in line else line
+
+
+def _number(value: Any) -> float:
+    """Return a quantity, a number or its text as a number; some locales write a decimal comma."""
+    value = getattr(value, "Value", value)
+    if isinstance(value, str):
+        value = value.split()[0].replace(",", ".")
+    return float(value)
+
+
+def _text(value: float) -> str:
+    text = (f"{value:.6f}").rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def _line(text: Any) -> str:
+    """Return a text that is one line of a statement: a dollar sign would continue it."""
+    return " ".join(re.sub(r"[\x00-\x1f\x7f\x85\u2028\u2029$]", " ", str(text)).split())
+
+
+def _listed(*values: float) -> str:
+    return ",".join(_text(value) for value in values)
+
+
+def tool_statement(bit: Any) -> str:
+    """Return the form of a tool bit as a statement, by its shape and its properties."""
+    shape = str(getattr(bit, "ShapeName", "") or getattr(bit, "ShapeType", "")).lower()
+    size = {}
+    for word, names in (
+        ("DIAMETER", ("Diameter",)), ("LENGTH", ("Length",)), ("FLUTE", ("CuttingEdgeHeight",)),
+    ):  # fmt: skip
+        found = next((getattr(bit, name) for name in names if hasattr(bit, name)), None)
+        if found is not None and _number(found) > 0.0:
+            size[word] = _number(found)
+    form = "MILL"
+    if shape.startswith("ball"):
+        size["CORNER"] = size.get("DIAMETER", 0.0) / 2.0
+    elif shape.startswith(("bullnose", "torus", "radius")) and shape != "radius":
+        size["CORNER"] = _number(getattr(bit, "CornerRadius", getattr(bit, "FlatRadius", 0.0)))
+    elif shape.startswith("drill"):
+        form = "DRILL"
+        size["TIP"] = _number(getattr(bit, "TipAngle", 0.0))
+    elif not shape.startswith("endmill"):
+        form = "UNKNOWN"
+    if size.get("FLUTE", 0.0) > size.get("LENGTH", 0.0):
+        size.pop("LENGTH", None)
+    words = [f"{word},{_text(value)}" for word, value in size.items() if value > 0.0]
+    return "$$-> TOOL / " + ",".join([form, *words])
+
+
+class Writer:
+    """Writes the objects of a job as CL.
+
+    begins   first line of each operation, and its name
+    offsets  work offsets in the order of their first use
+    """
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.begins: list[tuple[int, str]] = []
+        self.offsets: list[str] = []
+        self._used: dict[str, str] = {}
+        self._controller: Any = None
+        self._offset = ""
+        self._at: list[float | None] = [None, None, None]
+        self._name = ""
+
+    def job(self, objects: Iterable[Any]) -> str:
+        """Return the CL of a job: its operations, and before them the tools and work offsets that they use."""
+        objects = list(objects)
+        self.lines = ["$$-> TRUNNION / 1", "UNITS/MM", *_head(objects)]
+        for each in objects:
+            self._object(each)
+        if not self.begins:
+            raise RefusedError("the job has no active operation with motion")
+        return "\n".join([*self.lines, "FINI"]) + "\n"
+
+    def offset_setting(self) -> str:
+        """Return the work offsets of the operations, as the setting ``work_offset`` takes them."""
+        others = [f"{name}:{offset}" for name, offset in self._used.items() if offset != self.offsets[0]]
+        return ",".join([self.offsets[0], *others])
+
+    def _object(self, given: Any) -> None:
+        base = getattr(given, "Base", None)
+        if not getattr(given, "Active", True) or not getattr(base, "Active", True):
+            return
+        if hasattr(given, "ToolNumber"):
+            self._controller, self._at = given, [None, None, None]
+            return
+        commands = list(getattr(getattr(given, "Path", None), "Commands", ()))
+        offset = next((each.Name for each in commands if each.Name in _OFFSETS), "")
+        if offset:
+            self._offset, self._at = offset, [None, None, None]
+            if offset not in self.offsets:
+                self.offsets.append(offset)
+        if offset and not any(_code(each.Name) in ("G1", "G2", "G3", *_CYCLES) for each in commands):
+            return  # a fixture: its height counts from where nobody knows
+        if commands:
+            self._operation(given, commands)
+
+    def _operation(self, given: Any, commands: Sequence[Any]) -> None:
+        controller = getattr(given, "ToolController", None) or getattr(
+            getattr(given, "Base", None), "ToolController", None
+        )
+        controller = controller or self._controller
+        label = _line(str(given.Label).replace(",", " "))
+        self._name = label
+        if controller is None:
+            raise RefusedError(f"operation {label}: it has no tool")
+        name = label if len(self.offsets) < 2 else f"{label} {self._offset}"
+        again = 1
+        while name in self._used:
+            again += 1
+            name = f"{label} {again}"
+        self._used[name] = self._offset
+        bit = getattr(controller, "Tool", None)
+        head = [
+            f"TOOL PATH/{name},TOOL,{_line(controller.Label)}",
+            tool_statement(bit),
+            "MSYS/0,0,0,1,0,0,0,1,0",
+            f"LOADTL/{controller.ToolNumber}",
+        ]
+        speed = _number(controller.SpindleSpeed)
+        if speed > 0.0 and str(controller.SpindleDir) != "None":
+            sense = "CCLW" if str(controller.SpindleDir) == "Reverse" else "CLW"
+            head.append(f"SPINDL/RPM,{_text(speed)},{sense}")
+        mode = str(getattr(given, "CoolantMode", getattr(getattr(given, "Base", None), "CoolantMode", "None")))
+        if mode not in (*_COOLANTS, "None", ""):
+            raise RefusedError(f"operation {label}: coolant {mode} is not known")
+        head += ["COOLNT/" + _COOLANTS.get(mode, "")] * (mode in _COOLANTS)
+        body = _Path(self._name, self._at, speed, int(controller.ToolNumber))
+        for command in commands:
+            body.command(command)
+        if not body.moved:
+            return
+        self.begins.append((len(self.lines) + 1, name))
+        self.lines += [*head, *body.closed(), *["COOLNT/OFF"] * (mode in _COOLANTS), "END-OF-PATH"]
+
+
+def _head(objects: Sequence[Any]) -> list[str]:
+    """Return name and stock of the job that the objects belong to, as far as they say it."""
+    parents: list[Any] = []
+    level = list(objects)
+    for _ in range(3):
+        level = [parent for each in level for parent in getattr(each, "InList", ())]
+        parents += level
+    job: Any = next((each for each in parents if hasattr(each, "Stock") and hasattr(each, "Operations")), None)
+    box = getattr(getattr(getattr(job, "Stock", None), "Shape", None), "BoundBox", None)
+    if box is None:
+        return []
+    sizes = [box.XMax - box.XMin, box.YMax - box.YMin, box.ZMax - box.ZMin, box.XMin, box.YMin, box.ZMin]
+    return ["PARTNO/" + _line(job.Label), "$$-> STOCK / BOX," + _listed(*sizes)]
+
+
+def _code(name: str) -> str:
+    """Return the name of a command without leading zeros: G01 is G1."""
+    found = re.match(r"([GM])0*(\d+(?:\.\d+)?)$", name)
+    return found.group(1) + found.group(2) if found else name
+
+
+def _known(at: Sequence[float | None]) -> list[float]:
+    """Return the coordinates of a place, none where one of them is not known."""
+    known = [value for value in at if value is not None]
+    return known if len(known) == len(at) else []
+
+
+class _Path:
+    """The commands of one operation as statements.
+
+    at     where the tool is, mm; None where nothing has said it yet; goes on to the next operation
+    moved  something of it is motion
+    """
+
+    def __init__(self, operation: str, at: list[float | None], speed: float, tool: int) -> None:
+        self.moved = False
+        self._operation = operation
+        self._at = at
+        self._speed = speed
+        self._tool = tool
+        self._lines: list[str] = []
+        self._feed = ""
+        self._plane = _PLANES["G17"]
+        self._cycle = ""
+        self._to_start = True
+
+    def closed(self) -> list[str]:
+        """Return the statements, with the end of a cycle that is on."""
+        self._end_cycle()
+        return self._lines
+
+    def command(self, command: Any) -> None:
+        """Add a command."""
+        name, words = _code(command.Name), command.Parameters
+        if name.startswith("("):
+            self._lines.append("$$ " + _line(name.strip("()").replace("/", " ").replace("->", " ")))
+            return
+        if turned := [word for word in "ABC" if abs(words.get(word, 0.0)) > 1e-9]:
+            raise self._refused(f"{command.Name} has the rotary word {turned[0]}, which says no plane")
+        if name in _MOVES:
+            self._move(name, words)
+        elif name in _CYCLES:
+            self._hole(name, words)
+        elif name in _PLANES:
+            self._plane = _PLANES[name]
+        elif name in ("G98", "G99"):
+            self._to_start = name == "G98"
+        elif name == "G80":
+            self._end_cycle()
+        elif name == "G4":
+            self._lines.append("DELAY/" + _text(words.get("P", words.get("X", 0.0))))
+        elif name in _SWITCHES:
+            self._lines.append(_SWITCHES[name])
+        elif name in ("M3", "M4") and words.get("S"):
+            self._lines.append("SPINDL/RPM,{},{}".format(_text(words["S"]), "CLW" if name == "M3" else "CCLW"))
+        elif name == "M5":
+            self._lines.append("SPINDL/OFF")
+        elif name == "M6" and words.get("T", self._tool) != self._tool:
+            raise self._refused(f"M6 T{words['T']:g} loads another tool than that of the operation")
+        elif name != "M6" and name not in _GRANTED:
+            raise self._refused(f"{command.Name} is not known")
+
+    def _refused(self, why: str) -> RefusedError:
+        return RefusedError(f"operation {self._operation}: {why}")
+
+    def _end_cycle(self) -> None:
+        self._lines += ["CYCLE/OFF"] * bool(self._cycle)
+        self._cycle = ""
+
+    def _take_feed(self, words: dict[str, float]) -> str:
+        """Return the feed in mm/min that is in force; FreeCAD has mm per second, and 0 where none is stated."""
+        if words.get("F", 0.0) > 0.0:
+            self._feed = _text(words["F"] * 60.0)
+        return self._feed
+
+    def _move(self, name: str, words: dict[str, float]) -> None:
+        start = list(self._at)
+        for k, word in enumerate("XYZ"):
+            self._at[k] = words.get(word, self._at[k])
+        self._end_cycle()
+        if name != "G0":
+            before = self._feed
+            if self._take_feed(words) != before:
+                self._lines.append("FEDRAT/MMPM," + self._feed)
+        if None in self._at:
+            if name != "G0":
+                raise self._refused(f"{name} cuts before X, Y and Z are known")
+            return
+        if start == self._at and name in ("G0", "G1") and self.moved:
+            return
+        if name == "G0":
+            self._lines.append("RAPID")
+        elif name != "G1":
+            self._arc(name, words, _known(start))
+        self._lines.append("GOTO/" + _listed(*_known(self._at)))
+        self.moved = True
+
+    def _arc(self, name: str, words: dict[str, float], start: Sequence[float]) -> None:
+        """Add an arc: its centre lies at I, J, K from its start."""
+        if not start or not any(words.get(word) for word in "IJK"):
+            raise self._refused(f"{name} without I, J and K, or without a start")
+        centre = [a + words.get(word, 0.0) for a, word in zip(start, "IJK")]
+        centre = [s if n else c for c, s, n in zip(centre, start, self._plane)]
+        turn = -1.0 if name == "G2" else 1.0
+        radius = math.sqrt(sum((a - b) ** 2 for a, b in zip(start, centre)))
+        self._lines.append("CIRCLE/" + _listed(*centre, *(turn * n for n in self._plane), radius))
+
+    def _hole(self, name: str, words: dict[str, float]) -> None:
+        """Add a hole; its point is at the height of R, above which nothing is cut."""
+        for k, word in enumerate("XY"):
+            self._at[k] = words.get(word, self._at[k])
+        feed = self._take_feed(words)
+        at = _known(self._at)
+        if not at or "R" not in words or "Z" not in words:
+            raise self._refused(f"{name} without X, Y, Z and R")
+        parts = ["CYCLE/" + _CYCLES[name], "RAPTO,0", "FEDTO," + _text(words["Z"] - words["R"])]
+        top = max(at[2], words["R"]) if self._to_start else words["R"]
+        parts.append("RTRCTO," + _text(top - words["R"]))
+        if name in ("G73", "G83"):
+            if not words.get("Q", 0.0) > 0.0:
+                raise self._refused(f"{name} without a peck Q")
+            parts.append("STEP," + _text(words["Q"]))
+        if name in ("G82", "G85") and words.get("P", 0.0) > 0.0:
+            parts.append("DWELL," + _text(words["P"]))
+        if name == "G84":
+            if not self._speed or not feed:
+                raise self._refused("G84 without a speed or a feed")
+            parts.append("MMPR," + _text(float(feed) / self._speed))
+        elif feed:
+            parts.append("MMPM," + feed)
+        cycle = ",".join(parts)
+        if cycle != self._cycle:
+            self._end_cycle()
+            self._lines.append(cycle)
+            self._cycle = cycle
+        self._at[2] = top
+        self._lines.append("GOTO/" + _listed(at[0], at[1], words["R"]))
+        self.moved = True

@@ -1,0 +1,162 @@
+"""The post for FreeCAD: what it writes of plain stand-ins, and real jobs of FreeCAD without a screen."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace as Thing
+from typing import Any
+
+import pytest
+
+import trunnion
+from tests.support.locations import TESTS
+from trunnion.cli import main
+from trunnion.doors import trunnion_post
+from trunnion.model.toolpath import CycleOn, Kind
+
+JOBS = ("profile", "pocket", "adaptive", "helix", "drilling", "facing", "two_tools", "two_fixtures")
+MACHINES = ("dmu65", "yl569", "haas_umc750")
+
+
+def command(name: str, **words: float) -> Thing:
+    """A Path.Command."""
+    return Thing(Name=name, Parameters=words)
+
+
+def bit(shape: str = "endmill", **sizes: Any) -> Thing:
+    """A tool bit; sizes are quantities."""
+    return Thing(ShapeName=shape, **{name: Thing(Value=value) for name, value in sizes.items()})
+
+
+def operation(*commands: Thing, label: str = "POCKET", tool: Thing | None = None, **others: Any) -> Thing:
+    """An operation with a tool controller."""
+    tool = tool or bit(Diameter=10.0, Length=60.0, CuttingEdgeHeight=25.0)
+    controller = Thing(Label="T4", ToolNumber=4, Tool=tool, SpindleSpeed=5000.0, SpindleDir="Forward", Path=None)
+    return Thing(Label=label, Path=Thing(Commands=commands), ToolController=controller, **others)
+
+
+START = (command("G0", Z=20.0), command("G0", X=1.0, Y=2.0))
+
+
+def read(tmp_path: Path, *objects: Thing) -> trunnion.Toolpath:
+    """What is written of objects, read back strictly."""
+    path = tmp_path / "job.apt"
+    trunnion_post.export(objects, str(path), "--cl-only")
+    return trunnion.read_cl(path)
+
+
+def test_moves_arcs_and_feeds_per_second(tmp_path: Path) -> None:
+    given = operation(
+        *START, command("G01", Z=-1.0, F=10.0), command("G1", X=11.0), command("G3", X=11.0, Y=12.0, J=5.0),
+        command("G2", X=11.0, Y=2.0, Z=-2.0, I=0.0, J=-5.0), command("(note)"), CoolantMode="Flood",
+    )  # fmt: skip
+    (found,) = read(tmp_path, given).operations
+    assert found.moves.tip.tolist() == [[1, 2, 20], [1, 2, -1], [11, 2, -1], [11, 12, -1], [11, 2, -2]]
+    assert found.moves.kind.tolist() == [Kind.RAPID, Kind.LINEAR, Kind.LINEAR, Kind.ARC, Kind.ARC]
+    assert set(found.moves.feed[1:].tolist()) == {600.0}
+    assert found.arcs.centre.tolist() == [[11, 7, -1], [11, 7, -1]]
+    assert found.arcs.normal.tolist() == [[0, 0, 1], [0, 0, -1]]
+    assert (found.tool.diameter, found.tool.flute_length, found.name) == (10.0, 25.0, "POCKET")
+
+
+@pytest.mark.parametrize(
+    ("tool", "kind", "corner", "tip"),
+    [
+        (bit("ballend", Diameter=8.0), "MILL", 4.0, 0.0),
+        (bit("bullnose", Diameter=8.0, FlatRadius=1.5), "MILL", 1.5, 0.0),
+        (bit("drill", Diameter="5,0 mm", TipAngle=119.0), "DRILL", 0.0, 119.0),
+        (bit("v-bit", Diameter=6.0), "UNKNOWN", 0.0, 0.0),
+    ],
+)
+def test_tool_bits(tool: Thing, kind: str, corner: float, tip: float, tmp_path: Path) -> None:
+    (found,) = read(tmp_path, operation(*START, command("G1", Z=0.0, F=1.0), tool=tool)).operations
+    assert (found.tool.kind, found.tool.corner_radius, found.tool.tip_angle) == (kind, corner, tip)
+
+
+def test_holes_are_measured_from_the_height_of_r(tmp_path: Path) -> None:
+    drill = command("G83", X=1.0, Y=2.0, Z=-20.0, R=3.0, Q=4.0, F=2.0)
+    again = command("G83", X=9.0, Y=2.0, Z=-20.0, R=3.0, Q=4.0, F=2.0)
+    (found,) = read(tmp_path, operation(*START, command("G98"), drill, again, command("G80"))).operations
+    (cycle,) = (event for event in found.events if isinstance(event, CycleOn))
+    assert dict(cycle.values) == {"RAPTO": (0,), "FEDTO": (-23,), "RTRCTO": (17,), "STEP": (4,), "MMPM": (120,)}
+    assert found.moves.tip.tolist()[1:] == [[1, 2, 3], [9, 2, 3]]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "why"),
+    [
+        (command("G1", A=30.0), "operation POCKET: G1 has the rotary word A"),
+        (command("G2", X=5.0, R=9.0), "operation POCKET: G2 without I, J and K"),
+        (command("G91"), "operation POCKET: G91 is not known"),
+        (command("G83", Z=-20.0, R=3.0), "operation POCKET: G83 without a peck"),
+        (command("M6", T=5), "operation POCKET: M6 T5 loads another tool"),
+    ],
+)
+def test_what_is_not_followed_is_refused_by_the_name_of_its_operation(wrong: Thing, why: str, tmp_path: Path) -> None:
+    with pytest.raises(trunnion_post.RefusedError, match=why):
+        read(tmp_path, operation(*START, wrong))
+
+
+def test_a_rapid_ends_a_cycle() -> None:
+    drill, away = command("G81", X=1.0, Y=2.0, Z=-20.0, R=3.0, F=2.0), command("G0", X=50.0)
+    lines = trunnion_post.Writer().job([operation(*START, drill, away, command("G80"))]).splitlines()
+    assert lines[-6:-2] == ["GOTO/1,2,3", "CYCLE/OFF", "RAPID", "GOTO/50,2,20"]
+
+
+def test_a_label_is_one_line_of_text(tmp_path: Path) -> None:
+    cut = (*START, command("M6", T=4), command("G1", Z=0.0, F=1.0), command("(a\nGOTO/9,9,9)"))
+    (found,) = read(tmp_path, operation(*cut, label="A$\nPOCKET 3/8")).operations
+    assert found.name == "A POCKET 3/8"
+    assert found.moves.tip.tolist() == [[1, 2, 20], [1, 2, 0]]
+
+
+def test_inactive_operations_and_fixtures(tmp_path: Path) -> None:
+    cut = (*START, command("G1", Z=0.0, F=1.0))
+    fixtures = [
+        Thing(Label=name, Path=Thing(Commands=[command(name), command("G0", Z=99.0)])) for name in ("G54", "G55")
+    ]
+    objects = [fixtures[0], operation(*cut), operation(*cut, label="NO", Active=False), fixtures[1], operation(*cut)]
+    assert [each.name for each in read(tmp_path, *objects).operations] == ["POCKET", "POCKET G55"]
+    writer = trunnion_post.Writer()
+    writer.job(objects)
+    assert writer.offset_setting() == "G54,POCKET G55:G55"
+
+
+def test_a_line_of_the_cl_file_has_the_name_of_its_operation() -> None:
+    begins = [(5, "ONE"), (20, "TWO")]
+    assert trunnion_post.with_operation("a.apt:21: error: no", begins) == "a.apt:21: error: no (operation TWO)"
+    assert trunnion_post.with_operation("passed", begins) == "passed"
+
+
+def test_install_and_remove(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["freecad", "install", "--folder", str(tmp_path / "Macro")]) == 0
+    command_file = tmp_path / "Macro" / "trunnion_post.json"
+    assert json.loads(command_file.read_text(encoding="utf-8"))["command"][0] == sys.executable
+    assert main(["freecad", "install", "--remove", "--folder", str(tmp_path / "Macro")]) == 0
+    assert main(["freecad", "install", "--remove", "--folder", str(tmp_path / "Macro")]) == 0
+    assert not list((tmp_path / "Macro").iterdir())
+    assert "is not in" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(not shutil.which("freecadcmd"), reason="FreeCAD is not installed")
+def test_jobs_of_freecad_become_proven_programs(tmp_path: Path) -> None:
+    assert main(["freecad", "install", "--folder", str(tmp_path / "Macro")]) == 0
+    given = {
+        "QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8", "TRUNNION_POST": str(tmp_path / "Macro"),
+        "TRUNNION_OUT": str(tmp_path), "TRUNNION_ARGS": "|".join(f"--machine {each}" for each in MACHINES),
+        "TRUNNION_JOBS": ",".join(JOBS), "HOME": str(tmp_path),
+    }  # fmt: skip
+    script = TESTS / "data" / "freecad" / "jobs.py"
+    subprocess.run(
+        ["freecadcmd", str(script)], env={**os.environ, **given}, stdin=subprocess.DEVNULL, check=False, timeout=600,
+        capture_output=True,
+    )  # fmt: skip
+    found = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
+    assert found == dict.fromkeys(JOBS, "ok")
+    for name in JOBS:
+        assert (tmp_path / f"{name}.nc").stat().st_size > 200
+        assert "passed" in (tmp_path / f"{name}.html").read_text(encoding="utf-8").lower()
+    assert len({each.frame for each in trunnion.read_cl(tmp_path / "two_tools.apt").operations}) == 1
