@@ -56,7 +56,7 @@ FAULTS = [
     ("dmu65", "contour", "PLANE RESET STAY", "M9", "tilted plane stated against not stated"),
     ("dmu65", "tilted_flood", "HSC-MODE:1", "HSC-MODE:0", "HSC-MODE 1 against 0"),
     ("yl569", "tilted_flood", r"\bM30\b", "R90=7 M30", "nothing against left to the next program: R90 = 7"),
-    ("dmu65", "tilted_flood", "M129", "QR9 = 7", "nothing against left to the next program: QR9 = 7"),
+    ("dmu65", "tilted_flood", "; DMG DMU 65", "QR9 = 7", "nothing against left to the next program: QR9 = 7"),
     ("matsuura_mx330", "tilted_flood", r"\bM30\b", "#500=7. M30", "nothing against left to the next program: #500 = 7"),
     ("xyzac_trt", "tilted_flood", r" G91\.1", " G91.1 #40=7", "nothing against left to the next program: #40 = 7"),
     ("yl569", "tilted_flood", r"\bM30\b", "M2", "end of the program by M30 against end of the program by M2"),
