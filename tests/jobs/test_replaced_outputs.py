@@ -126,7 +126,7 @@ def test_the_data_of_each_command_are_known_as_its_own() -> None:
     assert {name for name, commands in found.items() if len(commands) > 1} <= shared | {"place", "simulate"}
 
 
-_OWNERS = {"verify": "post or verify or impeller", "simulate": "simulate or impeller"}
+_OWNERS = {"simulate": "simulate or impeller"}
 
 
 @pytest.mark.parametrize("other", ["simulate", "verify", "diff", "place", "survey"])
