@@ -13,9 +13,10 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError
 
 MACHINE = "haas_umc750"
-#: All but the cycles of a Sinumerik, some of which a Haas does not have.
+#: All but the cycles of a Sinumerik, some of which a Haas does not have, and the roller, which its B cannot turn around.
+_OTHERS = ("yl569_cycles", "four_axis")
 SAMPLES = sorted(
-    path.relative_to(GOLDEN).as_posix() for path in GOLDEN.rglob("*.cls") if path.parent.name != "yl569_cycles"
+    path.relative_to(GOLDEN).as_posix() for path in GOLDEN.rglob("*.cls") if path.parent.name not in _OTHERS
 )
 
 
