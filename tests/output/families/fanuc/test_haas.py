@@ -13,7 +13,7 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError
 
 MACHINE = "haas_umc750"
-#: All but the cycles of a Sinumerik, some of which a Haas does not have, and the roller, which its B cannot turn around.
+#: All but the cycles of a Sinumerik, some of which a Haas does not have, and the roller: its B turns not that far.
 _OTHERS = ("yl569_cycles", "four_axis")
 SAMPLES = sorted(
     path.relative_to(GOLDEN).as_posix() for path in GOLDEN.rglob("*.cls") if path.parent.name not in _OTHERS
