@@ -306,8 +306,8 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
     more = {
         "where the machine is" if kind == "known" else kind
         for kind, text, _ in _events(with_text, without) - _events(without, without)
-        # A text asks for its words.
-        if kind != "unasked" and not (kind == "known" and begins_with(declared, text))
+        # A text asks for its words and variables.
+        if kind not in ("unasked", "variable") and not (kind == "known" and begins_with(declared, text))
     }
     if "spindle" in more:
         return _COLUMNS["spindle"]
