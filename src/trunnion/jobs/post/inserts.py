@@ -317,11 +317,11 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
 def _missing_subprogram(fault: Wording) -> str:
     """Return the subprogram that a reader does not have; empty if that is not the fault."""
     match fault.variant:
-        case "missing_subprogram_number":
+        case "missing_subprogram_number" | "missing_called_number":
             return f"O{fault.parameter('number'):04d}"
         case "missing_subprogram":
             return f"O{fault.parameter('label')}"
-        case "unknown_or_missing":
+        case "unknown_or_missing" | "unknown_or_missing_word":
             return str(fault.parameter("call"))
     return ""
 
