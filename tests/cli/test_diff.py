@@ -140,7 +140,7 @@ def test_words_that_both_programs_have_and_nobody_knows_prove_nothing(
 ) -> None:
     """What they do may depend on all that comes before: here on R1."""
     first = tmp_path / "first.mpf"
-    first.write_text(TEXT.replace("N560 ;Cutting", "R1=1\nFROBNICATE(R1)"), encoding="utf-8")
+    first.write_text(TEXT.replace("N560 ;Cutting", "R1=1\nFROBNICATE(R1)\nR1=0"), encoding="utf-8")
     code, out = diff(capfd, tmp_path, first.read_text(encoding="utf-8").replace("R1=1", "R1=9"), first)
     assert code == 1
     assert out.splitlines()[-1] == "not compared: 2 words not understood; otherwise the same: 150 points"
