@@ -170,7 +170,7 @@ def test_four_axes_are_counted_by_kind(tmp_path: Path) -> None:
     text = SOUND[: SOUND.rindex("[[axis]]")]
     (problem,) = told(tmp_path, text)
     assert (problem.line, problem.what) == (4, "axis has 2 linear and 2 rotary axes")
-    assert problem.cure == "write three linear and two rotary axes, from the workpiece to the tool"
+    assert problem.cure == "write three linear axes and the rotary ones, two at most, from the workpiece to the tool"
 
 
 def test_a_file_without_axes_is_told_what_is_missing(tmp_path: Path) -> None:
@@ -277,7 +277,7 @@ def test_a_shipped_machine_that_does_not_exist_is_told_the_near_one(tmp_path: Pa
 
 
 def test_an_unknown_machine_is_told_what_is_shipped() -> None:
-    with pytest.raises(InputError, match=r"write the path of a \.toml file, or one of dmu65, generic_head_head_ca"):
+    with pytest.raises(InputError, match=r"write the path of a \.toml file, or one of desk_mill_a, dmu65, generic_head_head_ca"):
         load_machine("no such machine")
 
 

@@ -50,7 +50,7 @@ def _can_be_unknown(dialect: Dialect, major: str, words: frozenset[str]) -> bool
     if dialect.text.has_words == major.isdigit():
         return False  # records have numbers for codes, statements have words
     if major not in dialect.handlers:
-        return True
+        return not dialect.is_strict
     listed = ",".join(sorted(words))
     alone = _leaves_unknown(dialect, f"{major}/{listed}" if listed else major, words)
     if alone is not None:
