@@ -277,7 +277,9 @@ def test_a_shipped_machine_that_does_not_exist_is_told_the_near_one(tmp_path: Pa
 
 
 def test_an_unknown_machine_is_told_what_is_shipped() -> None:
-    with pytest.raises(InputError, match=r"write the path of a \.toml file, or one of desk_mill_a, dmu65, generic_head_head_ca"):
+    with pytest.raises(
+        InputError, match=r"write the path of a \.toml file, or one of desk_mill_a, dmu65, generic_head_head_ca"
+    ):
         load_machine("no such machine")
 
 
