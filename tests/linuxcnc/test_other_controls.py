@@ -64,6 +64,9 @@ name = "{machine} with another control"
 extends = "{family}"
 """
 
+#: A Fidia has other words for TCP where the head turns the tool.
+_OF_HEADS = '[control.settings]\ntcp_on = "G96"\ntcp_off = "G97"\n'
+
 
 def site_of(machine: Machine) -> Site:
     """A machine with its control, and room for everything."""
@@ -111,7 +114,8 @@ def both(
 ) -> tuple[Floats, Floats, float]:
     """LinuxCNC's joints, those of the CL points, and how far they may be apart; ``fault``: to put into the program."""
     definition = folder / "other.toml"
-    definition.write_text(_DEFINITION.format(machine=name, family=family), encoding="utf-8")
+    of_heads = _OF_HEADS if (name, family) == ("linuxcnc_5axis", "fidia_nc15") else ""
+    definition.write_text(_DEFINITION.format(machine=name, family=family) + of_heads, encoding="utf-8")
     # Where the workpiece sits is not in the program; both sides are told zero.
     other, own = site_of(load_machine(definition)), site_of(load_machine(name))
     source, program = folder / f"other{other.control.extension}", folder / "judged.ngc"

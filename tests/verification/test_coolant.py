@@ -136,6 +136,9 @@ def test_coolant_that_is_only_said_before_the_tool_change_is_not_checked(machine
         check = next(
             each for each in trunnion.verify(program, machine=machine, cl=source).checks if each.key == "coolant"
         )
+        if said and machine == "haas_umc750":  # whose tool change is known to switch it off
+            assert not check.passed
+            continue
         assert check.passed, check.summary
         assert len(check.missing) == len(said)
         assert all(text in each.what for text, each in zip(said, check.missing, strict=True))
