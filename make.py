@@ -8,6 +8,7 @@ python3 make.py nightly    the rest: the whole matrix, long cases, all draws, fu
 python3 make.py quick      a minute and a half of it: style, types, contracts, the tests nearest to the change
 python3 make.py docs       build the documentation site in build/site
 python3 make.py package    build the wheel and the sdist in dist, and try both in environments of their own
+python3 make.py wheels     build wheels with machine code for Linux, Windows and macOS in dist, and try the one for this
 python3 make.py run ...    run a program of the environment, such as pytest
 """
 
@@ -203,6 +204,38 @@ def build() -> None:
         try_out(wheel, python)
 
 
+def wheels() -> None:
+    """Build wheels that bring machine code; try that for this system where Numba is not, so that nothing compiles."""
+    set_up(".[test]")
+    dist, machine_code = HERE / "dist", HERE / "build" / "machine_code"
+    for folder in (dist, machine_code):
+        shutil.rmtree(folder, ignore_errors=True)
+    run("python", "-m", "build", "--wheel", "--outdir", dist)
+    (pure,) = dist.glob("*.whl")
+    run("python", "-m", "trunnion.jit.wheel_libraries", machine_code)
+    for libraries in sorted(machine_code.iterdir()):
+        add_machine_code(pure, libraries)
+    chosen = HERE / "build" / "chosen"
+    shutil.rmtree(chosen, ignore_errors=True)
+    ask = ("--no-deps", "--no-index", "--quiet", "--find-links", dist, "--dest", chosen)
+    run("python", "-m", "pip", "download", *ask, "trunnion")
+    (wheel,) = chosen.iterdir()
+    for python in (sys.executable, *other_pythons()):
+        try_out(wheel, python, without=("numba", "llvmlite"))
+
+
+def add_machine_code(pure: Path, libraries: Path) -> None:
+    """Make a wheel for the system that a folder of libraries is named by."""
+    with tempfile.TemporaryDirectory() as folder:
+        run("python", "-m", "wheel", "unpack", "--dest", folder, pure)
+        (unpacked,) = Path(folder).iterdir()
+        shutil.copytree(libraries, unpacked / "trunnion" / "jit" / "shipped")
+        (said,) = unpacked.glob("*.dist-info/WHEEL")
+        text = said.read_text(encoding="utf-8").replace("Root-Is-Purelib: true", "Root-Is-Purelib: false")
+        said.write_text(text.replace("Tag: py3-none-any", f"Tag: py3-none-{libraries.name}"), encoding="utf-8")
+        run("python", "-m", "wheel", "pack", "--dest-dir", pure.parent, unpacked)
+
+
 def other_pythons() -> list[str]:
     """Return the other supported versions of Python on the path."""
     names = [f"python3.{minor}" for minor in SUPPORTED if minor != sys.version_info.minor]
@@ -214,12 +247,19 @@ def works(python: str) -> bool:
     return not subprocess.run([python, "--version"], capture_output=True, check=False).returncode
 
 
-def try_out(archive: Path, python: str, variables: Mapping[str, str] | None = None) -> None:
-    """Install an archive into a new environment, with the newest packages that it allows, and post the sample."""
+def try_out(
+    archive: Path, python: str, variables: Mapping[str, str] | None = None, without: Sequence[str] = ()
+) -> None:
+    """Install an archive into a new environment, with the newest packages that it allows, and post the sample.
+
+    without  packages that are taken away before it posts
+    """
     with tempfile.TemporaryDirectory() as folder:
         environment, output = Path(folder, "environment"), Path(folder, "blade.mpf")
         subprocess.run([python, "-m", "venv", str(environment)], check=True)
         install(archive, environment=environment)
+        if without:
+            run("python", "-m", "pip", "uninstall", "--quiet", "--yes", *without, environment=environment)
         post = ("trunnion", "post", SAMPLE, "--machine", "yl569", "--output", output)
         run(*post, environment=environment, variables=variables)
         print(f"{archive.name}, {python}: {len(output.read_bytes())} bytes of NC")
@@ -227,7 +267,7 @@ def try_out(archive: Path, python: str, variables: Mapping[str, str] | None = No
 
 COMMANDS: dict[str, Callable[..., None]] = {
     "sample": sample, "simulate": simulate, "impeller": impeller, "test": test, "nightly": nightly, "quick": quick,
-    "docs": docs, "package": package,
+    "docs": docs, "package": package, "wheels": wheels,
 }  # fmt: skip
 
 

@@ -12,8 +12,11 @@ of the sources recompiles the kernels that it reaches, and no others.
     store       the folders, and who may write to them
     library     a kept library, loaded and called
     build       libraries made of what Numba compiles: all that needs more than Numba's public interface
+    runtime     what they call of Numba's runtime, written anew
+    shipped     libraries that a wheel has brought
     judge       the same kernels by Numba's own way: where libraries cannot be made, and to compare with
     ahead       many kernels compiled side by side
+    wheel_libraries  those for wheels, made for all systems
 
 The log ``trunnion.jit`` says when kernels are compiled (INFO), and when machine code was damaged or cannot be kept
 (WARNING).

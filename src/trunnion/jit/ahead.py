@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.jit.kernels import Kernel, say_once
+from trunnion.jit.shipped import shipped_library
 from trunnion.jit.store import cache_folder, holds_nothing
 
 _log = logging.getLogger("trunnion.jit")
@@ -24,6 +25,8 @@ _WORTH_A_PROCESS = 3
 
 def is_first_run() -> bool:
     """Whether no machine code is on disk."""
+    if shipped_library() is not None:
+        return False
     folder = cache_folder()
     return folder is None or holds_nothing(folder)
 

@@ -5,7 +5,7 @@ calls the kernel (``numba.cfunc``, ``numba.carray``, ``inspect_llvm``: all publi
 
     how Numba's own functions are called: address of the result, address of what describes an exception, arguments; what
     they give (``_OK``, ``_NONE``), and what describes an exception (a pickle's address and length)
-    how its runtime keeps arrays and lists that kernels make (``_RUNTIME``), which is written here anew
+    how its runtime keeps arrays and lists that kernels make (``trunnion.jit.runtime``), which is written anew
 
 It is checked as far as it can be (``_native``, ``_unresolved``), and belongs to the versions of Numba that were tried
 (``TRIED``). With another one kernels are compiled by Numba's own way (``trunnion.jit.judge``), and nothing is kept that
@@ -15,11 +15,11 @@ could be called wrongly.
 import re
 import subprocess
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from pathlib import Path
 from shutil import which
 from sys import platform
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numba
 from llvmlite import binding as llvm
@@ -27,125 +27,13 @@ from llvmlite import binding as llvm
 from trunnion.jit import library
 from trunnion.jit.arguments import Array, Kind, Parts, leaves
 from trunnion.jit.judge import element_type, register
+from trunnion.jit.runtime import RUNTIME
 
 #: Versions of Numba whose output was compared with what Numba itself does.
 TRIED: Final = ("0.68",)
 
 #: What Numba's functions give: done, and done with ``None``.
 _OK, _NONE = 0, -2
-
-#: What kernels with arrays and lists of their own call of Numba's runtime. A ``MemInfo`` has 48 bytes: count of
-#: references, destructor, its argument, address of the data, their size, allocator. With a destructor, the data have
-#: memory of their own, and its argument is what takes their elements apart.
-#: The last ones would put a text about shapes into an exception: it is raised without.
-_RUNTIME: Final = """
-define ptr @NRT_Allocate(i64 %size) {
-  %made = call ptr @malloc(i64 %size)
-  ret ptr %made
-}
-define void @NRT_Free(ptr %made) {
-  call void @free(ptr %made)
-  ret void
-}
-define void @fill(ptr %made, ptr %dtor, ptr %info, ptr %data, i64 %size) {
-  store i64 1, ptr %made
-  %p1 = getelementptr i8, ptr %made, i64 8
-  store ptr %dtor, ptr %p1
-  %p2 = getelementptr i8, ptr %made, i64 16
-  store ptr %info, ptr %p2
-  %p3 = getelementptr i8, ptr %made, i64 24
-  store ptr %data, ptr %p3
-  %p4 = getelementptr i8, ptr %made, i64 32
-  store i64 %size, ptr %p4
-  %p5 = getelementptr i8, ptr %made, i64 40
-  store ptr null, ptr %p5
-  ret void
-}
-define ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %align) {
-  %a = zext i32 %align to i64
-  %head = add i64 %a, 48
-  %total = add i64 %head, %size
-  %made = call ptr @malloc(i64 %total)
-  %none = icmp eq ptr %made, null
-  br i1 %none, label %end, label %fill
-fill:
-  %from = ptrtoint ptr %made to i64
-  %least = add i64 %from, %head
-  %over = urem i64 %least, %a
-  %offset = sub i64 %head, %over
-  %data = getelementptr i8, ptr %made, i64 %offset
-  call void @fill(ptr %made, ptr null, ptr null, ptr %data, i64 %size)
-  br label %end
-end:
-  ret ptr %made
-}
-define ptr @NRT_MemInfo_alloc(i64 %size) {
-  %made = call ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 16)
-  ret ptr %made
-}
-define ptr @NRT_MemInfo_new_varsize_dtor(i64 %size, ptr %info) {
-  %made = call ptr @malloc(i64 48)
-  %data = call ptr @malloc(i64 %size)
-  %none1 = icmp eq ptr %made, null
-  %none2 = icmp eq ptr %data, null
-  %none = or i1 %none1, %none2
-  br i1 %none, label %fail, label %fill
-fill:
-  call void @fill(ptr %made, ptr %made, ptr %info, ptr %data, i64 %size)
-  ret ptr %made
-fail:
-  call void @free(ptr %made)
-  call void @free(ptr %data)
-  ret ptr null
-}
-define ptr @NRT_MemInfo_varsize_realloc(ptr %made, i64 %size) {
-  %p3 = getelementptr i8, ptr %made, i64 24
-  %p4 = getelementptr i8, ptr %made, i64 32
-  %old = load ptr, ptr %p3
-  %new = call ptr @realloc(ptr %old, i64 %size)
-  store ptr %new, ptr %p3
-  store i64 %size, ptr %p4
-  ret ptr %new
-}
-define void @NRT_MemInfo_call_dtor(ptr %made) {
-  %p1 = getelementptr i8, ptr %made, i64 8
-  %dtor = load ptr, ptr %p1
-  %plain = icmp eq ptr %dtor, null
-  br i1 %plain, label %end, label %own
-own:
-  %p2 = getelementptr i8, ptr %made, i64 16
-  %info = load ptr, ptr %p2
-  %p3 = getelementptr i8, ptr %made, i64 24
-  %data = load ptr, ptr %p3
-  %flat = icmp eq ptr %info, null
-  br i1 %flat, label %freed, label %apart
-apart:
-  call void %info(ptr %data)
-  br label %freed
-freed:
-  call void @free(ptr %data)
-  br label %end
-end:
-  call void @free(ptr %made)
-  ret void
-}
-@PyExc_RuntimeError = global i8 0
-define ptr @PyUnicode_FromKindAndData(i32 %a, ptr %b, i64 %c) {
-  ret ptr null
-}
-define i64 @PyObject_Hash(ptr %a) {
-  ret i64 0
-}
-define ptr @PyTuple_Pack(i64 %a, ...) {
-  ret ptr null
-}
-define void @PyErr_SetString(ptr %a, ptr %b) {
-  ret void
-}
-declare ptr @malloc(i64)
-declare ptr @realloc(ptr, i64)
-declare void @free(ptr)
-"""
 
 _LLVM_TYPES: Final = {int: "i64", float: "double", bool: "i8"}
 
@@ -154,13 +42,52 @@ class NotBuiltError(Exception):
     """A library cannot be made here."""
 
 
+class Processor(NamedTuple):
+    """What object code is made for, by LLVM's names."""
+
+    triple: str
+    name: str
+    features: str = ""
+
+    def machine(self) -> Any:
+        """Return what emits object code for it."""
+        llvm.initialize_all_targets()
+        llvm.initialize_all_asmprinters()
+        llvm.initialize_native_asmparser()  # for the question what a processor can do
+        target = llvm.Target.from_triple(self.triple)
+        return target.create_target_machine(cpu=self.name, features=self.features, opt=3, reloc="pic")
+
+
+def this_processor() -> Processor:
+    """Return the one of this computer."""
+    return Processor(
+        llvm.get_default_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten(),
+    )  # fmt: skip
+
+
 def object_code(
     function: Callable[..., Any],
     kinds: Sequence[Kind],
     results: tuple[tuple[type, ...], bool],
     options: dict[str, Any],
 ) -> bytes:
-    """Compile a kernel into object code with one function, ``library.ENTRY``.
+    """Compile a kernel into object code for this processor with one function, ``library.ENTRY``.
+
+    options  of Numba: ``error_model``
+
+    Raises ``NotBuiltError`` where that is not known to be right.
+    """
+    module = kernel_module(function, kinds, results, options)
+    return emitted(module, this_processor(), library.find_system(llvm))
+
+
+def kernel_module(
+    function: Callable[..., Any],
+    kinds: Sequence[Kind],
+    results: tuple[tuple[type, ...], bool],
+    options: dict[str, Any],
+) -> Any:
+    """Compile a kernel into a module of LLVM with one function that is called, ``library.ENTRY``.
 
     options  of Numba: ``error_model``
 
@@ -171,12 +98,24 @@ def object_code(
     if not library.is_as_expected():
         raise NotBuiltError("arrays are laid out otherwise here")
     compiled = _compiled(function, kinds, results, options)
-    text = compiled.inspect_llvm()
+    text = _without_instructions(compiled.inspect_llvm())
     native = _native(text, compiled.native_name, kinds)
     module = llvm.parse_assembly(text)
     module.link_in(llvm.parse_assembly(_entry(native, kinds, results)))
-    module.link_in(llvm.parse_assembly(_RUNTIME))
-    return _emitted(module)
+    module.link_in(llvm.parse_assembly(RUNTIME))
+    for value in (*module.functions, *module.global_variables):
+        if value.name != library.ENTRY and not value.is_declaration:
+            value.linkage = llvm.Linkage.internal
+    return module
+
+
+def _without_instructions(text: str) -> str:
+    """Replace what LLVM has put into Numba's output for x86: a count is taken from, and asked whether it is 0 (4)."""
+    name = "@llvm.x86.atomic.sub.cc.i64"
+    text = re.sub(rf"{re.escape(name)}(\(ptr [^\n()]*, i64 \d+), i32 4\)", r"@last_taken\1)", text)
+    return re.sub(
+        rf"^declare [^\n]*{re.escape(name)}[^\n]*$", "declare i8 @last_taken(ptr, i64)", text, flags=re.MULTILINE
+    )
 
 
 #: Numba's type of an address of things of a type.
@@ -327,14 +266,15 @@ def _entry(native: str, kinds: Sequence[Kind], results: tuple[tuple[type, ...], 
     return "\n".join(lines)
 
 
-def _emitted(module: Any) -> bytes:
-    """Keep what the entry needs, and make machine code of it for this processor."""
-    for value in (*module.functions, *module.global_variables):
-        if value.name != library.ENTRY and not value.is_declaration:
-            value.linkage = llvm.Linkage.internal
-    machine = llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=3, reloc="pic",
-    )  # fmt: skip
+def emitted(module: Any, processor: Processor, system: Set[str]) -> bytes:
+    """Keep what the entry of a kernel's module needs, and make object code of it.
+
+    system  names of the functions that the system has
+
+    Raises ``NotBuiltError`` where it needs others.
+    """
+    machine = processor.machine()
+    module.triple, module.data_layout = processor.triple, str(machine.target_data)
     passes = llvm.create_new_module_pass_manager()
     passes.add_global_dead_code_eliminate_pass()
     passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(3)))
@@ -342,8 +282,8 @@ def _emitted(module: Any) -> bytes:
     unresolved = {
         value.name
         for value in (*module.functions, *module.global_variables)
-        if value.is_declaration and not value.name.startswith("llvm.")
-    } - library.find_system(llvm)
+        if value.is_declaration and (not value.name.startswith("llvm.") or value.name.startswith("llvm.x86."))
+    } - system
     if unresolved:
         raise NotBuiltError(f"it needs {', '.join(sorted(unresolved))}")
     code: bytes = machine.emit_object(module)

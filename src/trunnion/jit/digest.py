@@ -1,14 +1,41 @@
 """What is compiled into a kernel: its own code, the functions it calls in whatever module, and their constants."""
 
-from collections.abc import Iterator, Sequence
+import hashlib
+from collections.abc import Callable, Iterator, Sequence
 from enum import Enum
+from functools import cache
+from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
+#: What stands for the code of a function.
+CodeOf: TypeAlias = Callable[[FunctionType], Iterator[bytes]]
 
-def ingredients(value: Any, seen: set[int] | None = None) -> Iterator[bytes]:
+
+def of_bytecode(function: FunctionType) -> Iterator[bytes]:
+    """Yield what Python made of a function: it differs from version to version."""
+    for code in _codes(function.__code__):
+        yield code.co_code
+        yield repr((code.co_names, code.co_varnames)).encode()
+        yield from ingredients([each for each in code.co_consts if not isinstance(each, CodeType)])
+
+
+def of_source(function: FunctionType) -> Iterator[bytes]:
+    """Yield what stands for the file that a function is in: the same for all versions of Python.
+
+    Raises ``OSError`` where the file cannot be read.
+    """
+    yield _file_digest(function.__code__.co_filename)
+
+
+@cache
+def _file_digest(file: str) -> bytes:
+    return hashlib.sha256(Path(file).read_bytes()).digest()
+
+
+def ingredients(value: Any, code_of: CodeOf = of_bytecode, seen: set[int] | None = None) -> Iterator[bytes]:
     """Everything that is compiled into a function, or that a constant consists of, as bytes.
 
     ``seen`` are the functions that have been gone through. Constants of other kinds than those here Numba does not
@@ -18,23 +45,19 @@ def ingredients(value: Any, seen: set[int] | None = None) -> Iterator[bytes]:
     if isinstance(value, FunctionType):
         if id(value) not in seen:
             seen.add(id(value))
-            yield from _of_function(value, seen)
+            yield from _of_function(value, code_of, seen)
     elif hasattr(value, "py_func"):  # a kernel
-        yield from ingredients(value.py_func, seen)
-    elif isinstance(value, CodeType):
-        yield value.co_code
-        yield repr((value.co_names, value.co_varnames)).encode()
-        yield from ingredients(value.co_consts, seen)
+        yield from ingredients(value.py_func, code_of, seen)
     elif isinstance(value, np.ndarray | np.generic):
         yield repr((value.dtype, value.shape)).encode()
         yield value.tobytes()
     elif isinstance(value, type):
         members = [(name, one.value) for name, one in value.__members__.items()] if issubclass(value, Enum) else ()
         yield repr((value.__qualname__, getattr(value, "_fields", ()), members)).encode()
-        yield from ingredients(list(getattr(value, "_field_defaults", {}).items()), seen)
+        yield from ingredients(list(getattr(value, "_field_defaults", {}).items()), code_of, seen)
     elif isinstance(value, tuple | list):
         for part in value:
-            yield from ingredients(part, seen)
+            yield from ingredients(part, code_of, seen)
         yield b"end"
     elif isinstance(value, frozenset):
         yield from sorted(repr(part).encode() for part in value)
@@ -42,18 +65,19 @@ def ingredients(value: Any, seen: set[int] | None = None) -> Iterator[bytes]:
         yield repr(value).encode()
 
 
-def _of_function(function: FunctionType, seen: set[int]) -> Iterator[bytes]:
+def _of_function(function: FunctionType, code_of: CodeOf, seen: set[int]) -> Iterator[bytes]:
     if hasattr(function, "is_inlined"):
         yield b"inlined"
+    yield from code_of(function)
     keyword_defaults = sorted((function.__kwdefaults__ or {}).items())
-    yield from ingredients((function.__code__, function.__defaults__, keyword_defaults), seen)
+    yield from ingredients((function.__defaults__, keyword_defaults), code_of, seen)
     for cell in function.__closure__ or ():
-        yield from ingredients(cell.cell_contents, seen)
-    for code in _codes(function.__code__):
-        for name in code.co_names:
-            if name in function.__globals__:
-                yield name.encode()
-                yield from ingredients(_in_module(function.__globals__[name], code.co_names), seen)
+        yield from ingredients(cell.cell_contents, code_of, seen)
+    names = sorted({name for code in _codes(function.__code__) for name in code.co_names})
+    for name in names:
+        if name in function.__globals__:
+            yield name.encode()
+            yield from ingredients(_in_module(function.__globals__[name], names), code_of, seen)
 
 
 def _codes(code: CodeType) -> Iterator[CodeType]:

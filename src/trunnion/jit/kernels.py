@@ -4,13 +4,14 @@ import hashlib
 import logging
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property, update_wrapper
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from trunnion.jit.arguments import Kind, argument_kinds, result_kinds
-from trunnion.jit.digest import ingredients
+from trunnion.jit.digest import ingredients, of_source
 from trunnion.jit.library import Entry, from_object, loaded
+from trunnion.jit.shipped import made_by, shipped_entry, shipped_library
 from trunnion.jit.store import Store, cache_folder
 from trunnion.messages import Wording, phrase
 
@@ -91,15 +92,36 @@ class Kernel:
     @cached_property
     def digest(self) -> str:
         """A short name for everything that is compiled into the kernel."""
+        return self._digest(ingredients(self.py_func))
+
+    @cached_property
+    def source_digest(self) -> str:
+        """The same by the sources, for all versions of Python.
+
+        Raises ``OSError`` where they cannot be read.
+        """
+        return self._digest((made_by(), *ingredients(self.py_func, of_source)))
+
+    def _digest(self, parts: Iterable[bytes]) -> str:
         digest = hashlib.sha256(repr((self.kinds, self._results, self._options)).encode())
-        for part in ingredients(self.py_func):
+        for part in parts:
             digest.update(b"%d:" % len(part) + part)  # 1.5 and 23.0 are not 1.52 and 3.0
         return digest.hexdigest()[:16]
+
+    @cached_property
+    def shipped(self) -> Entry | None:
+        """The machine code of it that the wheel has brought; None where there is none, or none of these sources."""
+        if shipped_library() is None:
+            return None
+        try:
+            return shipped_entry(self.source_digest, self.kinds, self._results)
+        except OSError:
+            return None
 
     @property
     def is_kept(self) -> bool:
         """Whether its machine code is on disk, undamaged."""
-        return self._store is not None and self._store.whole() is not None
+        return self.shipped is not None or (self._store is not None and self._store.whole() is not None)
 
     def prepare(self, *, wait: bool = True) -> None:
         """Load the machine code, or compile it.
@@ -108,6 +130,9 @@ class Kernel:
         """
         with self._preparing:
             if self._entry is not None:
+                return
+            if self.shipped is not None:
+                self._entry = self.shipped
                 return
             store = self._store
             if store is None:
@@ -118,6 +143,12 @@ class Kernel:
                 with store.locked(wait=wait) as held:
                     if held:  # perhaps another process has made it meanwhile
                         self._entry = self._loaded(store) or self._made(store)
+
+    def module(self) -> Any:
+        """Compile it into a module of LLVM, of which machine code for any processor can be made."""
+        from trunnion.jit import build
+
+        return build.kernel_module(self.py_func, self.kinds, self._results, self._options)
 
     def judge(self) -> "Judge":
         """Compile it by Numba's own way, to compare with."""

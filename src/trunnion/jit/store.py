@@ -140,7 +140,7 @@ def _made_for() -> str:
     if found is not None and found.origin is not None:
         packages = Path(found.origin).parents[1]
         versions = " ".join(sorted(each.name for one in ("numba", "llvmlite") for each in packages.glob(f"{one}-*")))
-    makers = [Path(__file__).with_name(f"{name}.py") for name in ("build", "library", "arguments")]
+    makers = [Path(__file__).with_name(f"{name}.py") for name in ("build", "runtime", "library", "arguments")]
     made_by = [hashlib.sha256(file.read_bytes()).hexdigest() for file in makers if file.exists()]
     arrays = (is_as_expected(), object.__basicsize__)
     whole = (versions, made_by, sys.platform, platform.machine(), _processor(), arrays)

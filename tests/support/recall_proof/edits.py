@@ -286,7 +286,9 @@ def _replaced(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 continue
             if kind == "feed by time" and not any(re.search(r"\bF\d", each.code) for each in blocks):
                 continue  # threads alone have their feed by their pitch
-            if kind == "feed by time" and not any(each.cuts or each.cycle for each in blocks[k + 1 :]):
+            if kind == "feed by time" and not any(
+                each.cuts or each.cycle or "CYCLE" in each.code for each in blocks[k + 1 :]
+            ):
                 continue  # nothing is cut by it, and the end of the program lifts it
             if kind == "back to another height" and returns_on_the_way(blocks, k):
                 continue
