@@ -3,7 +3,8 @@
 FreeCAD runs this file in its own Python: it uses the standard library alone, and of FreeCAD only what is handed to
 ``export``. ``trunnion freecad install`` puts it where FreeCAD looks, and beside it how to run Trunnion.
 
-In:     the objects of a job with their ``Path.Commands``: mm, F in mm per second, words modal, arc centres relative.
+In:     the objects of a job with their ``Path.Commands``: mm, F in mm per second, words modal, arc centres relative,
+        in the work plane that is the object's ``Placement``.
 Out:    CL in Trunnion's own profile, mm and mm/min, in the coordinate system of the job.
 """
 
@@ -35,6 +36,8 @@ _MOVES = {"G0": 0, "G1": 1, "G2": 2, "G3": 3}
 _CYCLES = {"G73": "DRILL,BRKCHP", "G81": "DRILL", "G82": "DRILL", "G83": "DRILL,DEEP", "G84": "TAP", "G85": "BORE"}
 #: Axis about which arcs turn, by the word of their plane.
 _PLANES = {"G17": (0.0, 0.0, 1.0), "G18": (0.0, 1.0, 0.0), "G19": (1.0, 0.0, 0.0)}
+#: The plane of an operation without a work plane.
+_ABSOLUTE = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 #: Words that say what this post takes for granted.
 _GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94", "G54", "G55", "G56", "G57", "G58", "G59"}
 _OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59"}
@@ -65,6 +68,8 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
     given = [] if "--report" in arguments else ["--report", str(program.with_suffix(".html"))]
     if len(writer.offsets) > 1:
         given += ["--set", "work_offset=" + writer.offset_setting()]
+    if len(writer.planes) > 1 and not any(each.startswith("frame=") for each in arguments):
+        given += ["--set", "frame=absolute"]
     _post([str(source), "--output", str(program), *given, *arguments], writer.begins)
     return program.read_text(encoding="utf-8", errors="replace")
 
@@ -103,8 +108,8 @@ def _number(value: Any) -> float:
     return float(value)
 
 
-def _text(value: float) -> str:
-    text = (f"{value:.6f}").rstrip("0").rstrip(".")
+def _text(value: float, decimals: int = 6) -> str:
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
@@ -143,17 +148,29 @@ def tool_statement(bit: Any) -> str:
     return "$$-> TOOL / " + ",".join([form, *words])
 
 
+def work_plane(given: Any) -> tuple[float, ...]:
+    """Return the plane in which an operation has its path: origin, X and Y in the coordinates of the job."""
+    placement = getattr(given, "Placement", None)
+    if placement is None:
+        return _ABSOLUTE
+    rows = [round(float(value), 9) + 0.0 for value in placement.toMatrix().A]
+    return (rows[3], rows[7], rows[11], rows[0], rows[4], rows[8], rows[1], rows[5], rows[9])
+
+
 class Writer:
     """Writes the objects of a job as CL.
 
     begins   first line of each operation, and its name
     offsets  work offsets in the order of their first use
+    planes   work planes, and the absolute one first: origin, X and Y in the coordinates of the job
     """
 
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.begins: list[tuple[int, str]] = []
         self.offsets: list[str] = []
+        self.planes: list[tuple[float, ...]] = [_ABSOLUTE]
+        self._plane = _ABSOLUTE
         self._used: dict[str, str] = {}
         self._controller: Any = None
         self._offset = ""
@@ -208,11 +225,15 @@ class Writer:
             again += 1
             name = f"{label} {again}"
         self._used[name] = self._offset
+        plane = work_plane(given)
+        if plane != self._plane:
+            self._plane, self._at = plane, [None, None, None]
+            self.planes += [plane] * (plane not in self.planes)
         bit = getattr(controller, "Tool", None)
         head = [
             f"TOOL PATH/{name},TOOL,{_line(controller.Label)}",
             tool_statement(bit),
-            "MSYS/0,0,0,1,0,0,0,1,0",
+            "MSYS/" + ",".join(_text(value, 9) for value in plane),
             f"LOADTL/{controller.ToolNumber}",
         ]
         speed = _number(controller.SpindleSpeed)
