@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import trunnion
-from tests.support.locations import TESTS
+from tests.support.locations import ROOT, TESTS
 from trunnion.cli import main
 from trunnion.cli.doors import macro_folder
 from trunnion.doors import trunnion_post
@@ -220,3 +220,29 @@ def test_jobs_of_freecad_become_proven_programs(tmp_path: Path) -> None:
         assert (tmp_path / f"{name}.nc").stat().st_size > 200
         assert "passed" in (tmp_path / f"{name}.html").read_text(encoding="utf-8").lower()
     assert len({each.frame for each in trunnion.read_cl(tmp_path / "two_tools.apt").operations}) == 1
+
+
+@pytest.mark.skipif(not shutil.which("freecadcmd"), reason="FreeCAD is not installed")
+def test_the_sample_is_cut_to_the_form_of_the_part_on_three_machines(tmp_path: Path) -> None:
+    assert main(["freecad", "install", "--folder", str(tmp_path)]) == 0
+    given = {
+        "QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8", "HOME": str(tmp_path), "TRUNNION_OUT": str(tmp_path),
+        "TRUNNION_ARGS": "--machine haas_umc750",
+    }  # fmt: skip
+    done = subprocess.run(
+        ["freecadcmd", str(ROOT / "examples" / "freecad" / "plate.py")], env={**os.environ, **given},
+        stdin=subprocess.DEVNULL, check=False, timeout=600, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "plate.nc").stat().st_size > 2000
+    for machine in MACHINES:
+        result = trunnion.post(
+            tmp_path / "plate.apt", machine=machine, simulation={"part": tmp_path / "plate.stl", "cell": 0.5}
+        )
+        found = result.simulation
+        assert result.passed
+        assert found is not None
+        assert found.left is not None
+        assert found.gouge is not None
+        assert found.stock_from == str(tmp_path / "plate.apt")
+        assert (found.left.largest < 0.5, found.gouge.largest < 0.1) == (True, True), (machine, found.left, found.gouge)

@@ -69,9 +69,10 @@ def _chosen_folder(settings: Path) -> Path | None:
 
 def posts_folder() -> Path | None:
     """Return the folder of Fusion's local posts; None where Fusion does not run."""
-    if sys.platform == "win32":
+    system: str = sys.platform
+    if system == "win32":
         above = [Path(os.environ.get("APPDATA", Path.home()))]
-    elif sys.platform == "darwin":
+    elif system == "darwin":
         above = [Path.home(), Path.home() / "Library" / "Application Support"]
     else:
         return None

@@ -170,7 +170,7 @@ class Writer:
         self.begins: list[tuple[int, str]] = []
         self.offsets: list[str] = []
         self.planes: list[tuple[float, ...]] = [_ABSOLUTE]
-        self._plane = _ABSOLUTE
+        self._plane: tuple[float, ...] = _ABSOLUTE
         self._used: dict[str, str] = {}
         self._controller: Any = None
         self._offset = ""

@@ -1,5 +1,6 @@
 """A set-up that has been read, and what of it is cut."""
 
+from collections.abc import Sequence
 from dataclasses import field
 from functools import cached_property
 
@@ -17,7 +18,6 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.simulator import SimulatedProgram
-from trunnion.simulation.stock.stated_stock import StatedStock
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tool_deltas import ToolPath, as_the_tool_goes
 from trunnion.simulation.tools.profile import ToolShape
@@ -34,7 +34,7 @@ class PreparedSetup:
     pose       where the last set-up's workpiece frame lies in this one's
     register_holds  what the registers of the radius hold
     until      N number of the block of the last program before which the simulation ends; None: at its end
-    stock      that its CL files state, as the part is drawn; None: they state none
+    drawn      toolpaths of the part as it is drawn
     strict     what nobody has stated of radius compensation is an error
     until_line  the line of that block instead, which may be skipped; 0: none
     """
@@ -52,7 +52,7 @@ class PreparedSetup:
     register_holds: RegisterValue = RegisterValue.UNKNOWN
     until_line: int = 0
     strict: bool = False
-    stock: StatedStock | None = None
+    drawn: Sequence[Toolpath] = ()
 
     @property
     def turn(self) -> Floats | None:

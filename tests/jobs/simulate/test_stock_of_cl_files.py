@@ -83,5 +83,5 @@ def test_leaning_stock_is_a_mesh_and_an_upright_cylinder_stays_one(tmp_path: Pat
 def test_a_block_form_is_that_of_the_stock_of_the_cl_file(tmp_path: Path) -> None:
     result = trunnion.post(written(tmp_path), machine="dmu65", settings={"blank": "stock"})
     text = str(result.text)
-    assert "BLK FORM 0.1 Z X+0.0000 Y-20.0000 Z-10.0000" in text
-    assert "BLK FORM 0.2 X+60.0000 Y+20.0000 Z+0.0000" in text
+    assert "BLK FORM 0.1 Z X+0 Y-20 Z-10\n" in text
+    assert "BLK FORM 0.2 X+60 Y+20 Z+0\n" in text

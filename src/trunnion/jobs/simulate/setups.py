@@ -38,7 +38,6 @@ from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.offset_places import cuts_at_unknown_places
 from trunnion.simulation.prepared_setup import PreparedSetup
-from trunnion.simulation.stock.stated_stock import stated_stock
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
@@ -81,7 +80,6 @@ def prepare_setup(
             remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
     read = as_toolpaths(given.cl, observer, stated_reading(of_reading, given.strict))
     toolpaths = hooked_toolpaths(read, machine, given.hooks)
-    stock = None if given.cl_is_turned else stated_stock(read)
     if not given.cl_is_turned:  # else the post has told what its reader remarks
         remarks += (remark for toolpath in read for remark in toolpath.remarks)
         toolpaths = toolpaths_clamped(toolpaths, *angles)
@@ -91,7 +89,7 @@ def prepare_setup(
     return PreparedSetup(
         machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
         given.until, RegisterValue(given.radius_register or register_value_of(machine)), strict=given.strict,
-        stock=stock,
+        drawn=read,
     )  # fmt: skip
 
 

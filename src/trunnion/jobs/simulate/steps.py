@@ -23,6 +23,7 @@ from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.steps import CuttingOptions, SetupSteps
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
+from trunnion.simulation.stock.stated_stock import stated_stock
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 
@@ -133,7 +134,7 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
         raise InputError(dict.fromkeys(problems))
     stock_from = given.stock_from
     if shape is None:
-        if (stated := setups[0].stock) is None:
+        if (stated := stated_stock(setups[0].drawn)) is None:
             raise InputError(argument_problem("stock", Wording("SIM110", "stock_nowhere")))
         shape, stock_from = stock_shape(stated.stock), stated.file
     widths = {name: cutting_width(tool) for each in setups for name, tool in each.tools.items()}
