@@ -31,6 +31,9 @@ MACHINE_NAME = "Trunnion"
 #: Says how Trunnion is run: written by ``trunnion freecad install``.
 _COMMAND_FILE = "trunnion_post.json"
 
+#: How CL files of this post begin.
+_FIRST_LINE = "$$-> TRUNNION / 1"
+
 _MOVES = {"G0": 0, "G1": 1, "G2": 2, "G3": 3}
 _CYCLES = {"G73": "DRILL,BRKCHP", "G81": "DRILL", "G82": "DRILL", "G83": "DRILL,DEEP", "G84": "TAP", "G85": "BORE"}
 #: Axis about which arcs turn, by the word of their plane.
@@ -57,16 +60,28 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
     text = writer.job(objects)
     if "--cl-only" in arguments:
         if filename != "-":
-            Path(filename).write_text(text, encoding="utf-8")
+            _write(Path(filename), text)
         return text
     program = Path("freecad.nc" if filename == "-" else filename).resolve()
     source = program.with_suffix(".apt")
-    source.write_text(text, encoding="utf-8")
+    _write(source, text)
     given = [] if "--report" in arguments else ["--report", str(program.with_suffix(".html"))]
     if len(writer.offsets) > 1:
         given += ["--set", "work_offset=" + writer.offset_setting()]
     _post([str(source), "--output", str(program), *given, *arguments], writer.begins)
     return program.read_text(encoding="utf-8", errors="replace")
+
+
+def _write(file: Path, text: str) -> None:
+    """Write a CL file whole or not at all, and never over what is none of this post."""
+    there = file.read_bytes() if file.is_file() else b""
+    if there and not there.startswith(_FIRST_LINE.encode()):
+        raise RefusedError(
+            f"{file} would be replaced by the CL file, and is none: name another output, or move it away"
+        )
+    part = file.with_name(file.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    part.replace(file)
 
 
 def _post(arguments: Sequence[str], begins: Sequence[tuple[int, str]]) -> None:
@@ -163,7 +178,7 @@ class Writer:
     def job(self, objects: Iterable[Any]) -> str:
         """Return the CL of a job: its operations, and before them the tools and work offsets that they use."""
         objects = list(objects)
-        self.lines = ["$$-> TRUNNION / 1", "UNITS/MM", *_head(objects)]
+        self.lines = [_FIRST_LINE, "UNITS/MM", *_head(objects)]
         for each in objects:
             self._object(each)
         if not self.begins:
