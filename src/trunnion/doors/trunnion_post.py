@@ -31,9 +31,6 @@ MACHINE_NAME = "Trunnion"
 #: Says how Trunnion is run: written by ``trunnion freecad install``.
 _COMMAND_FILE = "trunnion_post.json"
 
-#: How CL files of this post begin.
-_FIRST_LINE = "$$-> TRUNNION / 1"
-
 _MOVES = {"G0": 0, "G1": 1, "G2": 2, "G3": 3}
 _CYCLES = {"G73": "DRILL,BRKCHP", "G81": "DRILL", "G82": "DRILL", "G83": "DRILL,DEEP", "G84": "TAP", "G85": "BORE"}
 #: Axis about which arcs turn, by the word of their plane.
@@ -59,9 +56,7 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
     writer = Writer()
     text = writer.job(objects)
     if "--cl-only" in arguments:
-        if filename != "-":
-            _write(Path(filename), text)
-        return text
+        return text if filename == "-" else _write(Path(filename), text)
     program = Path("freecad.nc" if filename == "-" else filename).resolve()
     source = program.with_suffix(".apt")
     _write(source, text)
@@ -72,16 +67,14 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
     return program.read_text(encoding="utf-8", errors="replace")
 
 
-def _write(file: Path, text: str) -> None:
-    """Write a CL file whole or not at all, and never over what is none of this post."""
-    there = file.read_bytes() if file.is_file() else b""
-    if there and not there.startswith(_FIRST_LINE.encode()):
-        raise RefusedError(
-            f"{file} would be replaced by the CL file, and is none: name another output, or move it away"
-        )
+def _write(file: Path, text: str) -> str:
+    """Write a CL file whole or not at all, and never over what is none of this post; return its text."""
+    if file.is_file() and file.stat().st_size and not file.read_bytes().startswith(b"$$-> TRUNNION / 1"):
+        raise RefusedError(f"{file} would be replaced by the CL file, and is none: move it away")
     part = file.with_name(file.name + ".part")
     part.write_text(text, encoding="utf-8")
     part.replace(file)
+    return text
 
 
 def _post(arguments: Sequence[str], begins: Sequence[tuple[int, str]]) -> None:
@@ -178,7 +171,7 @@ class Writer:
     def job(self, objects: Iterable[Any]) -> str:
         """Return the CL of a job: its operations, and before them the tools and work offsets that they use."""
         objects = list(objects)
-        self.lines = [_FIRST_LINE, "UNITS/MM", *_head(objects)]
+        self.lines = ["$$-> TRUNNION / 1", "UNITS/MM", *_head(objects)]
         for each in objects:
             self._object(each)
         if not self.begins:
