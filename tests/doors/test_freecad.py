@@ -246,3 +246,17 @@ def test_the_sample_is_cut_to_the_form_of_the_part_on_three_machines(tmp_path: P
         assert found.gouge is not None
         assert found.stock_from == str(tmp_path / "plate.apt")
         assert (found.left.largest < 0.5, found.gouge.largest < 0.1) == (True, True), (machine, found.left, found.gouge)
+
+
+@pytest.mark.parametrize("arguments", ["--cl-only", "--machine yl569"])
+def test_a_file_that_is_no_cl_of_this_post_is_not_replaced(arguments: str, tmp_path: Path) -> None:
+    path = tmp_path / "job.apt"
+    path.write_text("PARTNO/BY HAND\n", encoding="utf-8")
+    given = operation(*START, command("G1", Z=-1.0, F=10.0))
+    output = path if arguments == "--cl-only" else tmp_path / "job.mpf"
+    with pytest.raises(trunnion_post.RefusedError, match=r"job\.apt would be replaced by the CL file"):
+        trunnion_post.export([given], str(output), arguments)
+    assert [file.read_text(encoding="utf-8") for file in tmp_path.iterdir()] == ["PARTNO/BY HAND\n"]
+    path.write_text("", encoding="utf-8")
+    for _ in range(2):
+        trunnion_post.export([given], str(path), "--cl-only")

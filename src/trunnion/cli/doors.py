@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 from trunnion.cli.printing import print_result
 from trunnion.cli.wording import in_words
 from trunnion.errors import InputError, argument_problem
+from trunnion.files import output_group, resolve_output
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording, phrase
 
@@ -110,7 +111,9 @@ def _install(given: Given, folder: Path, texts: Mapping[str, str], done: str) ->
         print_result(in_words(phrase("post_removed" if found else "post_not_there", folder=str(folder))))
         return 0
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
+    with output_group(remembers=False) as group:
+        for name, text in texts.items():
+            with group.open(resolve_output(folder / name)) as output:
+                output.main.write(text.encode())
     print_result(in_words(phrase(done, folder=str(folder))))
     return 0
