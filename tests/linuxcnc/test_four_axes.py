@@ -1,4 +1,4 @@
-"""A four-axis program on a whole LinuxCNC with plain axes (trivkins, XYZA): its joints are those that our reader says."""
+"""A four-axis program on a whole LinuxCNC with plain axes (trivkins): its joints are those that our reader says."""
 
 from dataclasses import replace
 from pathlib import Path
