@@ -32,7 +32,7 @@ def test_the_controller_takes_each_joint_where_our_reader_says(tmp_path: Path) -
     columns = [next(k for k, axis in enumerate(machine.axes) if axis.name == letter) for letter in BENCH.letters]
     wanted = run.positions(np.arange(len(run))).joints[:, columns]
     moves = np.abs(np.diff(wanted, axis=0)).max(axis=1) > 1e-6
-    (joints,) = motions(BENCH, [with_rests(program)])
+    (joints,) = motions(BENCH, [with_rests(program)], 200.0)
     found = rests_of(joints)
     np.testing.assert_allclose(found, wanted[np.concatenate(([True], moves))], atol=1e-4, rtol=0)
     assert np.ptp(found[:, 3]) > 30.0
