@@ -12,6 +12,9 @@ from trunnion.simulation.meshes import TriangleMesh, cylinder_mesh
 
 RADIUS, DEPTH, HEIGHT = 20.0, 0.6, 8.0  # of the bar along X, of the cut, of the letters, mm
 
+#: The workpiece zero lies on the axis of the table, and the length of the tool.
+ON_AXIS = {"zero": "-450,-203,-400", "tool_length": "60"}
+
 #: Letters as strokes in a square: along the bar, and around it.
 LETTERS = {
     "T": (((0.0, 1.0), (1.0, 1.0)), ((0.5, 1.0), (0.5, 0.0))),
@@ -56,12 +59,11 @@ def main(folder: Path) -> None:
     file.write_text(engraved("TRUNNION"), encoding="utf-8")
     upright = cylinder_mesh(2.0 * RADIUS, 0.0, 30.0)
     bar = TriangleMesh(upright.vertices[:, (2, 0, 1)], upright.faces)  # along X
-    settings = {"zero": (-450, -203, -400), "tool_length": 60}  # on the axis of the table
     result = trunnion.post(
         file,
         machine="haas_vf2_a",
         output=folder / "wrapped_text.nc",
-        settings=settings,
+        settings=ON_AXIS,
         simulation={"stock": bar, "cell": 0.5},
     )
     assert result.simulation is not None

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import trunnion
@@ -63,7 +64,7 @@ def test_flats_by_indexing_come_out_as_the_part(machine: str, zero: str, tmp_pat
     file.write_text(flats(), encoding="utf-8")
     key, value = zero.split("=")
     named = GOLDEN / machine if "/" in machine else machine
-    part = box_mesh((0.0, -HALF, -HALF), (40.0, HALF, HALF), "part")
+    part = box_mesh(np.array((0.0, -HALF, -HALF)), np.array((40.0, HALF, HALF)), "part")
     result = trunnion.post(
         file, machine=named, settings={key: value, "tool_length": "60"}, simulation={"part": part, "cell": 0.8}
     )
