@@ -22,6 +22,7 @@ from trunnion.verification.expected.arcs import circle_of
 from trunnion.verification.expected.path import WrittenSpline
 from trunnion.verification.expected.splines import dense_points, span_counts
 from trunnion.verification.kinematics.axis_motion import AxisMotion
+from trunnion.verification.kinematics.positioning_moves import rotary_positioning_flags
 from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.matching.pairs import ArcSegments
 from trunnion.verification.results import Check, Place
@@ -171,7 +172,8 @@ def _seen(context: Context, *, rapids: bool) -> SeenRows:
         on_arc = (kind == Kind.ARC) & (run.orientation_between(first, end) == Orientation.ANGLES)
         on_arc[on_arc] = _turning(run, first + np.flatnonzero(on_arc))
         in_machine = phrase("left_in_machine"), state.machine_frame.part(first, end)
-        reasons = (in_machine, (phrase("left_rapid"), here), (phrase("left_turns_on_arc"), on_arc))
+        turns = phrase("left_turns"), rotary_positioning_flags(run, first, end) & ~here
+        reasons = (in_machine, (phrase("left_rapid"), here), turns, (phrase("left_turns_on_arc"), on_arc))
         seen.add(first, end - first, reasons)
     return seen
 

@@ -268,6 +268,7 @@ class LinearizationErrors:
             needed = (0.25 * total * total > math.radians(self._by_default.tolerance.finishing)) | cuts
             sampled &= needed if self._divided is None else needed | np.isfinite(self._divided[first:end])
         sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & self._tip_is_limited) | long
+        sampled &= ~rotary_positioning_flags(run, first, end)
         by_angles = run.orientation_between(first, end) == Orientation.ANGLES
         # No great circle leads round by more than half a turn: the words of rotary axes do.
         by_angles |= (turns.max(axis=1) > _HALF_TURN) & (run.programmed[first:end] & int(ProgrammedWord.VECTOR) == 0)
