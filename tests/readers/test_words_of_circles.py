@@ -43,6 +43,4 @@ def test_beside_a_line_each_is_an_error(machine: str, tmp_path: Path) -> None:
     blocks = "G1 X10. Y0. I5. F100.\nX20. J3. K0.\nX30.\n"
     file.write_text(HEADS[machine] + "G1 X0. Y0. F100.\n" + blocks + "M2\n", encoding="utf-8")
     found = run_program(file, load_machine(machine)).errors
-    assert [(each.wording.variant, each.wording.what[0]) for each in found] == [
-        ("unused_word", word) for word in "IJK"
-    ]
+    assert [(each.wording.variant, each.wording.what[0]) for each in found] == [("unused_word", word) for word in "IJK"]

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.verifying import check
 from trunnion import post, verify
 
 CORNER = Path(__file__).parents[1] / "golden" / "dmu65" / "corner.cls"
@@ -45,7 +46,7 @@ def test_away_from_the_part_rotary_axes_may_be_positioned_at_feed(machine: str, 
         found = verify(changed, machine=machine, cl=CORNER)
         assert rapid in text
         assert found.passed, [each.summary for each in found.checks if not each.passed]
-        assert next(each for each in found.checks if each.key == "span").worst < 1e-3
+        assert (check(found, "span").worst or 0.0) < 1e-3
 
 
 def test_at_the_part_a_turn_at_feed_stays_a_fault(tmp_path: Path) -> None:

@@ -282,7 +282,7 @@ def _faults(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
     rounding = math.asin(min(1.0, _DIAGONAL * tolerances.tip / max(arc.radius, 1e-9)))
     half = 2.0 * math.asin(math.sqrt(min(1.0, 0.5 * _SHARE * tolerances.chord / max(arc.radius, 1e-9))))
     back = turns < -2.0 * rounding - 1e-9
-    limit = np.float64(half + rounding + 1e-9)
+    limit = half + rounding + 1e-9
     bad = (0.5 * np.abs(turns) > limit) | back
     for k in np.flatnonzero(bad).tolist():
         if back[k]:
@@ -290,7 +290,7 @@ def _faults(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
             said = Wording("span", "arc_back", off=value)
         else:
             value = float(heights[k])
-            said = Wording("span", "arc_off", off=value, limit=float(_heights(arc.radius, 2.0 * limit)))
+            said = Wording("span", "arc_off", off=value, limit=float(_heights(arc.radius, np.array(2.0 * limit))))
         yield context.place_with_cl(_row(context, segments, k), value, said, segments.cl)
 
 
