@@ -10,6 +10,7 @@ from typing import Final
 from trunnion.cli.printing import print_result
 from trunnion.cli.wording import in_words
 from trunnion.files import output_group, resolve_output
+from trunnion.files.places import cannot_write
 from trunnion.jobs.job import Given
 from trunnion.messages import phrase
 
@@ -38,7 +39,10 @@ def run(given: Given) -> int:
             path.unlink()
         print_result(in_words(phrase("post_removed" if found else "post_not_there", folder=str(folder))))
         return 0
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_write(str(folder), error) from None
     post = files("trunnion").joinpath("doors", _POST).read_text(encoding="utf-8")
     command = json.dumps({"command": [sys.executable, "-E", "-m", "trunnion"]}, indent=1)
     with output_group(remembers=False) as group:
