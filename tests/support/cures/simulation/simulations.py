@@ -56,7 +56,7 @@ def _saved(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 
 _SLOT: Final = on()
-_PLACED: Final = on(zero="0,0,-100", tool_length="60")
+_PLACED: Final = on(zero="0,0,-60", tool_length="60")
 _TWO_TOOLS: Final = SLOT.replace("M5\nM30", "G49\nT2 M6\nG43 H2\nS1000 M3\nG0 X-20 Y10 Z-3\nG1 X70\nG0 Z20\nM5\nM30")
 _BOTH: Final = on(tools=f"{TOOL} {TOOL.replace('1=', '2=', 1)}")
 _PART: Final = on(part=slotted(5.0))
