@@ -18,7 +18,7 @@ import trunnion
 from make_cls import write
 from trunnion.jobs.view.viewing import prepare_view
 from trunnion.viewer.server import view_application
-from trunnion.viewer.serving import Access, listen
+from trunnion.viewer.serving import Access, take_port
 
 BLOCKS = 1_000_000
 MACHINE = "yl569"
@@ -81,11 +81,13 @@ def main() -> None:
         content = prepare_view(post(blocks, folder), machine=MACHINE)
         page_file = folder / "view.html"
         trunnion.write_view(post(blocks // 10, folder), machine=MACHINE, output=page_file)
-        with listen("127.0.0.1", 0) as listening:
+        with take_port("127.0.0.1", 0) as listening:
             application = view_application(content, Access(("127.0.0.1",)))
             server = uvicorn.Server(uvicorn.Config(application, log_level="error"))
             thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
             thread.start()
+            while not server.started:
+                time.sleep(0.01)
             # The page's policy forbids code out of texts, which the motions here are.
             browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)
             page = browser.new_context(viewport=SIZE, bypass_csp=True).new_page()

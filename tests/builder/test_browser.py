@@ -21,7 +21,7 @@ from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
 from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.machines import forward
-from trunnion.viewer.serving import Access, listen
+from trunnion.viewer.serving import Access, take_port
 
 pytestmark = needs_browser
 
@@ -33,7 +33,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def address(folder: Path) -> Iterator[str]:
-    listening = listen("127.0.0.1", 0)
+    listening = take_port("127.0.0.1", 0)
     application = builder_application(BuilderSession(folder), Access(("127.0.0.1",)))
     server = uvicorn.Server(uvicorn.Config(application, log_level="critical"))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})

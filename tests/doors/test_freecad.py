@@ -160,3 +160,17 @@ def test_jobs_of_freecad_become_proven_programs(tmp_path: Path) -> None:
         assert (tmp_path / f"{name}.nc").stat().st_size > 200
         assert "passed" in (tmp_path / f"{name}.html").read_text(encoding="utf-8").lower()
     assert len({each.frame for each in trunnion.read_cl(tmp_path / "two_tools.apt").operations}) == 1
+
+
+@pytest.mark.parametrize("arguments", ["--cl-only", "--machine yl569"])
+def test_a_file_that_is_no_cl_of_this_post_is_not_replaced(arguments: str, tmp_path: Path) -> None:
+    path = tmp_path / "job.apt"
+    path.write_text("PARTNO/BY HAND\n", encoding="utf-8")
+    given = operation(*START, command("G1", Z=-1.0, F=10.0))
+    output = path if arguments == "--cl-only" else tmp_path / "job.mpf"
+    with pytest.raises(trunnion_post.RefusedError, match=r"job\.apt would be replaced by the CL file"):
+        trunnion_post.export([given], str(output), arguments)
+    assert [file.read_text(encoding="utf-8") for file in tmp_path.iterdir()] == ["PARTNO/BY HAND\n"]
+    path.write_text("", encoding="utf-8")
+    for _ in range(2):
+        trunnion_post.export([given], str(path), "--cl-only")

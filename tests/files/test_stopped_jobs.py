@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
@@ -24,7 +25,9 @@ from tests.support.stopped_jobs import (
     write_job,
 )
 from trunnion.files import EarlierJob, output_group, resolve_output
-from trunnion.files.hidden_folders import JOURNAL
+from trunnion.files.hidden_folders import JOURNAL, hidden_folders_in
+from trunnion.files.hidden_names import hidden_name
+from trunnion.files.journal import read_journal
 from trunnion.files.locks import hold
 
 
@@ -186,6 +189,119 @@ def test_a_journal_that_somebody_has_made_moves_nothing(before: str, after: str,
     assert {name: text for name, text in left(folder).items() if "/." not in name} == there
     assert {each.code for each in said} == {"FIL290"}
     assert any("neither to their places nor back" in each.what for each in said)
+
+
+@needs_fork
+@pytest.mark.parametrize("which", ["earlier", "file"])
+def test_a_link_in_a_hidden_folder_brings_nothing_from_elsewhere(which: str, tmp_path: Path) -> None:
+    theirs = tmp_path / "theirs"
+    theirs.mkdir()
+    (theirs / "0").write_bytes(b"secret")
+    folder = old_job(tmp_path / "shop")
+    stopped_between_moves(folder)
+    (earlier,) = (folder / "nc").rglob(".earlier")
+    if which == "earlier":
+        earlier.rename(tmp_path / "earlier")
+        earlier.symlink_to(theirs)
+    else:
+        (earlier / "0").unlink()
+        (earlier / "0").symlink_to(theirs / "0")
+    said = settle(folder)
+    assert (theirs / "0").read_bytes() == b"secret"
+    assert (folder / "nc" / "SUB.SPF").read_bytes() == b"new"
+    assert any("a link leads out of its folder" in each.what for each in said)
+
+
+@needs_fork
+def test_a_journal_records_no_program_as_a_project(tmp_path: Path) -> None:
+    folder = old_job(tmp_path)
+    stopped_between_moves(folder)
+    (journal,) = (path for path in (folder / "nc").rglob(JOURNAL) if b'"moves"' in path.read_bytes())
+    other = str(folder.resolve() / "part.toml")
+    journal.write_text(journal.read_text().replace(other, other.replace("part.toml", "nc/one.mpf")))
+    assert any("a record is of no project" in each.what for each in settle(folder))
+    assert EarlierJob((folder / "nc" / "one.mpf").resolve()).wrote((folder / "nc" / "one.mpf").resolve())
+
+
+@needs_fork
+def test_a_job_whose_files_were_all_in_place_is_finished_although_one_was_edited_since(tmp_path: Path) -> None:
+    folder = old_job(tmp_path)
+    stopped_between_moves(folder)
+    for hidden in [each for name in ("nc", "two", "reports") for each in hidden_folders_in(folder / name)]:
+        journal = read_journal(hidden)
+        assert journal is not None
+        for move in journal.moves:
+            if move.new_file.exists():
+                move.new_file.replace(move.target)
+    (folder / "nc" / "SUB.SPF").write_bytes(b"by hand")
+    said = [each.what for each in settle(folder)]
+    assert left(folder) == {**NEW, "nc/SUB.SPF": b"by hand"}
+    assert "has been finished" in said[0]
+    assert "SUB.SPF" not in said[0]
+    assert said[1] == "changed since by somebody, and left as it is: SUB.SPF"
+
+
+@needs_fork
+def test_files_that_are_back_are_not_told_with_those_that_were_changed(tmp_path: Path) -> None:
+    folder = old_job(tmp_path)
+    stopped_between_moves(folder)
+    (folder / "nc" / "SUB.SPF").write_bytes(b"by hand")
+    said = [each.what for each in settle(folder)]
+    assert "rolled back" in said[0]
+    assert "SUB.SPF" not in said[0]
+
+
+@needs_fork
+def test_what_is_gone_is_not_told_as_brought_back(tmp_path: Path) -> None:
+    folder = old_job(tmp_path)
+    stopped_between_moves(folder)
+    for earlier in folder.rglob(".earlier/*"):
+        earlier.unlink()
+    assert all("neither to their places nor back" in each.what for each in settle(folder))
+
+
+def test_the_folder_of_a_dead_job_is_known_by_its_name_alone(tmp_path: Path) -> None:
+    hidden = tmp_path / "nc" / hidden_name(".one.mpf.")
+    hidden.mkdir(parents=True)
+    (hidden / "one.mpf").write_bytes(b"half")
+    assert [each.code for each in settle(tmp_path)] == ["FIL290"]
+    assert not hidden.exists()
+
+
+@needs_fork
+@pytest.mark.skipif(sys.platform == "win32", reason="no folder is locked there")
+def test_two_jobs_move_their_files_one_after_the_other(tmp_path: Path) -> None:
+    folder = old_job(tmp_path)
+    real = os.replace
+    came: list[threading.Thread] = []
+
+    def replace(source: Any, target: Any) -> None:
+        if Path(target).name == JOURNAL and not came:
+            came.append(threading.Thread(target=write_job, args=(folder, b"other", "MORE.SPF")))
+            came[0].start()
+            came[0].join(0.5)
+            assert came[0].is_alive(), "it waits"
+        real(source, target)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "replace", replace)
+        write_job(folder, b"new", "MORE.SPF")
+    came[0].join()
+    assert set(left(folder).values()) <= {b"new", b"other"}
+    assert len(set(left(folder).values())) == 1
+
+
+@needs_fork
+@pytest.mark.skipif(sys.platform == "win32", reason="no folder is locked there")
+def test_a_job_settles_one_that_was_stopped_while_it_was_made(tmp_path: Path) -> None:
+    folder = old_job(tmp_path)
+    with output_group() as group, group.open(resolve_output(folder / "nc" / "one.mpf")) as files:
+        files.main.write(b"other")
+        files.add_file("SUB.SPF").write(b"old")
+        stopped_between_moves(folder)
+    assert left(folder)["nc/SUB.SPF"] == b"old"
+    assert not settle(folder)
+    assert left(folder) == {**OLD, "nc/one.mpf": b"other"}
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a folder is made unwritable otherwise there")

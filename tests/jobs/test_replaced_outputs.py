@@ -70,6 +70,8 @@ TWICE = (
     "twin part.mpf --machine yl569 --device-xml t.xml",
     "fit part.cls --machines yl569 --json f.json",
     "new n1.toml --like yl569 --json n.json",
+    "place part.cls --machine yl569 --turns 90 --apply a.mpf --sheet s.html --plot p.svg --json p.json",
+    "curve impeller/blade_points.csv --picture cu.svg --json cu.json",
 )
 
 
@@ -78,8 +80,7 @@ def test_a_command_writes_its_own_file_again(
     words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    shutil.copy(YL569 / "2_hub_rough.cls", "part.cls")
-    shutil.copy(YL569 / "2_hub_rough.expected.mpf", "part.mpf")
+    fill_folder(tmp_path)
     first = main(words.split())
     before = sorted(Path().iterdir())
     capsys.readouterr()
@@ -146,8 +147,8 @@ def test_a_result_replaces_no_result_of_another_command(
 
 #: Commands that make pages, and those that may replace them.
 PAGES = (
-    ("post part.cls --machine yl569 --output b.mpf --report p.html", ("post", "impeller")),
-    ("post part.cls --machine yl569 --output b.mpf --sheet p.html", ("post", "impeller")),
+    ("post part.cls --machine yl569 --output b.mpf --report p.html", ("post", "impeller", "place")),
+    ("post part.cls --machine yl569 --output b.mpf --sheet p.html", ("post", "impeller", "place")),
     ("verify part.mpf --machine yl569 --report p.html", ("verify",)),
     ("info part.cls --plot p.html", ("info",)),
     ("sensitivity part.mpf --machine yl569 --report p.html", ("sensitivity",)),

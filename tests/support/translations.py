@@ -43,7 +43,7 @@ SETTABLE = {"setting", "argument", "switch"}
 #: Words of the library that results print: kinds of operations and tools, and outcomes.
 WORDS = (
     "three-axis", "3+2", "simultaneous", "empty", "tilted", "tcp",
-    "bed", *FitStatus, *What, "stock", "part", "fixture", "hub", *Role,
+    "bed", *FitStatus, *What, "rubs", "stock", "part", "fixture", "hub", *Role,
     "Rotary speeds", "Tip feed", "tip", "programmed", "linear axes at rapid", "limits not stated", "endless", "limits",
     "from above", "from below, from the other side", *DecisionTopic,
     *MachiningMode, "ROUGH", "SEMI", "FINISH", "on", "flood", "mist", "through the tool", "air", "for tapping",

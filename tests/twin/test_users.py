@@ -8,7 +8,7 @@ import pytest
 
 from trunnion.errors import InputError
 from trunnion.twin.opcua.users import Role, read_users, write_user
-from trunnion.twin.ports import listen
+from trunnion.twin.ports import take_port
 
 
 def test_a_user_is_known_by_the_password_alone(tmp_path: Path) -> None:
@@ -76,6 +76,10 @@ def test_a_file_that_everybody_can_write_names_no_users(tmp_path: Path) -> None:
 def test_a_port_that_does_not_exist_is_told() -> None:
     for port in (70000, -1):
         with pytest.raises(InputError, match="there is no port"):
-            listen("OPC UA", "127.0.0.1", port, "port").close()
-    with listen("OPC UA", "127.0.0.1", 0, "port") as served:
-        assert isinstance(served, socket.socket)
+            take_port("OPC UA", "127.0.0.1", port, "port").socket.close()
+    with take_port("OPC UA", "127.0.0.1", 0, "port") as served:
+        place = served.socket.getsockname()
+        with pytest.raises(ConnectionRefusedError):  # nobody answers yet
+            socket.create_connection(place, timeout=120)
+        served.open()
+        socket.create_connection(place, timeout=120).close()

@@ -92,7 +92,7 @@ def test_each_line_is_within_the_chord_tolerance_of_its_arc_and_none_goes_back(p
 
 def test_a_coarser_limit_for_the_tip_is_that_of_the_lines_too(posted: Posted) -> None:
     assert "span" not in faults_of(posted.with_fault(FAULTS["one left out"], span_tip=0.01))
-    assert "0.01 mm is allowed" in faults_of(posted.with_fault(FAULTS["ten left out"], span_tip=0.01))["span"]
+    assert ", 0.010" in faults_of(posted.with_fault(FAULTS["ten left out"], span_tip=0.01))["span"]
 
 
 def test_a_turn_of_a_helix_may_not_be_left_out(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from trunnion.builder.session import BuilderSession
 from trunnion.jobs.observer import Observer
 from trunnion.messages import LANGUAGES, catalogue, library_words
 from trunnion.viewer.language import Speech, page_texts
-from trunnion.viewer.serving import Access, listen
+from trunnion.viewer.serving import Access, take_port
 
 PROGRAM = GOLDEN / "yl569" / "2_hub_rough.expected.mpf"
 WEB = {page: ROOT / "src" / "trunnion" / page / "web" for page in ("viewer", "builder")}
@@ -169,7 +169,7 @@ def test_values_of_texts_are_plain_or_counted(page: str, language: str) -> None:
 
 @pytest.fixture
 def builder(tmp_path: Path) -> Iterator[str]:
-    listening = listen("127.0.0.1", 0)
+    listening = take_port("127.0.0.1", 0)
     application = builder_application(BuilderSession(tmp_path), Access(("127.0.0.1",)))
     server = uvicorn.Server(uvicorn.Config(application, log_level="critical"))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})

@@ -27,7 +27,7 @@ from trunnion.jobs.view.viewing import prepare_view
 from trunnion.simulation.replay import Replay
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.server import view_application
-from trunnion.viewer.serving import Access, impatient_protocol, listen
+from trunnion.viewer.serving import Access, impatient_protocol, take_port
 
 PROGRAM = GOLDEN / "yl569" / "3_blade_finish.expected.mpf"
 
@@ -249,7 +249,7 @@ def test_many_questions_at_once_leave_it_alive(cut: ViewContent) -> None:
 
 @pytest.fixture(scope="module")
 def port(content: ViewContent) -> Iterator[int]:
-    listening = listen("127.0.0.1", 0)
+    listening = take_port("127.0.0.1", 0)
     server = uvicorn.Server(uvicorn.Config(view_application(content, Access(NAMES)), log_level="critical"))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()
@@ -283,9 +283,11 @@ def test_garbage_leaves_the_server_alive(port: int, garbage: bytes) -> None:
 
 def test_a_port_that_is_taken_is_told(port: int) -> None:
     with pytest.raises(InputError, match="the port is taken; choose another port"):
-        listen("127.0.0.1", port)
+        take_port("127.0.0.1", port)
     with pytest.raises(InputError, match="choose a port from 1 to 65535"):
-        listen("127.0.0.1", 70_000)
+        take_port("127.0.0.1", 70_000)
+    with take_port("127.0.0.1", 0) as taken, pytest.raises(ConnectionRefusedError):  # nobody answers yet
+        socket.create_connection(taken.getsockname(), timeout=120)
 
 
 @pytest.mark.parametrize("half", [b"", b"GET / HTTP/1.1\r\nHost: local"])
@@ -293,11 +295,13 @@ def test_a_request_that_stays_half_open_is_ended(
     half: bytes, content: ViewContent, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("trunnion.viewer.serving._PATIENCE", 0.2)
-    listening = listen("127.0.0.1", 0)
+    listening = take_port("127.0.0.1", 0)
     config = uvicorn.Config(view_application(content, Access(NAMES)), http=impatient_protocol(), log_level="critical")
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()
+    while not server.started:
+        time.sleep(0.01)
     port = listening.getsockname()[1]
     with socket.create_connection(("127.0.0.1", port), timeout=120) as connection:
         connection.sendall(half)

@@ -21,7 +21,7 @@ from trunnion.jobs.view.viewing import prepare_view
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.server import view_application
-from trunnion.viewer.serving import Access, listen
+from trunnion.viewer.serving import Access, take_port
 
 pytestmark = needs_browser
 
@@ -214,7 +214,7 @@ def test_a_server_cuts_to_the_block_that_is_asked_for(slot: Path, view: Page, br
 @contextmanager
 def served(content: ViewContent) -> Iterator[str]:
     """The address at which a view is served meanwhile."""
-    listening = listen("127.0.0.1", 0)
+    listening = take_port("127.0.0.1", 0)
     host, port = listening.getsockname()
     server = uvicorn.Server(uvicorn.Config(view_application(content, Access((host,))), log_level="critical"))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})

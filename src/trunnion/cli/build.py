@@ -10,7 +10,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines
 from trunnion.messages import Wording
-from trunnion.viewer.serving import listen, serve
+from trunnion.viewer.serving import serve, take_port
 
 
 def run(given: Given) -> int:
@@ -30,6 +30,6 @@ def run(given: Given) -> int:
     session = BuilderSession(file.parent, file.name) if file is not None else BuilderSession(Path())
     session.start()
     speech, announced = page_speech(), announce(said("ctrl_c_ends"), browser=given.browser)
-    with listen(given.host, given.port) as listening:
+    with take_port(given.host, given.port) as listening:
         serve(lambda access: builder_application(session, access, speech), listening, announced)
     return 0

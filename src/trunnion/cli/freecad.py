@@ -9,6 +9,7 @@ from typing import Final
 
 from trunnion.cli.printing import print_result
 from trunnion.cli.wording import in_words
+from trunnion.files import output_group, resolve_output
 from trunnion.jobs.job import Given
 from trunnion.messages import phrase
 
@@ -39,8 +40,10 @@ def run(given: Given) -> int:
         return 0
     folder.mkdir(parents=True, exist_ok=True)
     post = files("trunnion").joinpath("doors", _POST).read_text(encoding="utf-8")
-    (folder / _POST).write_text(post, encoding="utf-8")
     command = json.dumps({"command": [sys.executable, "-E", "-m", "trunnion"]}, indent=1)
-    (folder / _COMMAND).write_text(command + "\n", encoding="utf-8")
+    with output_group(remembers=False) as group:
+        for name, text in ((_POST, post), (_COMMAND, command + "\n")):
+            with group.open(resolve_output(folder / name)) as output:
+                output.main.write(text.encode())
     print_result(in_words(phrase("post_installed", folder=str(folder))))
     return 0

@@ -18,7 +18,7 @@ from trunnion.options.groups import LIVE
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.live import LiveView
 from trunnion.viewer.server import view_application
-from trunnion.viewer.serving import listen, serve
+from trunnion.viewer.serving import serve, take_port
 
 #: How to connect to a machine, and what is shown of one without a program.
 _LIVE: Final = tuple(option.name for option in LIVE)
@@ -38,7 +38,7 @@ def run(given: Given) -> int:
         return 0
 
     speech = page_speech()
-    with listen(given.host, given.port) as listening:
+    with take_port(given.host, given.port) as listening:
         live = None
         if given.live is None:
             content = prepare_view(**shown, observer=Terminal())

@@ -56,17 +56,25 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
     writer = Writer()
     text = writer.job(objects)
     if "--cl-only" in arguments:
-        if filename != "-":
-            Path(filename).write_text(text, encoding="utf-8")
-        return text
+        return text if filename == "-" else _write(Path(filename), text)
     program = Path("freecad.nc" if filename == "-" else filename).resolve()
     source = program.with_suffix(".apt")
-    source.write_text(text, encoding="utf-8")
+    _write(source, text)
     given = [] if "--report" in arguments else ["--report", str(program.with_suffix(".html"))]
     if len(writer.offsets) > 1:
         given += ["--set", "work_offset=" + writer.offset_setting()]
     _post([str(source), "--output", str(program), *given, *arguments], writer.begins)
     return program.read_text(encoding="utf-8", errors="replace")
+
+
+def _write(file: Path, text: str) -> str:
+    """Write a CL file whole or not at all, and never over what is none of this post; return its text."""
+    if file.is_file() and file.stat().st_size and not file.read_bytes().startswith(b"$$-> TRUNNION / 1"):
+        raise RefusedError(f"{file} would be replaced by the CL file, and is none: move it away")
+    part = file.with_name(file.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    part.replace(file)
+    return text
 
 
 def _post(arguments: Sequence[str], begins: Sequence[tuple[int, str]]) -> None:

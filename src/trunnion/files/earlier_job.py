@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.files.digests import FileDigests
+from trunnion.files.on_disk import sync_folder, write_whole
 from trunnion.user_cache import user_cache
 
 #: Places that are remembered; of more the oldest are forgotten, down to the second number.
@@ -33,11 +34,13 @@ _OWNER: Final = ""
 class EarlierJob:
     """The files that jobs whose first file has this path have written, by their digests.
 
+    first    that path
     digests  of the files that were looked at
     """
 
-    def __init__(self, first: Path) -> None:
-        self.digests = FileDigests()
+    def __init__(self, first: Path, digests: FileDigests | None = None) -> None:
+        self.first = first
+        self.digests = digests or FileDigests()
         self._folder = first.parent
         cache = user_cache()
         name = hashlib.sha256(os.fsencode(os.path.normcase(first))).hexdigest()[:32]
@@ -162,10 +165,10 @@ class EarlierJob:
         text = json.dumps(digests)
         part = self._record.with_suffix(f".{os.getpid()}")
         with suppress(OSError):
-            self._record.parent.mkdir(parents=True, exist_ok=True)
-            part.write_text(text, encoding="utf-8")
-            part.replace(self._record)
+            _make_folder(self._record.parent)
+            write_whole(self._record, text, part)
             _forget_oldest(self._record.parent)
+            sync_folder(self._record.parent)
 
     def _is_as_known(self, file: Path, known: str) -> bool:
         """Whether a file has the size and the digest of the record."""
@@ -192,6 +195,14 @@ class EarlierJob:
 def _job(digests: Iterable[str]) -> str:
     """Digest of a program by those of its files."""
     return hashlib.sha256("".join(sorted(digests)).encode()).hexdigest()
+
+
+def _make_folder(folder: Path) -> None:
+    """Make a folder with all above it, so that their names are on the disk."""
+    if not folder.is_dir():
+        _make_folder(folder.parent)
+        folder.mkdir(exist_ok=True)
+        sync_folder(folder.parent)
 
 
 def _forget_oldest(folder: Path) -> None:

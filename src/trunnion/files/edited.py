@@ -30,11 +30,18 @@ def place_of_edited(place: OutputPlace, earlier: EarlierJob, edited: str) -> Out
         if earlier.has_edited(place.path):
             raise InputError(Problem(place.name, 0, Wording("FIL250", "edited_since")))
         return place
-    # The date of the edit, not of today: the same files give the same names.
-    changed = datetime.fromtimestamp(place.path.stat().st_mtime)
+    changed = _date_of(place)
     for number in count(1):
         again = f"-{number}" if number > 1 else ""
         path = place.path.with_name(f"{place.path.name}.edited-{changed:%Y-%m-%d}{again}")
         if not path.exists():
             return OutputPlace(str(path), path)
     raise AssertionError("there is a number that is free")
+
+
+def _date_of(place: OutputPlace) -> datetime:
+    """Return the date of the edit, not of today: the same files give the same names."""
+    try:
+        return datetime.fromtimestamp(place.path.stat().st_mtime)
+    except (ValueError, OverflowError, OSError):  # some clocks are wrong by thousands of years
+        return datetime(1970, 1, 1)

@@ -4,7 +4,6 @@ Each is locked as long as its job lives. One that nobody holds is of a dead job 
 """
 
 import os
-import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
+from trunnion.files.hidden_names import TEMPORARY, hidden_name, is_hidden_name
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.locks import LOCK, FolderLock, make_held
 from trunnion.files.places import OutputPlace, cannot_write
@@ -21,13 +21,8 @@ from trunnion.messages import Wording
 #: Characters of a file's name that the name of its hidden folder repeats: both have room in 255 bytes.
 _NAME_LENGTH: Final = 32
 
-#: How the names of temporary folders begin.
-_TEMPORARY: Final = "trunnion-"
-
 #: The file in which a folder says which files are on their way to which places.
 JOURNAL: Final = ".trunnion-journal"
-
-_NAME: Final = re.compile(rf"(\..+\.|{_TEMPORARY})[0-9a-f]{{12}}", re.DOTALL)
 
 
 class HiddenFolders:
@@ -47,7 +42,7 @@ class HiddenFolders:
     def temporary(self) -> Path:
         """Return a folder for files that have no place of their own."""
         try:
-            return self._make(Path(tempfile.gettempdir()), _TEMPORARY)
+            return self._make(Path(tempfile.gettempdir()), TEMPORARY)
         except OSError as error:
             raise InputError(
                 Problem("output", 0, Wording("FIL230", "no_temporary_file", strerror=error.strerror or error))
@@ -56,7 +51,7 @@ class HiddenFolders:
     def _make(self, parent: Path, prefix: str) -> Path:
         if parent not in self._folders:
             with held_interrupts():
-                self._folders[parent] = folder = parent / f"{prefix}{os.urandom(6).hex()}"
+                self._folders[parent] = folder = parent / hidden_name(prefix)
                 try:
                     lock = make_held(folder)
                 except OSError:
@@ -99,7 +94,7 @@ def hidden_folders_in(folder: Path) -> Iterator[Path]:
     """Yield the folders that have names as those of jobs."""
     try:
         with os.scandir(folder) as entries:
-            names = [entry.name for entry in entries if _NAME.fullmatch(entry.name) and is_folder(entry)]
+            names = [entry.name for entry in entries if is_hidden_name(entry.name) and is_folder(entry)]
     except OSError:
         return
     yield from (folder / name for name in sorted(names))
@@ -130,4 +125,4 @@ def is_folder(entry: "os.DirEntry[str]") -> bool:
 
 def is_hidden_folder(folder: Path) -> bool:
     """Whether a path is that of a folder with a name as those of jobs, and no link."""
-    return bool(_NAME.fullmatch(folder.name)) and folder.is_dir() and not folder.is_symlink()
+    return is_hidden_name(folder.name) and folder.is_dir() and not folder.is_symlink()

@@ -12,7 +12,6 @@ import json
 import os
 import shutil
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
@@ -20,6 +19,7 @@ from typing import Any, Final
 from trunnion.files.digests import FileDigests, digest_of
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.hidden_folders import JOURNAL, is_hidden_folder
+from trunnion.files.on_disk import sync_folder, write_whole
 from trunnion.records import dataclass
 
 #: The folder, in a hidden one, in which files survive that are replaced.
@@ -68,17 +68,26 @@ class Move:
         """Whether the new file is in its place."""
         return digest_of(self.target) == self.digest
 
+    @property
+    def was_done(self) -> bool:
+        """Whether the new file is in its place, or was, and somebody has changed it since."""
+        there = digest_of(self.target)
+        return there == self.digest or (there != self.before and not os.path.lexists(self.new_file))
+
     def undo(self) -> bool:
-        """Bring back what was there before; False where somebody has changed the file since, which then stays."""
+        """Bring back what was there before; False where somebody has changed the file since, which then stays.
+
+        Raises ``OSError`` if that is gone.
+        """
         there = digest_of(self.target)
         if there is not None and there not in (self.digest, self.before):
             return False
         if there == self.before:
             return True
-        if self.earlier_file.exists():
-            self.earlier_file.replace(self.target)
-        elif self.before is None:
+        if self.before is None:
             self.target.unlink(missing_ok=True)
+        else:
+            self.earlier_file.replace(self.target)
         return True
 
 
@@ -111,7 +120,7 @@ class Outcome:
     """What became of a job.
 
     finished  its files are in their places; otherwise those before are back
-    files     the places
+    files     the places, but for those of the next
     changed   files that somebody has changed since, which stay as they are
     """
 
@@ -135,11 +144,13 @@ class Journal:
         return list(dict.fromkeys(move.folder for move in self.moves))
 
     def write(self) -> None:
-        """Bring the journal to the disk, as its last step under its own name."""
+        """Bring the journal to the disk, as its last step under its own name; all that it names is there before."""
+        for folder in {path.parent for move in self.moves for path in (move.new_file, move.earlier_file)}:
+            sync_folder(folder)
         first, *others = self.folders
         for folder in others:
             note = {"word": self.word, "journal": _relative(first, folder.parent)}
-            _write_whole(folder / JOURNAL, json.dumps(note))
+            _write(folder / JOURNAL, json.dumps(note))
         of_moves = [{**asdict(move), "folder": _relative(move.folder, first.parent)} for move in self.moves]
         text = {
             "word": self.word,
@@ -147,7 +158,7 @@ class Journal:
             "records": [asdict(record) for record in self.records],
             "names": [asdict(names) for names in self.names],
         }
-        _write_whole(first / JOURNAL, json.dumps(text))
+        _write(first / JOURNAL, json.dumps(text))
 
     def settle(self) -> Outcome:
         """Finish what is all in its place, and bring everything back otherwise; can be done again.
@@ -158,13 +169,18 @@ class Journal:
             If a file cannot be brought back. The journal stays.
         """
         files = tuple(move.target for move in self.moves)
-        if all(move.is_done for move in self.moves):
+        finished = all(move.was_done for move in self.moves)
+        changed = tuple(move.target for move in self.moves if not (move.is_done if finished else move.undo()))
+        self.sync()
+        if finished:
             self.record()
-            self.end()
-            return Outcome(True, files)
-        changed = tuple(move.target for move in reversed(self.moves) if not move.undo())
         self.end()
-        return Outcome(False, files, changed)
+        return Outcome(finished, tuple(file for file in files if file not in changed), changed)
+
+    def sync(self) -> None:
+        """Bring the names of the files in their places to the disk: nothing is recorded that may be lost again."""
+        for folder in {move.folder.parent for move in self.moves}:
+            sync_folder(folder)
 
     def record(self) -> None:
         """Record what has been written."""
@@ -181,9 +197,11 @@ class Journal:
 
     def end(self) -> None:
         """Remove the journal, the first part of it first: without that, notes mean nothing."""
-        for folder in {move.folder.parent for move in self.moves}:
-            _sync_folder(folder)
-        for folder in self.folders:
+        first, *others = self.folders
+        (first / JOURNAL).unlink(missing_ok=True)
+        if others:
+            sync_folder(first)
+        for folder in others:
             (folder / JOURNAL).unlink(missing_ok=True)
 
 
@@ -242,6 +260,8 @@ def _journal(found: dict[str, Any], first: Path) -> Journal:
         parts = [each["new"], each["earlier"], each["name"]]
         if any(PurePosixPath(part).is_absolute() or ".." in Path(part).parts for part in parts):
             raise ValueError("a path leads out of its folder")
+        if any(_leaves(folder, folder / part) for part in parts[:2]):
+            raise ValueError("a link leads out of its folder")
         if Path(each["name"]).name != each["name"]:
             raise ValueError("a place is in another folder")
         moves.append(Move(**{**each, "folder": folder}))
@@ -252,9 +272,17 @@ def _journal(found: dict[str, Any], first: Path) -> Journal:
     if any(not 0 <= k < len(moves) for each in records for k in (each.first, *each.program, *each.papers)):
         raise ValueError("a record is of no file")
     names = [Names(str(each["project"]), tuple(map(str, each["programs"]))) for each in found["names"]]
+    if any(Path(each.project).suffix.lower() != ".toml" for each in names):
+        raise ValueError("a record is of no project")
     if not moves:
         raise ValueError("nothing moves")
     return Journal(word, tuple(moves), tuple(records), tuple(names))
+
+
+def _leaves(folder: Path, file: Path) -> bool:
+    """Whether a path within a folder is that of another file, or leads to one by a link."""
+    there = Path(os.path.realpath(folder))
+    return file == folder or file.is_symlink() or not Path(os.path.realpath(file.parent)).is_relative_to(there)
 
 
 def _keep(target: Path, before: Path) -> None:
@@ -267,6 +295,8 @@ def _keep(target: Path, before: Path) -> None:
         os.link(target, before)
     except OSError:  # some file systems have no hard links
         shutil.copy2(target, before)
+        with before.open("r+b") as copy:
+            os.fsync(copy.fileno())
 
 
 def _read(file: Path) -> dict[str, Any] | None:
@@ -284,26 +314,11 @@ def _read(file: Path) -> dict[str, Any] | None:
     return found
 
 
-def _write_whole(file: Path, text: str) -> None:
-    """Write a file to the disk, which has its name only when it is whole."""
-    part = file.with_name(f"{file.name}.part")
-    with part.open("wb") as stream:
-        stream.write(text.encode())
-        stream.flush()
-        os.fsync(stream.fileno())
-    part.replace(file)
-    _sync_folder(file.parent)
-    _sync_folder(file.parent.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, where the system can."""
-    with suppress(OSError):  # Windows opens no folders
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
+def _write(file: Path, text: str) -> None:
+    """Write a file to the disk, with the names of its folder and of the files in it."""
+    write_whole(file, text, file.with_name(f"{file.name}.part"))
+    sync_folder(file.parent)
+    sync_folder(file.parent.parent)
 
 
 def _relative(path: Path, start: Path) -> str:

@@ -3,9 +3,12 @@
 import os
 import sys
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
+
+from trunnion.files.hidden_names import is_sealed
 
 #: The file in a hidden folder that its job holds locked.
 LOCK: Final = ".trunnion-lock"
@@ -35,13 +38,13 @@ class FolderLock:
 def hold(folder: Path) -> FolderLock | None:
     """Return the lock of an existing folder; None if a job holds it, or nobody can know.
 
-    A folder without the file of a lock is that of somebody else, unless it is empty: its job has just begun, or never
-    came further.
+    A folder without the file of a lock is that of somebody else, unless its name has a seal, or it is empty: its job
+    has just begun, or never came further.
     """
     if folder in _held:
         return None
     try:
-        if not (folder / LOCK).is_file() and any(folder.iterdir()):
+        if not (folder / LOCK).is_file() and not is_sealed(folder.name) and any(folder.iterdir()):
             return None
         descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError:
@@ -76,6 +79,57 @@ def make_held(folder: Path) -> FolderLock | None:
         time.sleep(_WAIT)  # it was taken for one of a dead job, and is gone
         folder.mkdir(mode=0o700, exist_ok=True)
     return None
+
+
+class PlaceLock:
+    """A folder in which this job alone moves files."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+
+    def release(self) -> None:
+        """Let others move files; can be called again."""
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1
+
+
+def hold_places(folders: Iterable[Path], seconds: float) -> list[PlaceLock] | None:
+    """Return locks by which no two jobs move files in one of these folders at the same time.
+
+    There are none where the system locks no folders, as Windows and some network disks; so it is without them there.
+
+    folders  in any order
+    seconds  how long it is waited for other jobs; None is returned if one has not ended by then
+    """
+    end = time.monotonic() + seconds
+    held: list[PlaceLock] = []
+    for folder in sorted(set(folders)):
+        try:
+            descriptor = os.open(folder, os.O_RDONLY)
+        except OSError:
+            continue
+        held.append(PlaceLock(descriptor))
+        while (is_free := _is_free(descriptor)) is False:
+            if time.monotonic() >= end:
+                for lock in held:
+                    lock.release()
+                return None
+            time.sleep(_WAIT)
+        if is_free is None:
+            held.pop().release()
+    return held
+
+
+def _is_free(descriptor: int) -> bool | None:
+    """Lock a folder, and return whether that was possible; None: it never is."""
+    try:
+        _lock(descriptor)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return None
+    return True
 
 
 if sys.platform == "win32":

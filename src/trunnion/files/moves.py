@@ -1,21 +1,28 @@
 """The files of a job reach their places, all or none of them, and what is recorded of them goes with them."""
 
+import errno
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import field
 from pathlib import Path
 from typing import Final
 
+from trunnion.files.dead_jobs import settle_and_log
 from trunnion.files.digests import FileDigests
 from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.journal import Journal, Names, Record, begin
+from trunnion.files.locks import hold_places
 from trunnion.files.places import OutputPlace, cannot_write
 from trunnion.messages import phrase
 from trunnion.records import dataclass
 
 #: Names of files in a message.
 _MOST_NAMED: Final = 5
+
+#: How long other jobs may take that move files in the same folders, s.
+_PATIENCE: Final = 20.0
 
 
 @dataclass(slots=True)
@@ -89,6 +96,7 @@ class Moves:
             for move, (_, place, _) in zip(moves, self.files, strict=True):
                 at = place
                 move.new_file.replace(move.target)
+            journal.sync()
             journal.record()
             journal.end()
         except BaseException as error:
@@ -99,6 +107,25 @@ class Moves:
                 raise
             if not finished:
                 raise cannot_write(at.name, error) from None
+
+
+@contextmanager
+def moving_alone(places: Iterable[OutputPlace]) -> Iterator[None]:
+    """Move files while no other job does so in their folders, and none that was stopped is left there.
+
+    Raises ``InputError`` if another job takes too long.
+    """
+    named = {place.path.parent: place.name for place in places if not place.is_stream}
+    locks = hold_places(named, _PATIENCE)
+    if locks is None:
+        error = BlockingIOError(errno.EBUSY, os.strerror(errno.EBUSY))
+        raise cannot_write(next(iter(named.values())), error)
+    try:
+        settle_and_log(named, named)
+        yield
+    finally:
+        for lock in locks:
+            lock.release()
 
 
 def _is_finished(journal: Journal | None, place: OutputPlace) -> bool:

@@ -16,7 +16,7 @@ from trunnion.files.edited import place_of_edited
 from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.journal import Record
-from trunnion.files.moves import Moves
+from trunnion.files.moves import Moves, moving_alone
 from trunnion.files.places import Claims, OutputPlace, cannot_write, resolve_output
 from trunnion.files.streams import open_stream, send, stream_name
 from trunnion.messages import Wording
@@ -63,6 +63,7 @@ class OutputFiles:
     ) -> None:
         self.path = folder / name
         self._edited, self._kept = edited, dict[OutputPlace, OutputPlace]()
+        self._seen: dict[OutputPlace, str | None] = {}
         self._place, self._claims, self._earlier = place, claims or Claims(), earlier
         if place is not None:
             self._keep_edited(place)
@@ -94,6 +95,8 @@ class OutputFiles:
             raise InputError(Problem(place.name, 0, Wording("FIL210", "subprogram_cannot_written")))
         self._claims.check(place)
         if self._earlier is None or not place.path.exists() or self._earlier.wrote(place.path):
+            if self._earlier is not None:
+                self._seen[place] = self._earlier.digests.of(place.path)
             return place
         if not self._earlier.has_edited(place.path):
             variant = "number_of_other_file" if is_numbered else "name_of_other_file"
@@ -108,7 +111,10 @@ class OutputFiles:
 
     def _keep_edited(self, place: OutputPlace) -> None:
         """Note where a program that was edited is kept; errors are those of ``place_of_edited``."""
-        if self._earlier is not None and (kept := place_of_edited(place, self._earlier, self._edited)) is not None:
+        if self._earlier is None:
+            return
+        self._seen[place] = self._earlier.digests.of(place.path)
+        if (kept := place_of_edited(place, self._earlier, self._edited)) is not None:
             self._kept[place] = kept
 
     def check_replaced(self) -> None:
@@ -118,6 +124,17 @@ class OutputFiles:
                 if not filecmp.cmp(path, place.path, shallow=False):
                     raise InputError(Problem(place.name, 0, Wording("FIL250", "of_somebody_else")))
                 del self._kept[place]
+
+    def _check_since(self) -> None:
+        """Keep or refuse programs that were edited while this one was made; errors as those of ``check_replaced``."""
+        if self._earlier is None:
+            return
+        for _, place in self._program_files():
+            if self._earlier.digests.of(place.path) != self._seen.get(place):
+                self._kept.pop(place, None)
+                self._earlier = EarlierJob(self._earlier.first, self._earlier.digests)
+                self._keep_edited(place)
+        self.check_replaced()
 
     def add_paper(self, place: OutputPlace) -> BinaryIO:
         """Begin a report or another file about the first one, which appears with it, and return its sink."""
@@ -195,6 +212,10 @@ class OutputFiles:
 
     def publish(self, hidden: HiddenFolders, stream: BinaryIO | None) -> None:
         """Bring all files to their places, once they are closed; the first one goes to the stream if there is one."""
+        with moving_alone(self.places):
+            self._publish(hidden, stream)
+
+    def _publish(self, hidden: HiddenFolders, stream: BinaryIO | None) -> None:
         moves = Moves()
         self.bring(hidden, moves, main=stream is None)
         if stream is not None:
@@ -206,7 +227,11 @@ class OutputFiles:
         moves.carry_out()
 
     def bring(self, hidden: HiddenFolders, moves: Moves, *, main: bool = True) -> None:
-        """Add the complete files to those that move to their places; ``main``: the first one is among them."""
+        """Add the complete files to those that move to their places; ``main``: the first one is among them.
+
+        Raises ``InputError`` if a program there was edited since the files were begun, and is not to be kept.
+        """
+        self._check_since()
         program = [moves.add(hidden, path, place) for path, place in self._program_files(main=main)]
         to_files = [(path, place) for path, place in self.papers if not place.is_stream]
         papers = [moves.add(hidden, path, place) for path, place in to_files]
@@ -234,6 +259,11 @@ class OutputFiles:
         files = self._program_files()
         places = [*(place for _, place in files), *papers]
         return self._earlier.left_over([path for path, _ in files], [place.path for place in places])
+
+    @property
+    def places(self) -> list[OutputPlace]:
+        """The places of all files."""
+        return [place for _, place in (*self._program_files(), *self.papers)]
 
     def _program_files(self, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
         files = [(path, place) for path, (_, place) in self._subprograms.items()]

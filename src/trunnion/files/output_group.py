@@ -10,7 +10,7 @@ from trunnion.files.dead_jobs import settle_and_log
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.hidden_folders import HiddenFolders
 from trunnion.files.journal import Names, Record
-from trunnion.files.moves import Moves
+from trunnion.files.moves import Moves, moving_alone
 from trunnion.files.output import OutputFiles
 from trunnion.files.places import Claims, OutputPlace
 from trunnion.messages import Wording
@@ -59,6 +59,10 @@ class OutputGroup:
 
     def publish(self) -> None:
         """Bring the files of all jobs to their places."""
+        with moving_alone(place for files, _ in self._complete for place in files.places):
+            self._publish()
+
+    def _publish(self) -> None:
         moves = Moves(names=self._names)
         for files, hidden in self._complete:
             files.bring(hidden, moves)

@@ -57,7 +57,9 @@ BY_NAME: Final[Mapping[str, re.Pattern[bytes]]] = MappingProxyType(
 _MADE_BY: Final = re.compile(rb'.{0,300}<meta name="generator" content="trunnion (\w+)">', re.DOTALL)
 
 #: Commands that write what is made for others.
-_ALSO: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({"post": ("impeller",), "simulate": ("impeller",)})
+_ALSO: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {"post": ("impeller", "place"), "simulate": ("impeller",)}
+)
 
 #: A key with the name of a program.
 _PROGRAM: Final = rb'"program": "(?:[^"\\]|\\.)*",\s*'

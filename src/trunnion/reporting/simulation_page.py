@@ -86,7 +86,10 @@ def _unfound(content: SimulationContent) -> str:
 
 
 def _said(content: SimulationContent) -> str:
-    if content.passed:
+    rubs = sum(each.rubs for each in content.near)
+    if content.passed and rubs:
+        found = phrase("nothing_but_rubs", rubs=phrase("rubs_counted", count=rubs))
+    elif content.passed:
         found = phrase("nothing_found")
     elif content.findings:
         found = Wording("report", "findings_must_not_run", count=len(content.findings))
@@ -106,17 +109,17 @@ def _findings(found: Sequence[SimulationFinding | NearMiss], size: str) -> str:
 
 def _finding(each: SimulationFinding | NearMiss) -> str:
     """Return a row: how deep or how far apart, what, where in the programs, when and where."""
-    what, size, cl = "near", 0.0, ""
+    cl = ""
     if isinstance(each, NearMiss):
-        size = each.distance
+        what, size = ("rubs", "") if each.rubs else ("near", f"{each.distance:.3f}")
     else:
-        what, size = each.kind, each.depth
+        what, size = each.kind, f"{each.depth:.3f}"
         cl = f"{Path(each.cl_file).name}:{each.cl_line}" if each.cl_file else ""
     number = f" N{each.block}" if each.block >= 0 else ""
     stretch = f"<br><small>{escape(told(each.among))}</small>" if each.among is not None else ""
     between = _text(", ".join(map(word, each.between)))
     return (
-        f"<tr><td class=n>{size:.3f}</td><th scope=row>{escape(word(what))}</th><td>{between}</td>"
+        f"<tr><td class=n>{size}</td><th scope=row>{escape(word(what))}</th><td>{between}</td>"
         f"<td>{_place(each)}{number}{stretch}</td><td>{_text(cl)}</td>"
         f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{position(each.place)}</td></tr>"
     )

@@ -1,7 +1,6 @@
 """Serves a twin: OPC UA, and MTConnect beside it, until it is ended."""
 
 import asyncio
-import socket
 from collections.abc import Callable, Coroutine
 
 from trunnion.records import dataclass
@@ -9,6 +8,7 @@ from trunnion.twin.mtconnect.adapter import MTConnectAdapter
 from trunnion.twin.mtconnect.agent import MTConnectAgent
 from trunnion.twin.opcua.outlet import OpcUaOutlet
 from trunnion.twin.opcua.server import Security, TwinServer
+from trunnion.twin.ports import TwinPort
 from trunnion.twin.running import Twin
 from trunnion.verification.grounds import NO_GROUNDS, Grounds
 
@@ -33,12 +33,11 @@ class TwinAddresses:
 
 @dataclass(frozen=True, slots=True)
 class Ports:
-    """Sockets that are taken already, and the address by which clients name this computer."""
+    """What is taken already; the address of OPC UA is the one by which clients name this computer."""
 
-    host: str
-    opcua: socket.socket
-    mtconnect: socket.socket | None
-    agent: socket.socket | None = None
+    opcua: TwinPort
+    mtconnect: TwinPort | None
+    agent: TwinPort | None = None
 
 
 async def serve_program(
@@ -58,14 +57,16 @@ async def serve_program(
     ready     is called when clients can connect
     """
     program = twin.program
-    server = TwinServer(program, twin, ports.opcua, ports.host, security)
+    server = TwinServer(program, twin, ports.opcua.socket, ports.opcua.host, security)
     publisher = await server.prepare(twin.playback.speed)
     twin.outlets.append(OpcUaOutlet(program, server, publisher, twin.clock()))
-    adapter = MTConnectAdapter(program, ports.mtconnect) if ports.mtconnect is not None else None
-    agent = MTConnectAgent(program, ports.agent, twin.clock) if ports.agent is not None else None
+    adapter = MTConnectAdapter(program, ports.mtconnect.socket) if ports.mtconnect is not None else None
+    agent = MTConnectAgent(program, ports.agent.socket, twin.clock) if ports.agent is not None else None
     told = [each for each in (adapter, agent) if each is not None]
     twin.outlets.extend(told)
     try:
+        for port in filter(None, (ports.opcua, ports.mtconnect, ports.agent)):
+            port.open()
         await server.start()
         for each in told:
             await each.begin()

@@ -18,7 +18,7 @@ from trunnion.verification.checks.skip_faults import lost_skips, stretch_levels
 from trunnion.verification.checks.table import Compared, Measured, all_checks
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
 from trunnion.verification.deviations.declared_deviations import accept_deviations
-from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors, SpanLimits
+from trunnion.verification.deviations.linearization import LinearizationErrors, SpanLimits
 from trunnion.verification.deviations.point_deviations import PointDeviations
 from trunnion.verification.deviations.reached_rows import with_feeds_of_program, worthwhile_feeds
 from trunnion.verification.expected.path import ExpectedPath
@@ -214,13 +214,15 @@ def _measure(
 def _linearization_errors(context: Context, tolerances: Sequence[Tolerances]) -> LinearizationErrors:
     """Return the collector of errors between points."""
     settings = context.settings
-    tolerance = max(each.tip for each in tolerances)
-    rounding = 2.0 * max(each.angle for each in tolerances)
-    tip = math.inf if settings.span_tip is None else settings.span_tip + tolerance
-    axis = None if settings.span is None else settings.span + rounding
-    by_default = None if settings.span is not None else DefaultLimits(settings.axis_tolerance, rounding)
+    limits = SpanLimits(
+        tip=math.inf if settings.span_tip is None else settings.span_tip,
+        axis=math.inf if settings.span is None else settings.span,
+        tip_tolerance=max(each.tip for each in tolerances),
+        rounding=2.0 * max(each.angle for each in tolerances),
+        by_default=settings.axis_tolerance if settings.span is None else None,
+    )
     path = (context.expected, context.matching) if isinstance(context, ComparedContext) else (None, None)
-    return LinearizationErrors(context.run, MAX_PLACES, SpanLimits(tip, axis, tolerance, by_default), *path)
+    return LinearizationErrors(context.run, MAX_PLACES, limits, *path)
 
 
 def _add_rows(run: Run, *collectors: AxisMotionAnalyzer | PointDeviations | LinearizationErrors | None) -> None:

@@ -17,6 +17,7 @@ from typing import Any, Final
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.messages import Wording
+from trunnion.ports import bound_socket, open_port
 from trunnion.records import dataclass
 
 _LOOPBACK_NAMES: Final = ("127.0.0.1", "localhost", "[::1]")
@@ -106,23 +107,26 @@ def application_of(routes: list[Any], **more: Any) -> Any:
     return application
 
 
-def listen(host: str, port: int) -> socket.socket:
-    """Take a port of this computer, before any work; 0: a free one.
+def take_port(host: str, port: int) -> socket.socket:
+    """Take a port of this computer, before any work; 0: a free one. ``serve`` opens it.
 
     Raises ``InputError`` if it is taken, or the address is none of this computer's.
     """
     try:
         if host:
-            socket.getaddrinfo(host, None)  # create_server gives its errors no class of their own
-        return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
+            socket.getaddrinfo(host, None)  # ``bind`` gives its errors no class of their own
+        return bound_socket(host, port)
     except OverflowError:
-        wording = Wording("PAG120", "no_port", port=port)
+        raise InputError(Problem("the page", 0, Wording("PAG120", "no_port", port=port))) from None
     except socket.gaierror:
-        wording = Wording("PAG120", "no_such_host", host=host)
+        raise InputError(Problem("the page", 0, Wording("PAG120", "no_such_host", host=host))) from None
     except OSError as error:
-        why = _REASONS.get(error.errno or 0, str(error))
-        wording = Wording("PAG120", "not_served", host=host, port=port, reason=why)
-    raise InputError(Problem("the page", 0, wording))
+        raise _not_served(host, port, error) from None
+
+
+def _not_served(host: str, port: int, error: OSError) -> InputError:
+    why = _REASONS.get(error.errno or 0, str(error))
+    return InputError(Problem("the page", 0, Wording("PAG120", "not_served", host=host, port=port, reason=why)))
 
 
 def impatient_protocol() -> type:
@@ -170,10 +174,10 @@ def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callab
     """Serve an application until the process is ended by Ctrl-C.
 
     make       makes the application for those who may see it
-    listening  of ``listen``. On another address than this computer's own, a token is part of the page's address
+    listening  of ``take_port``. On another address than this computer's own, a token is part of the page's address
     ready      is called with the page's address when it can be opened
 
-    Raises ``InputError`` if the extra ``view`` is not installed.
+    Raises ``InputError`` if the extra ``view`` is not installed, or another program has opened the port meanwhile.
     """
     uvicorn = import_extra("uvicorn", "view")
     host, port = listening.getsockname()[:2]
@@ -184,6 +188,10 @@ def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callab
     config = uvicorn.Config(
         application, http=impatient_protocol(), log_level="warning", access_log=False, timeout_graceful_shutdown=1
     )
+    try:
+        open_port(listening)
+    except OSError as error:
+        raise _not_served(host, port, error) from None
     reached = socket.gethostname() if address.is_unspecified else own
     ready(f"http://{reached}:{port}/" + (f"?token={token}" if token else ""))
     try:

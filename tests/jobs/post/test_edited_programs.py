@@ -1,13 +1,16 @@
 """A program that was edited by hand is not replaced unseen: by no output, project or subprogram."""
 
 import os
+from datetime import datetime
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 
 import trunnion
 from tests.support.locations import YL569
+from trunnion.files import atomic_output, edited
 
 HUB = YL569 / "2_hub_rough.cls"
 EDIT = "; feed lowered at the machine\n"
@@ -138,3 +141,37 @@ def test_an_edited_program_of_a_conversion_is_kept(tmp_path: Path) -> None:
     with pytest.raises(trunnion.InputError, match="was edited since it was written"):
         trunnion.convert(source, machine="yl569", to_machine="dmu65", output=file)
     assert (tmp_path / "hub.h.edited-2023-11-14").read_bytes() == edited
+
+
+@pytest.mark.parametrize("name", ["hub.mpf", "SUB.SPF"])
+def test_a_program_that_is_edited_while_the_next_is_made_is_not_replaced_unseen(name: str, tmp_path: Path) -> None:
+    file = tmp_path / name
+
+    def write(text: bytes, edited: str = "", *, by_hand: bool) -> None:
+        with atomic_output(tmp_path / "hub.mpf", is_job=True, edited=edited) as files:
+            for sink in (files.main, files.add_file("SUB.SPF")):
+                sink.write(text)
+            if by_hand:
+                file.write_bytes(b"by hand")
+                os.utime(file, (1_700_000_000, 1_700_000_000))
+
+    write(b"1", by_hand=False)
+    with pytest.raises(trunnion.InputError, match="was edited since it was written"):
+        write(b"2", by_hand=True)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {
+        "hub.mpf": b"1", "SUB.SPF": b"1", name: b"by hand"
+    }  # fmt: skip
+    write(b"3", "keep", by_hand=True)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {
+        "hub.mpf": b"3", "SUB.SPF": b"3", f"{name}.edited-2023-11-14": b"by hand"
+    }  # fmt: skip
+
+
+def test_an_edit_of_a_year_that_no_calendar_has_is_kept(tmp_path: Path) -> None:
+    post(tmp_path)
+    edit(tmp_path / "hub.mpf")
+    with patch.object(edited, "datetime") as clock:
+        clock.fromtimestamp.side_effect = ValueError("year 33658 is out of range")
+        clock.side_effect = datetime
+        post(tmp_path, edited="keep")
+    assert (tmp_path / "hub.mpf.edited-1970-01-01").exists()

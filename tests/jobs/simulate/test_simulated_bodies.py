@@ -211,6 +211,10 @@ def test_a_shank_as_thick_as_its_flutes_rubs_along_a_wall_that_a_pass_before_has
     assert found.near[0].place[2] == pytest.approx(-1.5, abs=1.5)
     assert "rubs" in str(found.near[0])
     assert "rubs" in found.verdict
+    trunnion.write_report(found, tmp_path / "rubs.html")
+    page = (tmp_path / "rubs.html").read_text(encoding="utf-8")
+    assert "<td class=n></td><th scope=row>rubs</th>" in page
+    assert "nothing found but 1 place where a shank rubs" in page.lower()
     again = simulate(tmp_path, deeper, tools=["1=flat:10,length=60,flutes=6"], near=2.0)
     assert [one[1:] for one in near_stock(again) if one[1] == 65] == [(65, 0.0)]
     for other in ("flutes=6,shank=9.8", "flutes=6,neck=9.8,shank=10,neck_length=9", "flutes=9"):

@@ -197,7 +197,12 @@ def _orders(blocks: list[Block], language: Language, tolerance: float) -> Iterat
             if following and following.cuts and not centre and _code(following) != _code(block):
                 text = with_lines(blocks, k, following.line, block.line, end=k + 2)
                 yield Edit("two cuts exchanged", k + 1, text)
-        elif block.rapids and moves and not is_on_rapid_way(blocks, k, language):
+        elif (
+            block.rapids
+            and moves
+            and not is_on_rapid_way(blocks, k, language)
+            and not is_near_straight_way(blocks, k, tolerance)
+        ):
             yield Edit("a rapid left out", k + 1, with_lines(blocks, k))
 
 
@@ -281,6 +286,8 @@ def _replaced(blocks: list[Block], language: Language) -> Iterator[Edit]:
                 continue
             if kind == "feed by time" and not any(re.search(r"\bF\d", each.code) for each in blocks):
                 continue  # threads alone have their feed by their pitch
+            if kind == "feed by time" and not any(each.cuts or each.cycle for each in blocks[k + 1 :]):
+                continue  # nothing is cut by it, and the end of the program lifts it
             if kind == "back to another height" and returns_on_the_way(blocks, k):
                 continue
             if kind in ("a tenth of the feed", "ten times the feed") and _is_before_own_feed(blocks, k):

@@ -52,7 +52,9 @@ def is_near_straight_way(blocks: "list[Block]", k: int, tolerance: float) -> boo
     Without TCP the axes go evenly from the point before to that behind. How far linear axes are off there is how far
     the tip is; part of that may be along its way. So twice the tolerance, mm, is no harm that is sure.
     """
-    if not 0 < k < len(blocks) - 1 or blocks[k].tcp or not (blocks[k].cuts and blocks[k + 1].cuts):
+    if not 0 < k < len(blocks) - 1 or blocks[k].tcp or blocks[k].cycle or blocks[k + 1].cycle:
+        return False
+    if not (blocks[k].cuts and blocks[k + 1].cuts) and not (blocks[k].rapids and blocks[k + 1].rapids):
         return False
     start = blocks[k].before
     point = {**start, **_coordinates(blocks[k])}

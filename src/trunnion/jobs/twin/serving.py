@@ -30,7 +30,7 @@ from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWES
 from trunnion.timing import time_run
 from trunnion.twin.mtconnect.device import device_xml
 from trunnion.twin.playback import Playback
-from trunnion.twin.ports import listen
+from trunnion.twin.ports import take_port
 from trunnion.twin.snapshots import TwinProgram
 from trunnion.user_cache import user_data
 from trunnion.verification import restore_rapids
@@ -112,13 +112,13 @@ def serve_twin(
         raise wrong_argument("rate", rate, phrase("give_rate"))
     security = None if is_loopback(host) else _security(found["users"])
     with ExitStack() as closing:
-        served = closing.enter_context(listen("OPC UA", host, found["port"], "port"))
+        served = closing.enter_context(take_port("OPC UA", host, found["port"], "port"))
         adapter = None
         if adapter_port is not None:
-            adapter = closing.enter_context(listen("MTConnect", "127.0.0.1", adapter_port, "adapter_port"))
+            adapter = closing.enter_context(take_port("MTConnect", "127.0.0.1", adapter_port, "adapter_port"))
         agent, agent_port = None, found["agent_port"]
         if agent_port is not None:
-            agent = closing.enter_context(listen("MTConnect", "127.0.0.1", agent_port, "agent_port"))
+            agent = closing.enter_context(take_port("MTConnect", "127.0.0.1", agent_port, "agent_port"))
         own: TwinProgramArguments = {
             "subprograms": found["subprograms"], "zero": found["zero"], "tool_length": found["tool_length"],
             "radius_register": found["radius_register"], "tools": found["tools"],
@@ -126,7 +126,7 @@ def serve_twin(
         }  # fmt: skip
         program = twin_program(nc, machine=machine, observer=observer, **own)
         playback = Playback(program.timed, speed=speed, loop=found["loop"])
-        ports = Ports(host, served, adapter, agent)
+        ports = Ports(served, adapter, agent)
         ready = found["ready"] or _ignore
         run_until_ended(
             lambda: serve_program(

@@ -131,9 +131,10 @@ async def _channel(space: Space, program: TwinProgram) -> None:
         ("ToolId", "block.tool_number", _UINT32),
     ):
         space.show(key, kind, f"{path}.{name}")
-    await space.variable(f"{path}.ActProgramLine", CNC, _STRING)
+    for name, kind in (("ActProgramLine", _STRING), ("ActProgramFileOffset", _UINT32)):
+        await space.variable(f"{path}.{name}", CNC, kind)
+        await space.declare(f"{path}.{name}", ua.ObjectIds.DataItemType)
     space.show("block.number", _STRING, f"{path}.ActProgramLine")
-    await space.variable(f"{path}.ActProgramFileOffset", CNC, _UINT32)
     space.show("block.line", _UINT32, f"{path}.ActProgramFileOffset")
     await space.historize("program.feed", f"{path}.ActFeedrate")
     await space.historize("block.line", f"{path}.ActProgramFileOffset", _UINT32)

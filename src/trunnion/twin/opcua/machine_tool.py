@@ -85,6 +85,7 @@ async def _monitoring(space: Space) -> None:
 
 async def _percent(space: Space, path: str, key: str) -> None:
     await space.variable(path, MACHINE_TOOL, _DOUBLE)
+    await space.declare(path, ua.ObjectIds.AnalogUnitRangeType)
     await space.unit(path, "P1", 0.0, 100.0)
     space.show(key, _DOUBLE, path)
 
@@ -107,6 +108,7 @@ async def _tools(space: Space, program: TwinProgram) -> None:
         await space.put(f"{path}.ControlIdentifier1", program.tool_number(name), _UINT32)
         await space.put(f"{path}.ControlIdentifierInterpretation", _NUMBER_BASED, _INT32)
         await space.put(f"{path}.Locked", False, _BOOLEAN)
+        await space.absent(f"{path}.Locked.ReasonForLocking")
         for text in ("Identifier", "Name"):
             await space.variable(f"{path}.{text}", MACHINE_TOOL, _STRING, name, is_property=True)
 
@@ -124,6 +126,7 @@ async def _production(space: Space, program: TwinProgram) -> None:
     await space.put(f"{_JOB}.NumberInList", 1, _UINT16)
     await space.put(f"{_JOB}.RunsPlanned", 1, _UINT32)
     space.show("state.runs_planned", _UINT32, f"{_JOB}.RunsPlanned")
+    space.show("state.runs_are_planned", _BOOLEAN, f"{_JOB}.RunsPlanned.IsValid")
     space.show("state.completed", _UINT32, f"{_JOB}.RunsCompleted")
     _show_state(space, f"{_JOB}.State", "job")
     await _programs(space, program)

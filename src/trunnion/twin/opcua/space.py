@@ -12,7 +12,7 @@ from typing import Any, Final
 from asyncua import Node, Server, ua
 
 from trunnion.records import dataclass
-from trunnion.twin.nodesets import CNC, NODESETS, nodeset
+from trunnion.twin.nodesets import CNC, DEVICES, NODESETS, nodeset
 
 #: Namespace of the twin's own nodes.
 TWIN: Final = "urn:trunnion:twin"
@@ -23,6 +23,9 @@ VERSION: Final = metadata.version("trunnion")
 #: Number of the type of messages of OPC 40502, and the browse name of what its NodeSet puts among the objects.
 MESSAGE_TYPE: Final = 1011
 _DEMO: Final = "test"
+
+#: Number of the property of the folder for devices that its NodeSet leaves without a value.
+_ONLINE_ACCESS: Final = 6095
 
 #: Engineering units by their UN/CEFACT codes (OPC 10000-8, 5.6.3): display name and description.
 _UNITS: Final = {
@@ -70,6 +73,8 @@ class Space:
             await self.server.import_xml(xmlstring=nodeset(name), strict_mode=is_sound)
         self._index = {uri: k for k, uri in enumerate(await self.server.get_namespace_array())}
         await self._mend_cnc()
+        online = self.server.get_node(ua.NodeId(_ONLINE_ACCESS, self.index(DEVICES)))
+        await online.write_value(ua.DataValue(ua.Variant(False, ua.VariantType.Boolean)))
 
     async def _mend_cnc(self) -> None:
         """Take the demo object of the NodeSet for CNC systems away, and add the type that was left out with it."""
@@ -138,9 +143,17 @@ class Space:
         await self.node(path).write_value(ua.DataValue(ua.Variant(value, kind)))
 
     async def absent(self, path: str) -> None:
-        """Mark a variable that its type asks for, and of which the twin knows nothing."""
+        """Mark a variable that its type asks for, and properties of it, of which the twin knows nothing."""
         status = ua.StatusCode(ua.StatusCodes.BadNotSupported)
-        await self.node(path).write_value(ua.DataValue(ua.Variant(), status))
+        without = [each for each in await self.node(path).get_properties() if await each.read_value() is None]
+        for node in (self.node(path), *without):
+            await node.write_value(ua.DataValue(ua.Variant(), status))
+
+    async def declare(self, path: str, kind: int) -> None:
+        """Give a variable of ``variable`` the type of variables that the NodeSet declares for it."""
+        node, defines = self.node(path), ua.ObjectIds.HasTypeDefinition
+        await node.delete_reference(await node.read_type_definition(), defines)
+        await node.add_reference(ua.NodeId(kind), defines, bidirectional=False)
 
     async def unit(self, path: str, code: str, low: float | None = None, high: float | None = None) -> None:
         """Give a variable its unit, by its UN/CEFACT code, and the range of its values, as far as it has them."""

@@ -38,6 +38,7 @@ def states_of(playback: Playback, space: Space, wall: float, begun: float) -> di
         "state.override": playback.override,
         "state.completed": playback.completed,
         "state.runs_planned": 0 if playback.loop else 1,
+        "state.runs_are_planned": not playback.loop,
         "state.text": playback.state.value,
         "state.hours": int((wall - begun) / 3600.0),
         "state.end": _predicted(playback, wall),

@@ -1,7 +1,7 @@
 """How far the tool leaves its path between the points: motions, lines and arcs for arcs, and splines."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields
 from typing import Final
 
@@ -22,6 +22,7 @@ from trunnion.verification.expected.arcs import circle_of
 from trunnion.verification.expected.path import WrittenSpline
 from trunnion.verification.expected.splines import dense_points, span_counts
 from trunnion.verification.kinematics.axis_motion import AxisMotion
+from trunnion.verification.kinematics.positioning_moves import rotary_positioning_flags
 from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.matching.pairs import ArcSegments
 from trunnion.verification.results import Check, Place
@@ -38,6 +39,9 @@ _DIAGONAL: Final = math.sqrt(3.0) + 1e-6
 
 #: Share by which a chord may be higher than its tolerance: arithmetic, and ends of arcs that the CL file rounds.
 _SHARE: Final = 1.01
+
+#: What digits of positions come to is told from here on, mm or degrees.
+_LEAST_DIGITS: Final = 5e-7
 
 #: What the digits of coefficients come to, mm.
 _COEFFICIENTS: Final = 2e-5
@@ -142,7 +146,12 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     if axis.row >= 0:
         answer = Wording("span", "in_block", measured=answer, block=context.block_name(axis.row))
     judged = tip.row if not asked and tip is not motion.tip_deviation else -1
-    if limits := (*_allowed_tip(settings, errors, judged), *_allowed_axis(settings, errors, axis.row)):
+    tips = _allowed_tip(settings, errors, judged)
+    axes = _allowed_axis(settings, errors, axis.row)
+    if limits := (
+        *_with_digits(tips, errors.limits.tip_tolerance, "mm"),
+        *_with_digits(axes, errors.limits.rounding, "deg"),
+    ):
         answer = Wording("span", "allowed", measured=answer, limits=limits)
     if faults:
         answer = Wording("span", "with_faults", measured=answer, fault=Faults(faults, len(faults)).answer())
@@ -171,7 +180,8 @@ def _seen(context: Context, *, rapids: bool) -> SeenRows:
         on_arc = (kind == Kind.ARC) & (run.orientation_between(first, end) == Orientation.ANGLES)
         on_arc[on_arc] = _turning(run, first + np.flatnonzero(on_arc))
         in_machine = phrase("left_in_machine"), state.machine_frame.part(first, end)
-        reasons = (in_machine, (phrase("left_rapid"), here), (phrase("left_turns_on_arc"), on_arc))
+        turns = phrase("left_turns"), rotary_positioning_flags(run, first, end) & ~here
+        reasons = (in_machine, (phrase("left_rapid"), here), turns, (phrase("left_turns_on_arc"), on_arc))
         seen.add(first, end - first, reasons)
     return seen
 
@@ -181,6 +191,13 @@ def _turning(run: Run, rows: Ints) -> Flags:
     start = np.asarray(run.start)[list(run.machine.rotary)]
     before = np.where((rows > 0)[:, None], run.rotary[np.maximum(rows - 1, 0)], start)
     return np.asarray(np.abs(run.rotary[rows] - before).max(axis=1, initial=0.0) > NO_ROTATION)
+
+
+def _with_digits(limits: Iterable[Wording], digits: float, unit: str) -> Iterator[Wording]:
+    """Yield limits with what the digits of positions come to, which is allowed as well."""
+    for limit in limits:
+        counts = digits >= _LEAST_DIGITS and limit.variant != "no_limit"
+        yield Wording("span", "with_digits", limit=limit, digits=digits, unit=unit) if counts else limit
 
 
 def _allowed_tip(settings: ExpectedValues, errors: LinearizationErrors, row: int) -> Iterator[Wording]:
@@ -265,14 +282,15 @@ def _faults(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
     rounding = math.asin(min(1.0, _DIAGONAL * tolerances.tip / max(arc.radius, 1e-9)))
     half = 2.0 * math.asin(math.sqrt(min(1.0, 0.5 * _SHARE * tolerances.chord / max(arc.radius, 1e-9))))
     back = turns < -2.0 * rounding - 1e-9
-    bad = (0.5 * np.abs(turns) > half + rounding + 1e-9) | back
+    limit = half + rounding + 1e-9
+    bad = (0.5 * np.abs(turns) > limit) | back
     for k in np.flatnonzero(bad).tolist():
         if back[k]:
             value = 2.0 * arc.radius * math.sin(min(-0.5 * float(turns[k]), 0.5 * math.pi))
             said = Wording("span", "arc_back", off=value)
         else:
             value = float(heights[k])
-            said = Wording("span", "arc_off", off=value, limit=tolerances.chord)
+            said = Wording("span", "arc_off", off=value, limit=float(_heights(arc.radius, np.array(2.0 * limit))))
         yield context.place_with_cl(_row(context, segments, k), value, said, segments.cl)
 
 

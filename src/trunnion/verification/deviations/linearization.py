@@ -52,30 +52,21 @@ _HALF_TURN: Final = 180.01
 
 
 @dataclass(frozen=True, slots=True)
-class DefaultLimits:
-    """Limits of the tool axis in cuts where no setting gives one, by operation and by the turn of each step.
-
-    rounding  is allowed in addition, degrees
-    """
-
-    tolerance: AxisTolerance
-    rounding: float
-
-
-@dataclass(frozen=True, slots=True)
 class SpanLimits:
     """How far tip and tool axis may be off between points.
 
-    tip            mm
-    axis           degrees; None: any, or as ``by_default``
-    tip_tolerance  how far points themselves may be off, mm
-    by_default     limits of the tool axis by where it is; None: ``axis``
+    tip            mm; infinite: any, or as the CL file wants it
+    axis           degrees; infinite: any, or as ``by_default``
+    tip_tolerance  how far points themselves may be off, mm: is allowed in addition
+    rounding       how far the tool axis may be off for its digits, degrees: is allowed in addition
+    by_default     limits of the tool axis in cuts, by operation and by the turn of each step; None: ``axis``
     """
 
-    tip: float
-    axis: float | None = None
+    tip: float = math.inf
+    axis: float = math.inf
     tip_tolerance: float = 0.0
-    by_default: DefaultLimits | None = None
+    rounding: float = 0.0
+    by_default: AxisTolerance | None = None
 
 
 class LinearizationErrors:
@@ -90,6 +81,7 @@ class LinearizationErrors:
     axis  degrees from the great circle, wherever the control interpolates rotary angles
     cuts  where no setting limits the tip: mm from the lines of the CL file in cuts without TCP, whatever is allowed
     unstated  those of them that are in no tolerance of the CL file, where they are beyond what it would allow at least
+    limits    what it was made with
     """
 
     def __init__(
@@ -101,19 +93,19 @@ class LinearizationErrors:
         matching: Matching | None = None,
     ) -> None:
         self._run = run
-        self._tip_tolerance = limits.tip_tolerance
+        self.limits = limits
         self._tip_uncertainty = 2.0 * math.sqrt(3.0) * limits.tip_tolerance
         self._rotary = np.array(run.machine.rotary, np.int64)
         self._is_rotary = np.array([axis.is_rotary for axis in run.machine.axes])
         self._expected = expected
         self._behind_holes = np.array(sorted(expected.hole_exits) if expected is not None else (), np.int64)
         self._matching = matching
-        self._by_default = limits.by_default
         self._tip_is_limited = math.isfinite(limits.tip)
         self._judges_turns = expected is not None
-        self.tip = WorstRows(limits.tip if self._tip_is_limited else self._tip_uncertainty + _ARITHMETIC, max_rows)
+        beyond = limits.tip + limits.tip_tolerance if self._tip_is_limited else self._tip_uncertainty + _ARITHMETIC
+        self.tip = WorstRows(beyond, max_rows)
         self.cuts, self.unstated = WorstRows(math.inf, max_rows), WorstRows(0.0, max_rows)
-        self.axis = WorstRows(0.0 if limits.by_default else math.inf if limits.axis is None else limits.axis, max_rows)
+        self.axis = WorstRows(0.0 if limits.by_default else limits.axis + limits.rounding, max_rows)
 
     @cached_property
     def _cl_row(self) -> Lines:
@@ -150,36 +142,36 @@ class LinearizationErrors:
             self._judge_cuts(first, np.flatnonzero(cuts & ~long), off_tip)
             off_axis[kind == Kind.RAPID] = 0.0
         self.tip.add(first, off_tip)
-        if self._by_default is not None:
+        if self.limits.by_default is not None:
             off_axis[rows] = np.where(
-                off_axis[rows] > self._allowed(self._by_default, first, rows, axes), off_axis[rows], 0.0
+                off_axis[rows] > self._allowed(self.limits.by_default, first, rows, axes), off_axis[rows], 0.0
             )
         self.axis.add(first, off_axis)
 
     def allowed_by_default(self, row: int) -> float:
         """How far the tool axis may be off in a row where no setting says it, degrees; infinite outside of cuts."""
-        assert self._by_default is not None
+        assert self.limits.by_default is not None
         positions, here = self._run.chunk(row, row + 1), np.zeros(1, np.int64)
         _, axes = self._path_ends(row, here, positions)
-        return float(self._allowed(self._by_default, row, here, axes)[0]) - self._by_default.rounding
+        return float(self._allowed(self.limits.by_default, row, here, axes)[0]) - self.limits.rounding
 
-    def _allowed(self, limits: DefaultLimits, first: int, rows: Ints, axes: Floats) -> Floats:
+    def _allowed(self, default: AxisTolerance, first: int, rows: Ints, axes: Floats) -> Floats:
         """How far the tool axis may be off within rows, (k,) degrees; infinite where they do not cut.
 
         ``axes`` (k, 2, 3) are the tool axes at both ends of the paths that the rows are on.
         """
         turn = np.degrees(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(axes[:, 1] - axes[:, 0], axis=1), 1.0)))
-        tolerance = np.full(len(rows), limits.tolerance.cutting)
+        tolerance = np.full(len(rows), default.cutting)
         cl = self._cl_row[first + rows]
         for section in self._expected.sections if self._expected is not None else ():
             moves = section.operation.moves
             here = np.flatnonzero((cl >= section.first) & (cl < section.end))
             free = np.isin(moves.phase[cl[here] - section.first], FREE_PHASES)
-            tolerance[here] = np.where(free, math.inf, limits.tolerance.of(section.operation))
+            tolerance[here] = np.where(free, math.inf, default.of(section.operation))
         allowed = allowed_deviation(tolerance, turn)
         if self._divided is not None:
             allowed = np.where(np.isfinite(allowed), np.minimum(allowed, self._divided[first + rows]), allowed)
-        return allowed + limits.rounding
+        return allowed + self.limits.rounding
 
     def _long_turns(self, first: int, end: int, positions: RowPositions, tcp: Flags) -> Flags:
         """Which rows turn a rotary axis by more than half a turn, whole turns included, without TCP, (end - first,).
@@ -214,10 +206,10 @@ class LinearizationErrors:
         """Leave how far the tip is off in rows, counted from ``first``, only where that is a fault."""
         allowed, known = tip_limits(self._expected, self._cl_row[first + rows].astype(np.int64))
         off = np.where(np.isfinite(allowed), off_tip[rows], 0.0)
-        is_fault = off > allowed + self._tip_tolerance
+        is_fault = off > allowed + self.limits.tip_tolerance
         judged, unknown = np.zeros((2, len(off_tip)))
         judged[rows] = off
-        unknown[rows] = np.where(is_fault | (off <= known + self._tip_tolerance), 0.0, off)
+        unknown[rows] = np.where(is_fault | (off <= known + self.limits.tip_tolerance), 0.0, off)
         self.cuts.add(first, judged)
         self.unstated.add(first, unknown)
         off_tip[rows] = np.where(is_fault, off, 0.0)
@@ -263,11 +255,12 @@ class LinearizationErrors:
         moves_tip = (run.programmed[first:end] & int(POSITION_WORDS)) != 0
         turns = np.abs(np.diff(positions.joints[:, self._rotary], axis=0))
         sampled = (turns > _STILL).any(axis=1) & ~frame & (kind != Kind.ARC)
-        if self._by_default is not None and not self._tip_is_limited:
+        if self.limits.by_default is not None and not self._tip_is_limited:
             total = np.radians(turns[:, 0] + turns[:, 1])
-            needed = (0.25 * total * total > math.radians(self._by_default.tolerance.finishing)) | cuts
+            needed = (0.25 * total * total > math.radians(self.limits.by_default.finishing)) | cuts
             sampled &= needed if self._divided is None else needed | np.isfinite(self._divided[first:end])
         sampled &= (kind != Kind.RAPID) | (~tcp & moves_tip & self._tip_is_limited) | long
+        sampled &= ~rotary_positioning_flags(run, first, end)
         by_angles = run.orientation_between(first, end) == Orientation.ANGLES
         # No great circle leads round by more than half a turn: the words of rotary axes do.
         by_angles |= (turns.max(axis=1) > _HALF_TURN) & (run.programmed[first:end] & int(ProgrammedWord.VECTOR) == 0)

@@ -31,6 +31,7 @@ from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
 from trunnion.verification.kinematics.machine_positions import MachinePositions
+from trunnion.verification.kinematics.positioning_moves import rotary_positioning_flags
 from trunnion.verification.kinematics.seen_rows import SeenRows
 from trunnion.verification.kinematics.unknown_approaches import UnknownApproaches, unknown_approaches
 from trunnion.verification.kinematics.worst_rows import WorstRows
@@ -46,7 +47,8 @@ class AxisMotion:
     speed           for each axis, the share of its rapid speed that rows at feed need; 1 is all of it
     acceleration    for each axis, the share of its acceleration
     axis_deviation  degrees between the tool axis half-way and the great circle, in rows at feed
-    tip_deviation   mm between the tip half-way and its straight line, in lines without TCP
+    tip_deviation   mm between the tip half-way and its straight line, in lines without TCP; neither of rows that only
+                    position rotary axes
     extremes        (5, 2) lowest and highest values in workpiece motions, mm or deg; of slides also between the ends
                     of arcs and of lines on which rotary axes turn under TCP, but not where they stand at a position
                     of the machine that nobody can compare with those of the workpiece
@@ -153,9 +155,10 @@ class AxisMotionAnalyzer:
                 motion.speed[k].add(first, shares[0, k])
             if axis.acceleration is not None:
                 motion.acceleration[k].add(first, shares[1, k])
-        motion.axis_deviation.add(first, deviation)
+        positioning = rotary_positioning_flags(run, first, end)
+        motion.axis_deviation.add(first, np.where(positioning, 0.0, deviation))
         if not tcp.all():
-            free = np.flatnonzero(self._turns(positions) & ~tcp & (kind == Kind.LINEAR))
+            free = np.flatnonzero(self._turns(positions) & ~tcp & (kind == Kind.LINEAR) & ~positioning)
             motion.tip_deviation.add(first, _tip_deviations(run.machine_at(first), positions, free, count))
 
     def _count_seen(self, first: int, kind: Codes, feeds: Floats) -> None:

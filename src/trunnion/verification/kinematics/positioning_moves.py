@@ -6,6 +6,7 @@ Out:    rows, increasing, or flags of consecutive rows.
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -28,6 +29,9 @@ _FROM_HOME = 200.0
 #: Axes that move by less than this, mm or degrees, stand still.
 _STILL = 1e-9
 
+#: Events of planes, whose blocks may turn rotary axes.
+_PLANES = ("plane", "tilt", "cycle800")
+
 #: Rows that are searched at first.
 _FEW = 64
 
@@ -44,17 +48,49 @@ def oriented_by_vector(run: Run) -> Flags:
 
 
 def rotary_positioning_flags(run: Run, start: int, end: int) -> Flags:
-    """Which of consecutive rows only position rotary axes, at rapid with TCP and M114 off, (end - start,) bool."""
+    """Which of consecutive rows only position rotary axes, with TCP and M114 off, (end - start,) bool.
+
+    At rapid, or at a feed from home or in a block that turns to a plane: nothing is cut there.
+    """
     turns = _turns_only(run.programmed[start:end])
     if not turns.any():
         return turns
-    return np.asarray(turns & ~run.state.follows(start, end) & (run.kind[start:end] == Kind.RAPID))
+    turns = turns & ~run.state.follows(start, end)
+    return np.asarray(turns & ((run.kind[start:end] == Kind.RAPID) | _at_feed(run, np.arange(start, end), turns)))
 
 
 def only_positions_rotary_axes(run: Run, rows: Ints) -> Flags:
     """As ``rotary_positioning_flags`` for rows in any order, (k,) bool."""
-    turns = _turns_only(run.programmed[rows])
-    return np.asarray(turns & ~run.state.follows_at(rows) & (run.kind[rows] == Kind.RAPID))
+    turns = _turns_only(run.programmed[rows]) & ~run.state.follows_at(rows)
+    return np.asarray(turns & ((run.kind[rows] == Kind.RAPID) | _at_feed(run, rows, turns)))
+
+
+def _at_feed(run: Run, rows: Ints, turns: Flags) -> Flags:
+    """Which of the rows (k,) that ``turns`` (k,) are at a feed that cuts nothing."""
+    at_feed = np.asarray(turns & (run.kind[rows] == Kind.LINEAR))
+    if at_feed.any():
+        at_feed[at_feed] = np.isin(rows[at_feed], _turns_at_feed(run))
+    return at_feed
+
+
+def _turns_at_feed(run: Run) -> Ints:
+    """Rows that turn rotary axes alone at a feed, from home, behind a retract or in the block of a plane."""
+    found = _feed_turns.get(run)
+    if found is None:
+        alone = _turns_only(run.programmed)
+        rows = np.flatnonzero(alone & (run.kind == Kind.LINEAR))
+        before = np.maximum.accumulate(np.where(alone & ~run.machine_frame, -1, np.arange(len(run))))[rows]
+        retracts = np.sort(np.array([event.before_row for event in run.events if event.kind == "retract"], np.int64))
+        retracted = np.searchsorted(retracts, before, "right") < np.searchsorted(retracts, rows, "right")
+        planes = {(event.before_row, event.line) for event in run.events if event.kind in _PLANES}
+        to_plane = np.array([(row, int(run.lines[row])) in planes for row in rows.tolist()], np.bool_)
+        found = rows[to_plane | (before < 0) | run.machine_frame[before] | retracted]
+        _feed_turns[run] = found
+    return found
+
+
+#: Kept as long as the runs.
+_feed_turns: WeakKeyDictionary[Run, Ints] = WeakKeyDictionary()
 
 
 def _turns_only(programmed: Codes) -> Flags:

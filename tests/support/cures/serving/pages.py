@@ -14,7 +14,7 @@ from trunnion.controls import shipped_controls
 from trunnion.jobs.view.viewing import prepare_view
 from trunnion.machines import load_machine
 from trunnion.reporting.write import write_refusal
-from trunnion.viewer.serving import listen
+from trunnion.viewer.serving import take_port
 
 _OURS: Final = 'extends = "yl569"\n'
 
@@ -36,9 +36,9 @@ def _served(host: str = "127.0.0.1", port: int = 0, *, taken: bool = False) -> T
     """Return what takes a port for a moment, or one that is taken."""
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
-        with listen("127.0.0.1", 0) as other:
+        with take_port("127.0.0.1", 0) as other:
             own = other.getsockname()[1] if taken else port
-            return ended(lambda: listen(host, own).close())
+            return ended(lambda: take_port(host, own).close())
 
     return tried
 

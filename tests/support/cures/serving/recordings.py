@@ -12,7 +12,7 @@ from trunnion.definitions import load_table
 from trunnion.extras import import_extra
 from trunnion.files.places import resolve_output
 from trunnion.twin.opcua.users import Role, write_user
-from trunnion.twin.ports import listen
+from trunnion.twin.ports import take_port
 from trunnion.twin.recording import files, nodes, reading
 
 _HEAD: Final = "source,received,mark,X,Y,Z,B,C\n"
@@ -65,9 +65,9 @@ def _full(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 def _listening(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
     """Take a port for a moment, beside one that is taken."""
-    with listen("a twin", "127.0.0.1", 0, "port") as taken:
-        port = int(settings["port"]) if settings["port"] != "taken" else taken.getsockname()[1]
-        return ended(lambda: listen("a twin", "127.0.0.1", port, "port").close())
+    with take_port("a twin", "127.0.0.1", 0, "port") as taken:
+        port = int(settings["port"]) if settings["port"] != "taken" else taken.socket.getsockname()[1]
+        return ended(lambda: take_port("a twin", "127.0.0.1", port, "port").socket.close())
 
 
 _READ: Final = file_of("run.csv", reading.read_recording)

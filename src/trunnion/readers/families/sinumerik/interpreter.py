@@ -60,7 +60,7 @@ _SAME_RADIUS: Final = 0.001
 _BLOCK_NUMBERS: Final = frozenset({"N", ":"})
 
 #: Words that lines take, circles through a point, and other circles.
-_OF_LINES: Final = frozenset({"I", "J", "K", "ANG"})
+_OF_LINES: Final = frozenset({"ANG"})
 _OF_THROUGH: Final = frozenset({"I1", "J1", "K1", "TURN"})
 _OF_CIRCLES: Final = frozenset({"I", "J", "K", "CR", "AR", "TURN", "ANG"})
 
@@ -307,8 +307,6 @@ class SinumerikInterpreter(WordInterpreter):
     def _refuse_unused(self, block: Block) -> None:
         """Report words of circles that the motion in force does not take."""
         motion, given = self.control.motion, block.params.keys()
-        if {"I", "J", "K"} & given and motion <= LINEAR:
-            self._note(Wording("NC213", "centre_of_line"), Severity.WARNING)
         takes = _OF_LINES if motion <= LINEAR else _OF_THROUGH if motion == THROUGH else _OF_CIRCLES
         for word in sorted(given - takes):
             self._note(Wording("NC213", "unused_word", word=word), Severity.ERROR)
