@@ -41,7 +41,7 @@ class AxisPieces:
     joints      (k + 1, 5)  axis values before the first piece and after each; mm or deg, machine order
     tool        (k,)      index of the tool in ``Run.tools``
     known       (k,)      where the tool is at the workpiece is known: no coordinate of it is left unstated
-    at_machine  (k,)      a slide begins or ends where coordinates of the machine put it, or nothing has put it yet
+    at_machine  (k,)      a slide begins or ends where coordinates of the machine put it, or nothing else has
     """
 
     first: int
@@ -118,6 +118,10 @@ class _Motion:
         along = np.concatenate((start[None], along))
         ends = machine.any(axis=1)
         at_machine = ends | np.concatenate((began_at_machine, ends))[:-1]
+        if not run.machine.spindle_point_is_stated:
+            strict = StatedTips.of(run, needs_gauge_point=True)
+            stated = ~xyz_is_tip & self._has_length(first, end, tool) & ~ends
+            at_machine |= ~(stated | (strict.before[first:end] & strict.after[first:end]))
         return AxisPieces(first, end, row + first, begin, done, along, tool[row], known[row], at_machine[row])
 
     def _check_count(self, first: int, counts: Ints) -> None:

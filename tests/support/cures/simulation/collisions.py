@@ -10,7 +10,7 @@ import numpy as np
 
 from tests.support.cures.cure import Cure, Outcome, Trial
 from tests.support.cures.reading import ended
-from tests.support.cures.simulation.simulations import HEAD_OF_OURS, on, simulated
+from tests.support.cures.simulation.simulations import ABOVE_TABLE, HEAD_OF_OURS, SHORT, on, simulated
 from tests.support.simulating import SLOT, TOOL, cuboid
 from trunnion.errors import Problem
 from trunnion.machines import load_machine
@@ -66,7 +66,7 @@ def _on_own(gauge: str = "") -> Trial:
 
     def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
         (folder / "ours.toml").write_text(HEAD_OF_OURS + gauge, encoding="utf-8")
-        return simulated(text, str(folder / "ours.toml"), folder, zero="0,0,-60", tool_length="110")
+        return simulated(text, str(folder / "ours.toml"), folder, zero=ABOVE_TABLE, tool_length="50", tools=SHORT)
 
     return tried
 

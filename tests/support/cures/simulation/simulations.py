@@ -56,7 +56,10 @@ def _saved(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 
 _SLOT: Final = on()
-_PLACED: Final = on(zero="0,0,-60", tool_length="60")
+SHORT: Final = "1=flat:10,length=30,flutes=20,holder=40x20"
+#: A zero at which the stock stands on the table.
+ABOVE_TABLE: Final = "-25,0,12"
+_PLACED: Final = on(zero=ABOVE_TABLE, tool_length="50", tools=SHORT)
 _TWO_TOOLS: Final = SLOT.replace("M5\nM30", "G49\nT2 M6\nG43 H2\nS1000 M3\nG0 X-20 Y10 Z-3\nG1 X70\nG0 Z20\nM5\nM30")
 _BOTH: Final = on(tools=f"{TOOL} {TOOL.replace('1=', '2=', 1)}")
 _PART: Final = on(part=slotted(5.0))
