@@ -3,6 +3,7 @@
 python3 make.py sample     set up, and post a real five-axis toolpath
 python3 make.py simulate   set up, cut a part with its three programs, and draw what comes out
 python3 make.py impeller   set up, and make an impeller from measured points: paths, programs, proof, and the part
+python3 make.py freecad    set up, and make, post, prove and simulate a job in FreeCAD, which must be installed
 python3 make.py test       set up, and run what judges a change: tests, style, types, the site
 python3 make.py nightly    the rest: the whole matrix, long cases, all draws, fuzzing, archives; a number is the seed
 python3 make.py quick      a minute and a half of it: style, types, contracts, the tests nearest to the change
@@ -35,6 +36,7 @@ SUPPORTED = (11, 12, 13)  # minor versions of Python 3 that the wheel is tried o
 TESTS = ("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal")  # neighbours share what one process has kept
 IMPELLER = Path("examples", "impeller", "impeller.toml")
 FUZZING = "60"  # seconds
+FREECAD = Path("examples", "freecad", "plate.py")
 CELL = "0.25"  # mm, of the simulation of the impeller
 KEEPING = {"PYTHONDONTWRITEBYTECODE": ""}  # a shell may forbid it: each of many processes would compile all it imports
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
@@ -124,6 +126,29 @@ def impeller() -> None:
     how = ("--machine", "yl569", "--set", "zero=0,0,0", "--cell", CELL)
     run("trunnion", "impeller", "cut", IMPELLER, *how, "--output", folder / "nc", good=(0, 1))
     print(f"CL files, programs, the report of their proof, that of the simulation, and pictures are in {folder / 'nc'}")
+
+
+def freecad() -> None:
+    """Make a part and its job in FreeCAD, post it by the post for FreeCAD, prove it, simulate it, and draw it."""
+    free = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
+    if free is None:
+        sys.exit("FreeCAD is not installed: on Debian, apt install freecad")
+    set_up(".")
+    run("trunnion", "prepare", "simulate")
+    folder = HERE / "build" / "freecad"
+    folder.mkdir(parents=True, exist_ok=True)
+    run("trunnion", "freecad", "install", "--folder", folder)
+    how = {"TRUNNION_OUT": str(folder), "TRUNNION_ARGS": "--machine haas_umc750", "QT_QPA_PLATFORM": "offscreen"}
+    print("$", free, FREECAD, flush=True)
+    done = subprocess.run(
+        [free, str(FREECAD)], cwd=HERE, check=False, stdin=subprocess.DEVNULL, env={**os.environ, **how}
+    )
+    if done.returncode:
+        sys.exit(done.returncode)
+    cl, part, picture = (folder / f"plate{ending}" for ending in (".apt", ".stl", ".png"))
+    look = ("--cell", "0.5", "--save-stock", picture, "--report", folder / "plate_simulated.html")
+    run("trunnion", "simulate", folder / "plate.nc", "--machine", "haas_umc750", "--cl", cl, "--part", part, *look)
+    print(f"program, report of the proof, that of the simulation, and picture are in {folder}")
 
 
 def check() -> None:
@@ -226,8 +251,8 @@ def try_out(archive: Path, python: str, variables: Mapping[str, str] | None = No
 
 
 COMMANDS: dict[str, Callable[..., None]] = {
-    "sample": sample, "simulate": simulate, "impeller": impeller, "test": test, "nightly": nightly, "quick": quick,
-    "docs": docs, "package": package,
+    "sample": sample, "simulate": simulate, "impeller": impeller, "freecad": freecad, "test": test, "nightly": nightly,
+    "quick": quick, "docs": docs, "package": package,
 }  # fmt: skip
 
 

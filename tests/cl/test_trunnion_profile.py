@@ -11,6 +11,7 @@ from tests.support.cl_reading import Fail, Read
 from tests.support.locations import DOCS
 from trunnion.cl.dialects import DIALECTS, recognize_dialect
 from trunnion.cl.write import write_cl
+from trunnion.errors import InputError
 from trunnion.model.toolpath import Frame, LoadTool, Tool
 
 HEAD = "$$-> TRUNNION / 1\nUNITS/MM\n$$-> STOCK / BOX,60,50,40,-30,-25,-40\n"
@@ -61,6 +62,15 @@ def test_what_is_written_is_what_was_read(inch: bool, read: Read) -> None:
         np.testing.assert_allclose(other.frame.origin, one.frame.origin, atol=1e-7)
         assert (other.frame.x, other.frame.y) == (one.frame.x, one.frame.y)
         np.testing.assert_allclose(other.moves.tip, one.moves.tip, atol=1e-9)
+
+
+def test_a_probing_cycle_is_written_in_the_unit_of_its_file(read: Read) -> None:
+    toolpath = read(WHOLE.replace("RAPID\n", "PROBE/X,10,5.0\nRAPID\n"))
+    sink = io.BytesIO()
+    write_cl(toolpath, sink, dialect="trunnion")
+    assert b"\nPROBE/X,10,5.0\n" in sink.getvalue()
+    with pytest.raises(InputError, match=r"PROBE/X,10,5\.0 is not known"):
+        write_cl(toolpath, io.BytesIO(), dialect="trunnion", inch=True)
 
 
 def test_the_first_line_settles_the_dialect_and_only_there() -> None:

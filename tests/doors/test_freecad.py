@@ -1,6 +1,7 @@
 """The post for FreeCAD: what it writes of plain stand-ins, and real jobs of FreeCAD without a screen."""
 
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -9,13 +10,15 @@ from pathlib import Path
 from types import SimpleNamespace as Thing
 from typing import Any
 
+import numpy as np
 import pytest
 
 import trunnion
-from tests.support.locations import TESTS
+from tests.support.locations import ROOT, TESTS
 from trunnion.cli import main
+from trunnion.cli.doors import macro_folder
 from trunnion.doors import trunnion_post
-from trunnion.model.toolpath import CycleOn, Kind
+from trunnion.model.toolpath import CycleOn, Frame, Kind
 
 JOBS = ("profile", "pocket", "adaptive", "helix", "drilling", "facing", "two_tools", "two_fixtures")
 MACHINES = ("dmu65", "yl569", "haas_umc750")
@@ -131,6 +134,63 @@ def test_a_line_of_the_cl_file_has_the_name_of_its_operation() -> None:
     assert trunnion_post.with_operation("passed", begins) == "passed"
 
 
+def placed(x: float, y: float, z: float, tilt: float) -> Thing:
+    """A placement as FreeCAD has it: turned about X by an angle, degrees, and moved."""
+    c, s = math.cos(math.radians(tilt)), math.sin(math.radians(tilt))
+    return Thing(toMatrix=lambda: Thing(A=(1, 0, 0, x, 0, c, -s, y, 0, s, c, z, 0, 0, 0, 1)))
+
+
+def test_the_placement_of_an_operation_is_its_work_plane(tmp_path: Path) -> None:
+    cut = (*START, command("G1", Z=0.0, F=1.0))
+    level = operation(*cut, Placement=placed(0, 0, 0, 0))
+    side = operation(*cut, label="SIDE", Placement=placed(5, 6, 7, 30))
+    first, second = read(tmp_path, level, side).operations
+    assert first.frame == Frame()
+    assert second.frame.origin == (5.0, 6.0, 7.0)
+    np.testing.assert_allclose(second.frame.z, (0.0, -0.5, math.sqrt(0.75)), atol=1e-6)
+    assert second.moves.tip.tolist() == [[1, 2, 20], [1, 2, 0]]
+    writer = trunnion_post.Writer()
+    text = writer.job([side, level])
+    assert len(writer.planes) == 2
+    (tmp_path / "job.apt").write_text(text, encoding="utf-8")
+    for machine in MACHINES:
+        done = trunnion.post(tmp_path / "job.apt", machine=machine, settings={"frame": "absolute"})
+        assert done.passed, machine
+    with pytest.raises(trunnion_post.RefusedError, match="operation SIDE: G1 cuts before X, Y and Z are known"):
+        read(tmp_path, level, operation(command("G1", X=9.0), label="SIDE", Placement=placed(0, 0, 0, 30)))
+
+
+@pytest.mark.parametrize(
+    ("settings", "folder"),
+    [
+        ({}, ".local/share/FreeCAD/Macro"),
+        ({"user.cfg": ""}, ".local/share/FreeCAD/Macro"),
+        ({"user.cfg": "OWN"}, "OWN"),
+        ({"user.cfg": "OWN", "v1-1/user.cfg": ""}, ".local/share/FreeCAD/v1-1/Macro"),
+        ({"user.cfg": "damaged"}, ".local/share/FreeCAD/Macro"),
+    ],
+)
+@pytest.mark.skipif(sys.platform != "linux", reason="the folders of Linux")
+def test_the_folder_is_the_one_of_the_settings_of_freecad(
+    settings: dict[str, str], folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("XDG_CONFIG_HOME", "XDG_DATA_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    for age, (name, text) in enumerate(settings.items()):
+        file = tmp_path / ".config" / "FreeCAD" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        chosen = f'<FCText Name="MacroPath">{tmp_path / text}</FCText>' if text == "OWN" else ""
+        groups = "".join(f'<FCParamGroup Name="{each}">' for each in ("Root", "BaseApp", "Preferences", "Macro"))
+        file.write_text(f"<FCParameters>{groups}{chosen}{'</FCParamGroup>' * 4}</FCParameters>"[len(text) == 7 :])
+        os.utime(file, (1e9 + age, 1e9 + age))
+    assert macro_folder() == tmp_path / folder
+    assert main(["freecad", "install"]) == 0
+    assert (tmp_path / folder / "trunnion_post.py").is_file()
+    assert main(["freecad", "install", "--remove"]) == 0
+    assert not list((tmp_path / folder).iterdir())
+
+
 def test_install_and_remove(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["freecad", "install", "--folder", str(tmp_path / "Macro")]) == 0
     command_file = tmp_path / "Macro" / "trunnion_post.json"
@@ -160,6 +220,32 @@ def test_jobs_of_freecad_become_proven_programs(tmp_path: Path) -> None:
         assert (tmp_path / f"{name}.nc").stat().st_size > 200
         assert "passed" in (tmp_path / f"{name}.html").read_text(encoding="utf-8").lower()
     assert len({each.frame for each in trunnion.read_cl(tmp_path / "two_tools.apt").operations}) == 1
+
+
+@pytest.mark.skipif(not shutil.which("freecadcmd"), reason="FreeCAD is not installed")
+def test_the_sample_is_cut_to_the_form_of_the_part_on_three_machines(tmp_path: Path) -> None:
+    assert main(["freecad", "install", "--folder", str(tmp_path)]) == 0
+    given = {
+        "QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8", "HOME": str(tmp_path), "TRUNNION_OUT": str(tmp_path),
+        "TRUNNION_ARGS": "--machine haas_umc750",
+    }  # fmt: skip
+    done = subprocess.run(
+        ["freecadcmd", str(ROOT / "examples" / "freecad" / "plate.py")], env={**os.environ, **given},
+        stdin=subprocess.DEVNULL, check=False, timeout=600, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "plate.nc").stat().st_size > 2000
+    for machine in MACHINES:
+        result = trunnion.post(
+            tmp_path / "plate.apt", machine=machine, simulation={"part": tmp_path / "plate.stl", "cell": 0.5}
+        )
+        found = result.simulation
+        assert result.passed
+        assert found is not None
+        assert found.left is not None
+        assert found.gouge is not None
+        assert found.stock_from == str(tmp_path / "plate.apt")
+        assert (found.left.largest < 0.5, found.gouge.largest < 0.1) == (True, True), (machine, found.left, found.gouge)
 
 
 @pytest.mark.parametrize("arguments", ["--cl-only", "--machine yl569"])

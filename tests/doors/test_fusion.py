@@ -15,6 +15,8 @@ import trunnion
 from tests.support.fusion.jobs import DRILL, HOLES, MILL, STREAMS, square, tilted
 from tests.support.fusion.streams import Stream
 from tests.support.locations import ROOT, TESTS
+from trunnion.cli import main
+from trunnion.cli.doors import posts_folder
 
 NODE: Final = shutil.which("node")
 POST: Final = ROOT / "src" / "trunnion" / "doors" / "trunnion.cps"
@@ -168,3 +170,36 @@ def test_what_cannot_be_said_is_refused_with_the_name_of_the_operation() -> None
     missed = [(wanted, each["error"]) for (_, wanted), each in zip(REFUSED, found, strict=True)
               if not (each["error"] or "").startswith(wanted)]  # fmt: skip
     assert missed == []
+
+
+def test_install_and_remove(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "Posts"
+    assert main(["fusion", "install", "--folder", str(folder)]) == 0
+    assert (folder / "trunnion.cps").read_bytes() == POST.read_bytes()
+    assert main(["fusion", "install", "--remove", "--folder", str(folder)]) == 0
+    assert not list(folder.iterdir())
+    monkeypatch.setattr("sys.platform", "linux")
+    capsys.readouterr()
+    assert main(["fusion", "install"]) == 2
+    assert "give the folder of posts: --folder FOLDER" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("platform", "there", "folder"),
+    [
+        ("win32", "", "Roaming/Autodesk/Fusion 360 CAM/Posts"),
+        ("darwin", "", "Autodesk/Fusion 360 CAM/Posts"),
+        ("darwin", "Library/Application Support/Autodesk/Fusion 360 CAM/Posts",
+         "Library/Application Support/Autodesk/Fusion 360 CAM/Posts"),
+    ],
+)  # fmt: skip
+def test_where_fusion_looks(
+    platform: str, there: str, folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.platform", platform)
+    monkeypatch.setenv("APPDATA", str(tmp_path / "Roaming"))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / there).mkdir(parents=True, exist_ok=True)
+    assert posts_folder() == tmp_path / folder

@@ -17,6 +17,7 @@ SCRIPTS = {
     "post_with_proof.py": ("blade.mpf: 154 motions, proven", ["blade.mpf"]),
     "verify_program.py": ("spoiled.mpf:52 (N520), line 20 of the CL file", ["spoiled.html", "spoiled.mpf"]),
     "convert_to_another_machine.py": ("the tool does the same", ["blade.cls", "head_head.mpf"]),
+    "wrapped_text.py": ("175 mm³ removed, findings: 0", ["wrapped_text.apt", "wrapped_text.nc"]),
     "plan_and_inspect.py": ("BLADE_FINISH: TCP, 147 points", []),
 }
 

@@ -44,6 +44,7 @@ RUNS: dict[str, tuple[str, ...]] = {
     "control": ("controls", "sinumerik_840d"),
     "build": ("build", "our_mill"),
     "freecad": ("freecad", "install", "--folder", "Macro"),
+    "fusion": ("fusion", "install", "--folder", "Posts"),
     "post.html": ("post", HUB, "--machine", "yl569", *SET, "--explain", "--output", "hub.mpf", "--report", "{}"),
     "post_suggest": ("post", "no_speed.cls", "--machine", "yl569", "--suggest", "suggested.toml"),
     "post_refused": ("post", "lean.cls", "--machine", "yl569", "--output", "refused.mpf"),

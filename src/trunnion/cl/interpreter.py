@@ -93,7 +93,8 @@ class ClInterpreter:
         if self._state.stock is None:
             return ""
         kind, sizes = self._state.stock
-        return f"{kind.lower()}:{','.join(f'{size * unit:.12g}' for size in sizes)}"
+        texts = (f"{size * unit:.9f}".rstrip("0").rstrip(".") for size in sizes)
+        return f"{kind.lower()}:{','.join(texts)}"
 
     @property
     def states_system(self) -> bool:

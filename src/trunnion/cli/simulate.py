@@ -67,6 +67,8 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             variant = "clamped_tilted" if each.tilt else "clamped_turned"
             told = line(variant, tilt=number(each.tilt), turn=number(each.turn))
             yield f"{_of_setup(each.setup)}{told}"
+    if found.stock_from:
+        yield line("stock_of_cl_file", file=found.stock_from)
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield line("removed_in_all", volume=found.removed, cell=cell, accuracy=found.accuracy)
     yield from bodies_stand_lines(found, spoken())

@@ -3,7 +3,8 @@
 FreeCAD runs this file in its own Python: it uses the standard library alone, and of FreeCAD only what is handed to
 ``export``. ``trunnion freecad install`` puts it where FreeCAD looks, and beside it how to run Trunnion.
 
-In:     the objects of a job with their ``Path.Commands``: mm, F in mm per second, words modal, arc centres relative.
+In:     the objects of a job with their ``Path.Commands``: mm, F in mm per second, words modal, arc centres relative,
+        in the work plane that is the object's ``Placement``.
 Out:    CL in Trunnion's own profile, mm and mm/min, in the coordinate system of the job.
 """
 
@@ -35,11 +36,15 @@ _MOVES = {"G0": 0, "G1": 1, "G2": 2, "G3": 3}
 _CYCLES = {"G73": "DRILL,BRKCHP", "G81": "DRILL", "G82": "DRILL", "G83": "DRILL,DEEP", "G84": "TAP", "G85": "BORE"}
 #: Axis about which arcs turn, by the word of their plane.
 _PLANES = {"G17": (0.0, 0.0, 1.0), "G18": (0.0, 1.0, 0.0), "G19": (1.0, 0.0, 0.0)}
+#: The plane of an operation without a work plane.
+_ABSOLUTE = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 #: Words that say what this post takes for granted.
 _GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94", "G54", "G55", "G56", "G57", "G58", "G59"}
 _OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59"}
 _COOLANTS = {"Flood": "FLOOD", "Mist": "MIST"}
-_SWITCHES = {"M7": "COOLNT/MIST", "M8": "COOLNT/FLOOD", "M9": "COOLNT/OFF", "M0": "STOP", "M1": "OPSTOP"}
+_SWITCHES = {
+    "M7": "COOLNT/MIST", "M8": "COOLNT/FLOOD", "M9": "COOLNT/OFF", "M5": "SPINDL/OFF", "M0": "STOP", "M1": "OPSTOP",
+}  # fmt: skip
 
 
 class RefusedError(Exception):
@@ -58,11 +63,12 @@ def export(objects: Iterable[Any], filename: str, argstring: str) -> str:
     if "--cl-only" in arguments:
         return text if filename == "-" else _write(Path(filename), text)
     program = Path("freecad.nc" if filename == "-" else filename).resolve()
-    source = program.with_suffix(".apt")
-    _write(source, text)
+    _write(source := program.with_suffix(".apt"), text)
     given = [] if "--report" in arguments else ["--report", str(program.with_suffix(".html"))]
     if len(writer.offsets) > 1:
         given += ["--set", "work_offset=" + writer.offset_setting()]
+    if len(writer.planes) > 1 and not any(each.startswith("frame=") for each in arguments):
+        given += ["--set", "frame=absolute"]
     _post([str(source), "--output", str(program), *given, *arguments], writer.begins)
     return program.read_text(encoding="utf-8", errors="replace")
 
@@ -111,8 +117,8 @@ def _number(value: Any) -> float:
     return float(value)
 
 
-def _text(value: float) -> str:
-    text = (f"{value:.6f}").rstrip("0").rstrip(".")
+def _text(value: float, decimals: int = 6) -> str:
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
@@ -128,13 +134,8 @@ def _listed(*values: float) -> str:
 def tool_statement(bit: Any) -> str:
     """Return the form of a tool bit as a statement, by its shape and its properties."""
     shape = str(getattr(bit, "ShapeName", "") or getattr(bit, "ShapeType", "")).lower()
-    size = {}
-    for word, names in (
-        ("DIAMETER", ("Diameter",)), ("LENGTH", ("Length",)), ("FLUTE", ("CuttingEdgeHeight",)),
-    ):  # fmt: skip
-        found = next((getattr(bit, name) for name in names if hasattr(bit, name)), None)
-        if found is not None and _number(found) > 0.0:
-            size[word] = _number(found)
+    names = (("DIAMETER", "Diameter"), ("LENGTH", "Length"), ("FLUTE", "CuttingEdgeHeight"))
+    size = {word: _number(getattr(bit, name)) for word, name in names if hasattr(bit, name)}
     form = "MILL"
     if shape.startswith("ball"):
         size["CORNER"] = size.get("DIAMETER", 0.0) / 2.0
@@ -151,22 +152,33 @@ def tool_statement(bit: Any) -> str:
     return "$$-> TOOL / " + ",".join([form, *words])
 
 
+def work_plane(given: Any) -> tuple[float, ...]:
+    """Return the plane in which an operation has its path: origin, X and Y in the coordinates of the job."""
+    placement = getattr(given, "Placement", None)
+    if placement is None:
+        return _ABSOLUTE
+    rows = [round(float(value), 9) + 0.0 for value in placement.toMatrix().A]
+    return (rows[3], rows[7], rows[11], rows[0], rows[4], rows[8], rows[1], rows[5], rows[9])
+
+
 class Writer:
     """Writes the objects of a job as CL.
 
     begins   first line of each operation, and its name
     offsets  work offsets in the order of their first use
+    planes   work planes, and the absolute one first: origin, X and Y in the coordinates of the job
     """
 
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.begins: list[tuple[int, str]] = []
         self.offsets: list[str] = []
+        self.planes: list[tuple[float, ...]] = [_ABSOLUTE]
+        self._plane: tuple[float, ...] = _ABSOLUTE
         self._used: dict[str, str] = {}
         self._controller: Any = None
         self._offset = ""
         self._at: list[float | None] = [None, None, None]
-        self._name = ""
 
     def job(self, objects: Iterable[Any]) -> str:
         """Return the CL of a job: its operations, and before them the tools and work offsets that they use."""
@@ -194,50 +206,45 @@ class Writer:
         offset = next((each.Name for each in commands if each.Name in _OFFSETS), "")
         if offset:
             self._offset, self._at = offset, [None, None, None]
-            if offset not in self.offsets:
-                self.offsets.append(offset)
+            self.offsets += [offset] * (offset not in self.offsets)
         if offset and not any(_code(each.Name) in ("G1", "G2", "G3", *_CYCLES) for each in commands):
             return  # a fixture: its height counts from where nobody knows
         if commands:
             self._operation(given, commands)
 
     def _operation(self, given: Any, commands: Sequence[Any]) -> None:
-        controller = getattr(given, "ToolController", None) or getattr(
-            getattr(given, "Base", None), "ToolController", None
-        )
-        controller = controller or self._controller
-        label = _line(str(given.Label).replace(",", " "))
-        self._name = label
+        base, label = getattr(given, "Base", None), _line(str(given.Label).replace(",", " "))
+        own = getattr(given, "ToolController", None) or getattr(base, "ToolController", None)
+        controller = own or self._controller
         if controller is None:
             raise RefusedError(f"operation {label}: it has no tool")
         name = label if len(self.offsets) < 2 else f"{label} {self._offset}"
-        again = 1
-        while name in self._used:
-            again += 1
-            name = f"{label} {again}"
+        others = (f"{label} {again}" for again in range(2, len(self._used) + 3))
+        name = next(each for each in (name, *others) if each not in self._used)
         self._used[name] = self._offset
-        bit = getattr(controller, "Tool", None)
+        plane = work_plane(given)
+        if plane != self._plane:
+            self._plane, self._at = plane, [None, None, None]
+            self.planes += [plane] * (plane not in self.planes)
         head = [
             f"TOOL PATH/{name},TOOL,{_line(controller.Label)}",
-            tool_statement(bit),
-            "MSYS/0,0,0,1,0,0,0,1,0",
+            tool_statement(getattr(controller, "Tool", None)),
+            "MSYS/" + ",".join(_text(value, 9) for value in plane),
             f"LOADTL/{controller.ToolNumber}",
         ]
         speed = _number(controller.SpindleSpeed)
         if speed > 0.0 and str(controller.SpindleDir) != "None":
-            sense = "CCLW" if str(controller.SpindleDir) == "Reverse" else "CLW"
-            head.append(f"SPINDL/RPM,{_text(speed)},{sense}")
-        mode = str(getattr(given, "CoolantMode", getattr(getattr(given, "Base", None), "CoolantMode", "None")))
+            head.append(f"SPINDL/RPM,{_text(speed)}," + ("CCLW" if controller.SpindleDir == "Reverse" else "CLW"))
+        mode = str(getattr(given, "CoolantMode", getattr(base, "CoolantMode", "None")))
         if mode not in (*_COOLANTS, "None", ""):
             raise RefusedError(f"operation {label}: coolant {mode} is not known")
         head += ["COOLNT/" + _COOLANTS.get(mode, "")] * (mode in _COOLANTS)
-        body = _Path(self._name, self._at, speed, int(controller.ToolNumber))
+        body = _Path(label, self._at, speed, int(controller.ToolNumber))
         for command in commands:
             body.command(command)
-        if not body.moved:
-            return
-        self.begins.append((len(self.lines) + 1, name))
-        self.lines += [*head, *body.closed(), *["COOLNT/OFF"] * (mode in _COOLANTS), "END-OF-PATH"]
+        if body.moved:
+            self.begins.append((len(self.lines) + 1, name))
+            self.lines += [*head, *body.closed(), *["COOLNT/OFF"] * (mode in _COOLANTS), "END-OF-PATH"]
 
 
 def _head(objects: Sequence[Any]) -> list[str]:
@@ -276,10 +283,7 @@ class _Path:
 
     def __init__(self, operation: str, at: list[float | None], speed: float, tool: int) -> None:
         self.moved = False
-        self._operation = operation
-        self._at = at
-        self._speed = speed
-        self._tool = tool
+        self._operation, self._at, self._speed, self._tool = operation, at, speed, tool
         self._lines: list[str] = []
         self._feed = ""
         self._plane = _PLANES["G17"]
@@ -315,8 +319,6 @@ class _Path:
             self._lines.append(_SWITCHES[name])
         elif name in ("M3", "M4") and words.get("S"):
             self._lines.append("SPINDL/RPM,{},{}".format(_text(words["S"]), "CLW" if name == "M3" else "CCLW"))
-        elif name == "M5":
-            self._lines.append("SPINDL/OFF")
         elif name == "M6" and words.get("T", self._tool) != self._tool:
             raise self._refused(f"M6 T{words['T']:g} loads another tool than that of the operation")
         elif name != "M6" and name not in _GRANTED:
@@ -340,15 +342,12 @@ class _Path:
         for k, word in enumerate("XYZ"):
             self._at[k] = words.get(word, self._at[k])
         self._end_cycle()
-        if name != "G0":
-            before = self._feed
-            if self._take_feed(words) != before:
-                self._lines.append("FEDRAT/MMPM," + self._feed)
-        if None in self._at:
-            if name != "G0":
-                raise self._refused(f"{name} cuts before X, Y and Z are known")
-            return
-        if start == self._at and name in ("G0", "G1") and self.moved:
+        before = self._feed
+        if name != "G0" and self._take_feed(words) != before:
+            self._lines.append("FEDRAT/MMPM," + self._feed)
+        if None in self._at and name != "G0":
+            raise self._refused(f"{name} cuts before X, Y and Z are known")
+        if None in self._at or (start == self._at and name in ("G0", "G1") and self.moved):
             return
         if name == "G0":
             self._lines.append("RAPID")
@@ -364,15 +363,13 @@ class _Path:
         centre = [a + words.get(word, 0.0) for a, word in zip(start, "IJK")]
         centre = [s if n else c for c, s, n in zip(centre, start, self._plane)]
         turn = -1.0 if name == "G2" else 1.0
-        radius = math.sqrt(sum((a - b) ** 2 for a, b in zip(start, centre)))
-        self._lines.append("CIRCLE/" + _listed(*centre, *(turn * n for n in self._plane), radius))
+        self._lines.append("CIRCLE/" + _listed(*centre, *(turn * n for n in self._plane), math.dist(start, centre)))
 
     def _hole(self, name: str, words: dict[str, float]) -> None:
         """Add a hole; its point is at the height of R, above which nothing is cut."""
         for k, word in enumerate("XY"):
             self._at[k] = words.get(word, self._at[k])
-        feed = self._take_feed(words)
-        at = _known(self._at)
+        feed, at = self._take_feed(words), _known(self._at)
         if not at or "R" not in words or "Z" not in words:
             raise self._refused(f"{name} without X, Y, Z and R")
         parts = ["CYCLE/" + _CYCLES[name], "RAPTO,0", "FEDTO," + _text(words["Z"] - words["R"])]

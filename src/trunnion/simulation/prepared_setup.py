@@ -1,5 +1,6 @@
 """A set-up that has been read, and what of it is cut."""
 
+from collections.abc import Sequence
 from dataclasses import field
 from functools import cached_property
 
@@ -33,6 +34,7 @@ class PreparedSetup:
     pose       where the last set-up's workpiece frame lies in this one's
     register_holds  what the registers of the radius hold
     until      N number of the block of the last program before which the simulation ends; None: at its end
+    drawn      toolpaths of the part as it is drawn
     strict     what nobody has stated of radius compensation is an error
     until_line  the line of that block instead, which may be skipped; 0: none
     """
@@ -50,6 +52,7 @@ class PreparedSetup:
     register_holds: RegisterValue = RegisterValue.UNKNOWN
     until_line: int = 0
     strict: bool = False
+    drawn: Sequence[Toolpath] = ()
 
     @property
     def turn(self) -> Floats | None:

@@ -142,8 +142,8 @@ EMCIO = io
 CYCLE_TIME = 0.01
 TOOL_TABLE = judge.tbl
 [KINS]
-KINEMATICS = {module} sparm=identityfirst
-JOINTS = 5
+KINEMATICS = {kinematics}
+JOINTS = {joints}
 """
 
 _AXIS = """[{section}]
@@ -165,9 +165,9 @@ MIN_FERROR = 1000
 
 @dataclass(frozen=True)
 class Bench:
-    """A table-table machine of LinuxCNC.
+    """A machine of LinuxCNC: a table-table machine, or one with plain axes.
 
-    module   its kinematics
+    module   its kinematics; ``trivkins``: each axis is a joint
     pins     numbers of the module
     letters  of the joints, in their order
     zero     G54, mm
@@ -179,6 +179,16 @@ class Bench:
     letters: str
     zero: tuple[float, float, float]
     length: float
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether each axis is a joint."""
+        return self.module == "trivkins"
+
+    @property
+    def kinematics(self) -> str:
+        """The module with its parameters."""
+        return f"trivkins coordinates={self.letters}" if self.is_plain else f"{self.module} sparm=identityfirst"
 
 
 class SimulatorError(Exception):
@@ -199,7 +209,7 @@ def with_rests(program: str) -> str:
 
 
 def motions(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[Floats]:
-    """The positions of the joints in each program, one row a millisecond, (k, 5) mm and degrees.
+    """The positions of the joints in each program, one row a millisecond, (k, n) mm and degrees.
 
     Raises
     ------
@@ -250,7 +260,9 @@ def _write(bench: Bench, programs: Sequence[str], folder: Path, seconds: float) 
     for code, kinematics in ((428, 1), (429, 0)):
         text = f"o<m{code}> sub\nM68 E3 Q{kinematics}\nM66 E0 L0\no<m{code}> endsub\n"
         (folder / "remaps" / f"m{code}.ngc").write_text(text)
-    ini = _INI.format(client=client, folder=folder, letters=bench.letters, module=bench.module)
+    ini = _INI.format(
+        client=client, folder=folder, letters=bench.letters, joints=len(bench.letters), kinematics=bench.kinematics
+    )
     for joint, letter in enumerate(bench.letters):
         kind = "ANGULAR" if letter in "ABC" else "LINEAR"
         velocity = VELOCITY[kind]
@@ -262,13 +274,22 @@ def _write(bench: Bench, programs: Sequence[str], folder: Path, seconds: float) 
     hal = [
         "loadrt [KINS]KINEMATICS",
         "loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS",
-        "loadrt sampler depth=50000 cfg=fffff",
+        f"loadrt sampler depth=50000 cfg={'f' * len(bench.letters)}",
         "addf motion-command-handler servo-thread",
         "addf motion-controller servo-thread",
         "addf sampler.0 servo-thread",
-        *(f"net joint{k} joint.{k}.motor-pos-cmd => joint.{k}.motor-pos-fb sampler.0.pin.{k}" for k in range(5)),
-        "net kinematics motion.analog-out-03 => motion.switchkins-type",
-        f"net length motion.tooloffset.z => {bench.module}.tool-offset",
+        *(
+            f"net joint{k} joint.{k}.motor-pos-cmd => joint.{k}.motor-pos-fb sampler.0.pin.{k}"
+            for k in range(len(bench.letters))
+        ),
+        *(
+            []
+            if bench.is_plain
+            else [
+                "net kinematics motion.analog-out-03 => motion.switchkins-type",
+                f"net length motion.tooloffset.z => {bench.module}.tool-offset",
+            ]
+        ),
         *(f"setp {bench.module}.{pin} {value}" for pin, value in bench.pins.items()),
         "net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in",
         "net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared",
@@ -301,7 +322,8 @@ def _read(samples: Path) -> Floats:
         When samples were lost: the machine has gone on without them.
     """
     lines = [line.split() for line in samples.read_text().splitlines()]
-    table = np.array([[float(value) for value in line] for line in lines if len(line) == 6])
+    width = max(map(len, lines), default=0)  # the last line may be cut off
+    table = np.array([[float(value) for value in line] for line in lines if len(line) == width])
     if not len(table):
         raise SimulatorError("the sampler has seen nothing")
     lost = np.flatnonzero(np.diff(table[:, 0]) != 1.0)

@@ -1,5 +1,6 @@
 """Writes Trunnion's own APT profile."""
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
@@ -35,11 +36,16 @@ class TrunnionWriter(ClsfWriter):
         return toolpath
 
     def losses(self, operation: Operation) -> Iterator[Problem]:
-        """Statements that are not known, and a holder whose name a dollar sign would cut off."""
+        """Statements that are not known, but PROBE in the unit of the file, and a holder whose name a dollar sign would
+        cut off.
+        """
         yield from super().losses(operation)
+        is_same_unit = self.source.unit == (INCH if self.inch else 1.0)
         for event in operation.events:
             if isinstance(event, UnknownStatement):
                 text = joined(event.text)
+                if is_same_unit and re.match(r"\s*PROBE\s*/", text, re.ASCII):
+                    continue
                 yield Problem(
                     self.source.file, event.line, Wording("CL910", "unknown_statement", text=text, title=self.title)
                 )

@@ -160,12 +160,24 @@ _FREECAD: Final = job(
     "freecad", "put the post for FreeCAD where FreeCAD looks, or take it back",
     Option("step", "", Choice(("install",), "install"), "what is done"),
     Option("remove", "--remove", Switch(), "take it back"),
-    Option("folder", "--folder", Text("FOLDER"), "folder of FreeCAD's macros, where it is another than by default"),
-    run="freecad:run",
+    Option("folder", "--folder", Text("FOLDER"), "folder of macros; by default that of FreeCAD's settings"),
+    run="doors:run_freecad",
     examples=[
         ("trunnion freecad install", "from now on FreeCAD's jobs have the post trunnion"),
         ("trunnion freecad install --remove", "no longer"),
     ],
 )  # fmt: skip
 
-JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION, _FREECAD, _PREPARE)
+_FUSION: Final = job(
+    "fusion", "put the post for Fusion, HSMWorks and Inventor CAM into a folder of posts, or take it back",
+    Option("step", "", Choice(("install",), "install"), "what is done"),
+    Option("remove", "--remove", Switch(), "take it back"),
+    Option("folder", "--folder", Text("FOLDER"), "folder of posts; by default that of Fusion's local posts"),
+    run="doors:run_fusion",
+    examples=[
+        ("trunnion fusion install", "from now on Fusion's local posts have Trunnion APT"),
+        ("trunnion fusion install --folder .", "to import it into a library yourself"),
+    ],
+)  # fmt: skip
+
+JOBS: Final[tuple[Job, ...]] = (_BATCH, _SURVEY, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION, _FREECAD, _FUSION, _PREPARE)

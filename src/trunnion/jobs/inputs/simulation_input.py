@@ -64,10 +64,15 @@ class SetupInput:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SimulationInput:
-    """Stock, and the set-ups in which it is cut one after another; the rest as ``trunnion.simulate`` has it."""
+    """Stock, and the set-ups in which it is cut one after another; the rest as ``trunnion.simulate`` has it.
+
+    stock       empty: that which the CL files of the first set-up state
+    stock_from  the CL file that states it; empty where it is given
+    """
 
     stock: str | Path | TriangleMesh
     setups: Sequence[SetupInput]
+    stock_from: str = ""
     cell: float | None = None
     accuracy: float | None = None
     near: float | None = None

@@ -76,7 +76,7 @@ class PostJob:
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
     can_force     whether ``force`` can be asked for, which refusals then say
-    stock         of the part as it is drawn, where a simulation or a project states it
+    stock         of the part as it is drawn, where a simulation, a project or a CL file states it
     blank         corners of its box as the part is clamped, for the setting ``blank``; empty: not known
     setups        the machine with the tool and the work offset of single operations
     strict        a basis of the proof that is missing is an error

@@ -127,7 +127,7 @@ def post(
         ``near``, ``tools``, ``tool_libraries``, ``unit``, ``cell`` and ``accuracy``: ``{"stock": "box:100,80,30"}``. Or
         the path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come
         from the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
-        ``gouge``; the result has it as ``simulation``.
+        ``gouge``; the result has it as ``simulation``. Without ``stock`` it is that which the CL files state.
     sheet_tools
         Tools that the sheet names by their libraries without a simulation: ``tools``, ``tool_libraries`` and ``unit``
         as ``trunnion.simulate`` takes them. The CL files come first, and a tool that nothing describes is left as it
@@ -197,7 +197,7 @@ def post_beside(
 
         read = tuple(simulation_files(simulation))
         simulated = simulation_input(simulation, job.machine, job.settings.get(RADIUS_REGISTER_SETTING))
-        job = replace(job, simulation=simulated, simulation_files=read, stock=simulated.stock)
+        job = replace(job, simulation=simulated, simulation_files=read, stock=simulated.stock or None)
         inputs += read
     if (tools := found["sheet_tools"]) is not None:
         from trunnion.jobs.inputs.bodies import known_tools

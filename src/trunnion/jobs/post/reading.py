@@ -30,6 +30,7 @@ def as_clamped(
     """
     stated = stated_clamping(toolpaths)
     clamping = clamped_after(stated, angles, toolpaths[0].file)
+    job = _with_stated_stock(toolpaths, job)
     toolpaths, carried = _without_notices(toolpaths, job)
     toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
     if job.stock is not None and {**job.control.settings, **job.settings}.get("blank") == STOCK:
@@ -49,6 +50,22 @@ def as_clamped(
 
         job = replace(job, simulation=simulated_as_clamped(job.simulation, clamping))
     return toolpaths, job
+
+
+def _with_stated_stock(toolpaths: Sequence[Toolpath], job: PostJob) -> PostJob:
+    """Return the job with the stock that its CL files state, where nothing else states one."""
+    if job.stock is not None:
+        return job
+    if job.simulation is None and not any(toolpath.stock for toolpath in toolpaths):
+        return job
+    from trunnion.simulation.stock.stated_stock import stated_stock  # few posts know their stock
+
+    stated = stated_stock(toolpaths, absolute=job.options.absolute_frame)
+    if job.simulation is not None:
+        from trunnion.jobs.simulate.posted import with_stated_stock
+
+        job = replace(job, simulation=with_stated_stock(job.simulation, stated))
+    return replace(job, stock=None if stated is None else stated.stock)
 
 
 def _without_notices(toolpaths: Sequence[Toolpath], job: PostJob) -> tuple[list[Toolpath], tuple[str, ...]]:

@@ -37,6 +37,7 @@ from trunnion.simulation.finding import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
+from trunnion.simulation.stock.stated_stock import StatedStock
 from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place
 from trunnion.wording import position
@@ -54,12 +55,11 @@ _MOST_PLACES: Final = 50
 
 
 def simulation_input(given: SimulationLike, machine: Machine, radius_register: str | None = None) -> SimulationInput:
-    """Return what is to be simulated; programs, and how the part is clamped, are not known yet.
+    """Return what is to be simulated; programs, and how the part is clamped, are known later, as is stock of CL files.
 
     radius_register  setting of the post, where the project does not state it
 
-    Raises ``InputError`` if it names what is none, the project has several set-ups or is for another machine, or has no
-    stock.
+    Raises ``InputError`` if it names what is none, or the project has several set-ups or is for another machine.
     """
     given = with_present_names(given) if isinstance(given, Mapping) else {"project": given}
     project = given.get("project")
@@ -85,11 +85,21 @@ def simulation_input(given: SimulationLike, machine: Machine, radius_register: s
     setup = replace(base.setups[0], machine=machine, **own)
     setup = replace(setup, radius_register=setup.radius_register or radius_register)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
-    if not found.stock:
-        raise InputError(argument_problem("stock", Wording("SIM110", "missing")))
-    if isinstance(found.stock, str) and not is_mesh(found.stock):
+    if isinstance(found.stock, str) and found.stock and not is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
+
+
+def with_stated_stock(given: SimulationInput, stated: StatedStock | None) -> SimulationInput:
+    """Return what is simulated with the stock that the CL files state, where none is given.
+
+    Raises ``InputError`` if they state none either.
+    """
+    if given.stock:
+        return given
+    if stated is None:
+        raise InputError(argument_problem("stock", Wording("SIM110", "stock_nowhere")))
+    return replace(given, stock=stated.stock, stock_from=stated.file)
 
 
 def simulated_as_clamped(given: SimulationInput, clamping: Clamping) -> SimulationInput:
@@ -246,8 +256,8 @@ def _check(
         answer = broken[0].wording
     elif key == "removal":
         answer = Wording("removal", "good", volume=found.removed)
-        if found.skip_meanings:
-            answer = Wording("removal", "with_note", answer=answer, note=found.meanings_said)
+        for note in (found.stock_said, found.meanings_said):
+            answer = answer if note is None else Wording("removal", "with_note", answer=answer, note=note)
     elif found.pairs:
         answer = Wording("collision", "good", pairs=found.pairs)
         if found.not_checked:

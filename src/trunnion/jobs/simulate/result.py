@@ -75,6 +75,7 @@ class SimulationResult(Grounded):
     travel     of each program, as ``trunnion verify`` judges it
     setup      its name, where this is one of several
     setups     the results of each, where there are several
+    stock_from  the CL file that states the stock; empty where it was given
     tools      their bodies by the words of the program; of several set-ups those of the last
     pairs      of bodies that were checked against each other, of all programs
     turn, tilt of the part as it is clamped, degrees; all places are those of the part as it is drawn. Of several
@@ -110,6 +111,7 @@ class SimulationResult(Grounded):
     bodies_on: Annotated[tuple[Wording, ...], NOT_DATA] = ()
     has_bodies: Annotated[bool, NOT_DATA] = True
     travel: Annotated[tuple[ProgramTravel, ...], Figure(take=travel_data, after="remarks")] = ()
+    stock_from: Annotated[str, Figure(after="remarks")] = ""
     tools: Annotated[Mapping[str, ToolShape], NOT_DATA] = field(default_factory=dict)
 
     @property
@@ -186,6 +188,11 @@ class SimulationResult(Grounded):
     def meanings_said(self) -> Wording | None:
         """In which meanings of blocks that may be skipped it was simulated; None: there are none."""
         return phrase("simulated_with_skipped", meanings=self.skip_meanings) if self.skip_meanings else None
+
+    @property
+    def stock_said(self) -> Wording | None:
+        """That the stock is that of a CL file; None: it was given."""
+        return phrase("stock_of_cl_file", file=self.stock_from) if self.stock_from else None
 
     @property
     def collisions_said(self) -> Wording | None:

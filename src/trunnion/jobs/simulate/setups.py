@@ -89,6 +89,7 @@ def prepare_setup(
     return PreparedSetup(
         machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
         given.until, RegisterValue(given.radius_register or register_value_of(machine)), strict=given.strict,
+        drawn=read,
     )  # fmt: skip
 
 

@@ -35,10 +35,11 @@ def simulate(
         (``.toml``; docs/projects.md), which has programs, stock and all others; what is given here stands in place of
         it.
     machine
-        The machine that runs them: a name, a path or a ``Machine``. Only a project may leave it out, and ``stock``.
+        The machine that runs them: a name, a path or a ``Machine``. Only a project may leave it out.
     stock
         ``"box:X,Y,Z[,x0,y0,z0]"`` with its sizes and its lowest corner (0,0,0 by default), ``"cylinder:D,H[,z0]"``
-        standing on Z = z0 (0 by default) about X0 Y0, mm in the workpiece frame, or a closed mesh.
+        standing on Z = z0 (0 by default) about X0 Y0, mm in the workpiece frame, or a closed mesh. By default that
+        which the CL files state (``$$-> STOCK``); the result has the file as ``stock_from``.
     part
         The design, a closed mesh in the workpiece frame.
     fixtures
@@ -124,9 +125,12 @@ def as_simulation_input(nc: FilePath | Run | Iterable[FilePath | Run], given: Si
             raise InputError(argument_problem("nc", Wording("SIM111", "project_among_programs", project=project)))
         stated = [name for name, value in {**whole, **own}.items() if not _is_left_out(value)]
         return _overruled(read_project(project, stated), whole, own, until)
-    for name in ("machine", "stock"):
-        if {**whole, **own}.get(name) is None:
-            raise InputError(argument_problem(name, Wording("SIM110", "missing")))
+    if own.get("machine") is None:
+        raise InputError(argument_problem("machine", Wording("SIM110", "missing")))
+    if whole.get("stock") is None:
+        if _is_left_out(own.get("cl")):
+            raise InputError(argument_problem("stock", Wording("SIM110", "missing")))
+        whole["stock"] = ""  # that of the CL files
     setup = SetupInput(programs=programs, until=until, **own)
     return SimulationInput(setups=[setup], **whole)
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Final, TypeAlias
 
@@ -22,6 +23,7 @@ from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.steps import CuttingOptions, SetupSteps
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
+from trunnion.simulation.stock.stated_stock import stated_stock
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 
@@ -45,13 +47,13 @@ def simulate_setups(given: SimulationInput, observer: Observer, shares: JoinedSh
     with told_with_places(given.places):
         if shares is not None:
             _check_sharing(given)
-        steps, shape, setups, remarks = _prepared(given, observer, shares)
+        steps, shape, setups, remarks, stock_from = _prepared(given, observer, shares)
         stops = given.stop_at == "first"
         results = list(_cut(steps, shape, setups, remarks, stops=stops))
         if not (stops and results[-1].findings):
             again = partial(_cut_again, steps, Untold(observer), shape, stops=stops)
             results = in_other_meanings(results, list(zip(given.setups, setups, strict=True)), again, observer)
-        return join_results(results)
+        return replace(join_results(results), stock_from=stock_from)
 
 
 def _cut(
@@ -91,7 +93,7 @@ def cut_setup_share(given: SimulationInput, share: Share, observer: Observer) ->
     """
     with told_with_places(given.places):
         _check_sharing(given)
-        steps, shape, (own,), (told,) = _prepared(given, observer)
+        steps, shape, (own,), (told,), _ = _prepared(given, observer)
         return steps.share(own, shape, share, told)
 
 
@@ -103,11 +105,13 @@ def _check_sharing(given: SimulationInput) -> None:
         raise InputError(argument_problem("tiles", Wording("SIM116", "stops_at_first_finding")))
 
 
-_Prepared: TypeAlias = tuple["SetupSteps", StockShape, Sequence[PreparedSetup], Sequence[list[Problem]]]
+_Prepared: TypeAlias = tuple["SetupSteps", StockShape, Sequence[PreparedSetup], Sequence[list[Problem]], str]
 
 
 def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares | None = None) -> _Prepared:
-    """Return what cuts, the stock, the set-ups as they were read, and what is remarked of each."""
+    """Return what cuts, the stock, the set-ups as they were read, what is remarked of each, and the CL file that states
+    the stock.
+    """
     design = simulation.DESIGN_KERNELS if any(each.part is not None for each in given.setups) else ()
     # The second process begins with the largest, the last one; what is saved at the end is left to it.
     called = (*readers.KERNELS, tool_axis_rows, axis_motion_rows, *design, *simulation.KERNELS)
@@ -118,7 +122,7 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
     threads = None if given.threads is None else check_whole("threads", given.threads, 1)
     remarks: list[list[Problem]] = [[] for _ in given.setups]
     deviation = _deviation(given)
-    shape = stock_shape(given.stock, remarks[0].append, deviation)
+    shape = stock_shape(given.stock, remarks[0].append, deviation) if given.stock else None
     setups, problems = [], list[Problem]()
     for each, told in zip(given.setups, remarks, strict=True):
         try:
@@ -128,6 +132,11 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
             problems += error.problems
     if problems:
         raise InputError(dict.fromkeys(problems))
+    stock_from = given.stock_from
+    if shape is None:
+        if (stated := stated_stock(setups[0].drawn)) is None:
+            raise InputError(argument_problem("stock", Wording("SIM110", "stock_nowhere")))
+        shape, stock_from = stock_shape(stated.stock), stated.file
     widths = {name: cutting_width(tool) for each in setups for name, tool in each.tools.items()}
     cell = given.cell or default_cell(shape, min(widths.values(), default=math.inf))
     check_narrow_tools(widths, cell)
@@ -141,7 +150,7 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
     simulation.check_cell(shape, cell)
     tolerance, to_first = given.accuracy or _TOLERANCE * cell, given.stop_at == "first"
     options = CuttingOptions(cell, tolerance, given.near or 0.0, to_first, threads)
-    return SetupSteps(options, observer, shares), shape, setups, remarks
+    return SetupSteps(options, observer, shares), shape, setups, remarks, stock_from
 
 
 def _deviation(given: SimulationInput) -> float:

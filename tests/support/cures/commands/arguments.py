@@ -72,6 +72,7 @@ CURES: Final = (
            "--scheduler tcp://localhost:1 ", ""),
     script("ARG130 scheduler", f"{_BATCH} --workers 1 --wait 5", " --wait 5", ""),
     script("ARG130 tls_without_scheduler", f"{_BATCH} --workers 1 --tls-ca part.mpf", " --tls-ca part.mpf", ""),
+    script("ARG140 no_fusion_here", "trunnion fusion install", "install", "install --folder posts"),
     script("ARG130 simulations", f"{_BATCH} --workers 1 --tiles 2", " --tiles 2", ""),
     script("ARG130 project_among_files", "trunnion place project.toml two.cls --turn 0", " two.cls", ""),
     script("ARG130 setup_without_project", f"{_PLACE} --setup A", "part.cls --machine yl569 --turn 0 --setup A",

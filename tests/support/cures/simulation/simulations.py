@@ -20,6 +20,11 @@ _KLARTEXT: Final = (
     "5 L X+70 F500\n6 L Z+20 FMAX\n7 M30\n8 END PGM PART MM\n"
 )
 _DEFINED: Final = _KLARTEXT.replace("1 TOOL CALL", "1 TOOL DEF 1 L+110 R+5\n1 TOOL CALL")
+_CL: Final = (
+    "$$-> TRUNNION / 1\nUNITS/MM\n{head}TOOL PATH/A,TOOL,B\n$$-> TOOL / MILL,DIAMETER,10\nMSYS/0,0,0,1,0,0,0,1,0\n"
+    "LOADTL/1\nRAPID\nGOTO/0,0,50\nEND-OF-PATH\nFINI\n"
+)
+_BLOCK: Final = "$$-> STOCK / BOX,60,40,10,0,-20,-10\n"
 _SINUMERIK: Final = "T1 D1\nM6\nG54 G17 G90\nS3000 M3\nG0 X-20 Y0 Z20\nG0 Z-5\nG1 X70 F500\nG0 Z20\nM30\n"
 
 
@@ -68,12 +73,26 @@ _ACROSS: Final = SLOT.replace("N70 G0 Z20", "N65 G1 X20\nN70 G53 G0 X20 Y60\nN80
 _SWIVEL: Final = SLOT.replace("N70 G0 Z20", "N70 G0 Z10\nN75 G0 A30\nN78 G0 A0\nN80 G0 Z20")
 
 
+def _with_cl(*heads: str) -> Trial:
+    """Return what simulates a program with CL files that have these lines in their heads."""
+
+    def tried(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
+        files = [folder / f"part{k}.apt" for k in range(len(heads))]
+        for file, head in zip(files, heads, strict=True):
+            file.write_text(_CL.format(head=head), encoding="utf-8")
+        return simulated(text, "xyzac_trt", folder, **{"stock": None, "cl": files, **settings})
+
+    return tried
+
+
 def _line(code: str, variant: str, text: str, change: tuple[str, str], trial: Trial = _SLOT) -> Cure:
     return Cure(code, variant, trial, text, (change,))
 
 
 CURES: Final = (
     Cure("SIM110", "missing", on(stock=None), SLOT, ({"stock": STOCK},)),
+    Cure("SIM110", "stock_nowhere", _with_cl(""), SLOT, ({"stock": STOCK},)),
+    Cure("SIM110", "two_stocks", _with_cl(_BLOCK, _BLOCK.replace("60", "61")), SLOT, ({"stock": STOCK},)),
     Cure("SIM114", "no_block", on(), SLOT, ({"until": "N60"},), {"until": "N99"}),
     Cure("SIM120", "mm_tool_mm", on(tools="1=flat:2,length=60,flutes=20"), SLOT, ({"cell": "1"},), {"cell": "2"}),
     Cure("SIM120", "cells_mm_take", limited(on(), solids, "MOST_BYTES", 1e5), SLOT, ({"cell": "1.4"},), {"cell": "1"}),
