@@ -25,6 +25,7 @@ _GAUGE: Final = "[spindle]\ngauge_point_mm = [0, 0, 0]\n"
 _STATED_HEAD: Final = (machine_library() / "generic_head_table_bc.toml").read_text(encoding="utf-8")
 _TURNING_HEAD: Final = re.sub("gauge_point_mm.*\n", "", _STATED_HEAD)
 _AT_MACHINE: Final = SLOT.replace("N50", "G53 G0 Z0\nG0 Z20\nN50")
+_ABOVE: Final = _GAUGE.replace("0]", "100]")
 _TABLE: Final = Body("table", "bed", box_mesh(np.array([500.0, 0, 0]), np.array([510.0, 9, 9])), BodyKind.MACHINE)
 
 
@@ -73,7 +74,8 @@ def _on_own(gauge: str = "") -> Trial:
 
 CURES: Final = (
     Cure("SIM310", "no_spindle_gauge", _read(), _TURNING_HEAD, ((_TURNING_HEAD, _STATED_HEAD),)),
-    Cure("SIM310", "gauge_at_machine", _on_own(), _AT_MACHINE, (), cured_by=_on_own(_GAUGE.replace("0]", "100]"))),
+    Cure("SIM146", "motion_before_all", on(), SLOT.replace("X-20 Y0 Z20", "X-20 Y0"), (), cured_by=_on_own(_ABOVE)),
+    Cure("SIM310", "gauge_at_machine", _on_own(), _AT_MACHINE, (), cured_by=_on_own(_ABOVE)),
     Cure("SIM312", "leads_out_folder", _read(linked=True), HEAD_OF_OURS + _BODY, (), cured_by=_read()),
     Cure("SIM312", "belongs_no_definition", _read(keeps=False), HEAD_OF_OURS + _BODY, (), cured_by=_read()),
     Cure("SIM150", "tool_not_known", _checked(""), SLOT, (), cured_by=_checked()),

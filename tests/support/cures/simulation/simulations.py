@@ -116,7 +116,6 @@ CURES: Final = (
     Cure("SIM144", "swivels_beside_stock", on(), _SWIVEL, (("N75", "G53 G0 Z0\nN75"),)),
     Cure("SIM145", "machine_positions_taken", on(), _MOVED_BY_TABLE, (), cured_by=_PLACED),
     Cure("SIM145", "machine_positions_taken_retracts", on(zero="0,0,-100"), _MOVED_BY_TABLE, (), cured_by=_PLACED),
-    Cure("SIM146", "motion_before_all", on(), SLOT.replace("X-20 Y0 Z20", "X-20 Y0"), (), cured_by=_PLACED),
     Cure(
         "SIM148",
         "nothing_moves",
