@@ -260,3 +260,9 @@ def test_a_file_that_is_no_cl_of_this_post_is_not_replaced(arguments: str, tmp_p
     path.write_text("", encoding="utf-8")
     for _ in range(2):
         trunnion_post.export([given], str(path), "--cl-only")
+
+
+def test_install_says_where_there_can_be_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").touch()
+    assert main(["freecad", "install", "--folder", str(tmp_path / "file")]) == 2
+    assert "file: error: cannot be written" in capsys.readouterr().err

@@ -13,6 +13,7 @@ from trunnion.cli.printing import print_result
 from trunnion.cli.wording import in_words
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import output_group, resolve_output
+from trunnion.files.places import cannot_write
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording, phrase
 
@@ -110,7 +111,10 @@ def _install(given: Given, folder: Path, texts: Mapping[str, str], done: str) ->
             path.unlink()
         print_result(in_words(phrase("post_removed" if found else "post_not_there", folder=str(folder))))
         return 0
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_write(str(folder), error) from None
     with output_group(remembers=False) as group:
         for name, text in texts.items():
             with group.open(resolve_output(folder / name)) as output:

@@ -17,7 +17,7 @@ from trunnion.jobs.describe.cl_files import (
 from trunnion.jobs.describe.plot import write_plot
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording, phrase, word_said
-from trunnion.model.toolpath import Frame
+from trunnion.model.toolpath import Frame, Toolpath
 from trunnion.wording import format_duration
 
 _INDENT: Final = "  "
@@ -26,9 +26,16 @@ _INDENT: Final = "  "
 _MOST_PLANES: Final = 6
 
 
+class _Quiet(Terminal):
+    """A terminal for files of which the result itself says as what they were read."""
+
+    def read(self, toolpaths: Sequence[Toolpath]) -> None:
+        """Leave that to the result."""
+
+
 def info(given: Given) -> int:
     """Show what CL files hold, as text or data, and draw it."""
-    terminal = Terminal()
+    terminal = _Quiet()
     found = describe_cl(**given.arguments(), observer=terminal)
     terminal.problems(found.remarks)
     if given.plot is not None:

@@ -10,7 +10,7 @@ from trunnion.cli.cl_files import result_stem
 from trunnion.cli.printing import tell
 from trunnion.cli.results import show
 from trunnion.cli.suggest import NotingTerminal, suggestion
-from trunnion.cli.terminal import check_unnamed, output_folder, output_place, warn_of_old
+from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place, warn_of_old
 from trunnion.cli.wording import said
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, TrunnionError, argument_problem
@@ -60,7 +60,7 @@ def post(
     if output_folder(given.output) is not None:
         for target in targets:
             check_unnamed(target, alone=len(targets) == 1)
-    toolpaths = toolpaths if observer is not None else _with_dialects(toolpaths)
+    toolpaths = toolpaths if observer is not None else _as_read(toolpaths)
     stated = given.arguments("cl", "machine", "simulate", *_SIMULATED)
     stated |= {"columns": False, "simulation": simulation_of(given), "sheet_tools": sheet_tools_of(given)}
     made: list[Path] = []
@@ -116,20 +116,12 @@ def sheet_tools_of(given: Given) -> dict[str, object] | None:
     return stated if stated and given.sheet and not given.simulate else None
 
 
-def _with_dialects(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:
-    """Yield the toolpaths; says what each is written in as it comes, where that is not NX's CLSF, and those of an
-    archive.
-    """
+def _as_read(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:
+    """Yield the toolpaths; says as what each file was read as it comes."""
+    terminal = Terminal()
     for toolpaths in files:
-        print_dialects(toolpaths)
+        terminal.read(toolpaths)
         yield toolpaths
-
-
-def print_dialects(toolpaths: Sequence[Toolpath]) -> None:
-    """Say what the toolpaths of a file or an archive are written in, where that is not NX's CLSF."""
-    for toolpath in toolpaths:
-        if toolpath.dialect != "clsf" or len(toolpaths) > 1:
-            tell(f"{toolpath.file}: {said('read_as', dialect=toolpath.recognized_by)}")
 
 
 def print_summary(target: str, result: PostResult) -> None:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from trunnion.cli.post import old_files_told, print_dialects, print_summary
+from trunnion.cli.post import old_files_told, print_summary
 from trunnion.cli.printing import tell
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
@@ -47,11 +47,7 @@ def outputs_of(project: Project) -> list[str]:
 
 
 def _print_files(result: ProjectResult) -> None:
-    """Name the files of every program, and what their CL files are written in."""
-    seen = set[str]()
-    for program in result.results:
-        print_dialects([path for path in program.toolpaths if path.file not in seen])
-        seen.update(path.file for path in program.toolpaths)
+    """Name the files of every program."""
     for program in result.results:
         print_summary(str(program.output), program)
     if result.simulation is not None:

@@ -9,12 +9,13 @@ from typing import BinaryIO
 
 from trunnion.cli.printing import tell, tell_problem
 from trunnion.cli.progress import progress
-from trunnion.cli.wording import in_words, problem_lines, said, spoken
+from trunnion.cli.wording import in_words, part, problem_lines, said, spoken
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.files import EarlierJob, resolve_output
 from trunnion.jobs.observer import Observer
 from trunnion.messages import Wording, Words
 from trunnion.model.motion import Plan
+from trunnion.model.toolpath import Toolpath
 from trunnion.verification import Verification, check_lines, place_lines, stand_lines, time_lines
 
 #: Warnings about a program that is converted which are printed one by one.
@@ -41,6 +42,14 @@ class Terminal(Observer):
         """Print whose set-up the next lines are about, where there are several."""
         if name:
             tell(said("setup", name=name))
+
+    def read(self, toolpaths: Sequence[Toolpath]) -> None:
+        """Say as what the toolpaths of a file or an archive were read, where one is more than NX's CLSF in mm."""
+        for toolpath in toolpaths:
+            units = "mm" if toolpath.unit == 1.0 else "inch"
+            shown = units if toolpath.states_unit else part("units_not_stated", units=units)
+            if toolpath.dialect != "clsf" or shown != "mm" or len(toolpaths) > 1:
+                tell(f"{toolpath.file}: {said('read_as', dialect=toolpath.recognized_by, units=shown)}")
 
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line; of a flood of errors the first of each kind."""

@@ -67,12 +67,16 @@ class HiddenFolders:
         it again.
         """
         with held_interrupts():
+            self._remove_contents()  # before the locks go: nobody takes them for those of a dead job
             for lock in self._locks:
                 lock.release()
-            for parent, folder in list(self._folders.items()):
-                if not (folder / JOURNAL).exists():
-                    remove_folder(folder)
-                del self._folders[parent]
+            self._remove_contents()  # with the files of the locks, where the system removes none that is open
+            self._folders.clear()
+
+    def _remove_contents(self) -> None:
+        for folder in self._folders.values():
+            if not (folder / JOURNAL).exists():
+                remove_folder(folder)
 
     def bring(self, file: Path, place: OutputPlace) -> Path:
         """Return a complete file, copied if need be into a folder from which it can be moved to its place."""

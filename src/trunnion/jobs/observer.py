@@ -6,6 +6,7 @@ from contextlib import AbstractContextManager, nullcontext
 from trunnion.errors import Problem
 from trunnion.messages import LIBRARY, Words
 from trunnion.model.motion import Plan
+from trunnion.model.toolpath import Toolpath
 from trunnion.verification.results import Verification
 
 
@@ -22,6 +23,9 @@ class Observer:
 
     def setup(self, name: str) -> None:
         """Hear that a set-up of a project is posted next; its name is empty if there are no others."""
+
+    def read(self, toolpaths: Sequence[Toolpath]) -> None:
+        """Hear as what a CL file, or an archive of several, has been read, and in which unit."""
 
     def problems(self, problems: Sequence[Problem]) -> None:
         """Warnings about an input file, the plan or the program, as they are found."""
@@ -73,6 +77,10 @@ class Remembering(Observer):
     def setup(self, name: str) -> None:
         """Hand on whose set-up comes next."""
         self._other.setup(name)
+
+    def read(self, toolpaths: Sequence[Toolpath]) -> None:
+        """Hand on what has been read."""
+        self._other.read(toolpaths)
 
     def problems(self, problems: Sequence[Problem]) -> None:
         """Keep problems, and hand them on."""

@@ -114,10 +114,10 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
         found += () if run.uses_length_numbers else _edges(run)
         rows = np.flatnonzero(run.kind != Kind.RAPID)
         edge, tool = run.edge[rows], run.tool[rows]
-        unset = -1 if run.uses_length_numbers else 0
         # A tool that no program has called may be measured by hand, as long as no other one has a length.
         called = np.array([name not in ("", "0") for name in run.tools])[tool] | (edge > 0).any()
-        without = (edge == unset) & called & ~run.machine_frame[rows]
+        # H0 is no length (LinuxCNC), and neither is D0.
+        without = ((edge <= 0) if run.uses_length_numbers else (edge == 0)) & called & ~run.machine_frame[rows]
         if without.any():
             row = int(rows[np.argmax(without)])
             found.append(Problem(file_of_row(run, row), int(run.line[row]), Wording("SIM160", "cuts_without_tool")))

@@ -259,6 +259,7 @@ class Verification:
             grounds=grounds_of((self.run,), (value for check in self.checks for value in check.stands_on)),
             assumed_unit="mm" if self.assumes_unit else "",
             moves=len(self.run) > 0,
+            no_cl_file=any(check.missing == (phrase("no_cl_file"),) for check in self.checks),
         )
 
     def __repr__(self) -> str:

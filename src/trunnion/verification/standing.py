@@ -40,6 +40,7 @@ class Standing(Grounded):
     grounds       what the answers of the checks stand on besides the program
     assumed_unit  length unit that a CL file is taken to have: nothing says it
     moves         whether there is a motion: without one nothing of a path was checked
+    no_cl_file    nothing says what is right: path, feeds, speeds and tools were compared with nothing
     """
 
     passed: bool
@@ -50,6 +51,7 @@ class Standing(Grounded):
     grounds: Annotated[Grounds, Figure(is_flat=True)] = NO_GROUNDS
     assumed_unit: Annotated[str, Figure(is_optional=True, none="")] = ""
     moves: Annotated[bool, NOT_DATA] = True
+    no_cl_file: Annotated[bool, Figure(is_optional=True, none=False)] = False
 
     @property
     @Figure(after="passed")
@@ -78,6 +80,8 @@ class Standing(Grounded):
             yield phrase("standing_passed", ok=self.ok, count=self.checks)
         if self.not_checked:
             yield phrase("standing_not_checked", count=self.not_checked)
+        if self.no_cl_file and self.moves:
+            yield phrase("standing_no_cl")
         if self.warnings:
             yield phrase("standing_warnings", count=self.warnings)
         yield from self.grounds.wordings()

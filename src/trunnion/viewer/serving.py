@@ -31,8 +31,9 @@ _REASONS: Final = {
     errno.EADDRNOTAVAIL: "it is no address of this computer",
 }  # fmt: skip
 
-#: Seconds in which the head of a request is whole.
+#: Seconds in which the head of a request is whole, and its body after that.
 _PATIENCE: Final = 10.0
+_PATIENCE_WITH_BODY: Final = 60.0
 
 #: Headers of every answer.
 HEADERS: Final = {
@@ -135,20 +136,27 @@ def impatient_protocol() -> type:
     base: Any = import_extra("uvicorn.protocols.http.h11_impl", "view").H11Protocol
 
     class ImpatientProtocol(base):  # type: ignore[misc]
-        """Waits for the head of a request, but not longer than ``_PATIENCE``."""
+        """Waits for the head of a request and for its body, but not longer than for each it has patience."""
 
         _waiting: Any = None
+        _waits_for_body = False
 
         def connection_made(self, transport: Any) -> None:
             super().connection_made(transport)
-            self._wait()
+            self._wait(_PATIENCE)
 
         def data_received(self, data: bytes) -> None:
             super().data_received(data)
-            if self.conn.their_state is not h11.IDLE:
+            state = self.conn.their_state
+            if state is h11.SEND_BODY:
+                if not self._waits_for_body:
+                    self._wait_no_more()
+                    self._wait(_PATIENCE_WITH_BODY)
+                    self._waits_for_body = True
+            elif state is not h11.IDLE:
                 self._wait_no_more()
             elif self._waiting is None:
-                self._wait()
+                self._wait(_PATIENCE)
 
         def on_response_complete(self) -> None:
             """Leave the next request to ``timeout_keep_alive``."""
@@ -159,10 +167,11 @@ def impatient_protocol() -> type:
             self._wait_no_more()
             super().connection_lost(exc)
 
-        def _wait(self) -> None:
-            self._waiting = self.loop.call_later(_PATIENCE, self.transport.abort)
+        def _wait(self, patience: float) -> None:
+            self._waiting = self.loop.call_later(patience, self.transport.abort)
 
         def _wait_no_more(self) -> None:
+            self._waits_for_body = False
             if self._waiting is not None:
                 self._waiting.cancel()
                 self._waiting = None

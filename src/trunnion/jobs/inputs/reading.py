@@ -87,7 +87,7 @@ def read_cl(
         How far the points that splines (NURBS) become may leave them between each other, 0.0001 to 1 mm; by default
         the smaller of INTOL and OUTTOL, at most 0.01 mm, and 0.001 mm without them.
     observer
-        Receives the progress, in bytes.
+        Receives the progress, in bytes, and as what the file was read.
 
     Returns
     -------
@@ -124,7 +124,9 @@ def _read(cl: object, how: ClReading, observer: Observer, argument: str) -> list
         check_choice("dialect", how.dialect, tuple(DIALECTS))
     if within is not None and not _is_spline_tolerance(within):
         raise wrong_argument("spline_tolerance", within, phrase("give_fine_tolerance"))
-    return read_cl_file(path, observer.progress, how)
+    found = read_cl_file(path, observer.progress, how)
+    observer.read(found)
+    return found
 
 
 def stated_reading(settings: Settings | None, strict: bool = False, **arguments: str | None) -> ClReading:

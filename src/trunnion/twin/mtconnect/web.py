@@ -123,15 +123,33 @@ async def _request(reader: asyncio.StreamReader) -> tuple[str, str]:
     words = first.split(" ")
     if len(words) != 3 or not words[2].startswith("HTTP/1."):
         raise invalid("this is no request of HTTP 1")
-    fields = {name.strip().lower(): value.strip() for name, _, value in (line.partition(":") for line in lines)}
-    if not _HOST.fullmatch(fields.get("host", "localhost")):
+    fields = _fields(lines)
+    host = fields.get("host", "localhost" if words[2] == "HTTP/1.0" else "")
+    if not _HOST.fullmatch(host):
         raise RequestError("UNAUTHORIZED", "only names of this computer are answered", HTTPStatus.FORBIDDEN)
+    if fields.get("origin", f"http://{host}").lower() != f"http://{host}".lower():
+        raise RequestError("UNAUTHORIZED", "no page of somebody else is answered", HTTPStatus.FORBIDDEN)
     if words[0] not in ("GET", "HEAD"):
         text = f"{words[0]} is not supported by this agent: it is read with GET"
         raise RequestError("UNSUPPORTED", text, HTTPStatus.METHOD_NOT_ALLOWED)
     if not _ACCEPTED.search(fields.get("accept", "*/*")):
         raise RequestError("UNSUPPORTED", "documents are XML", HTTPStatus.NOT_ACCEPTABLE)
     return words[0], words[1]
+
+
+def _fields(lines: list[str]) -> dict[str, str]:
+    """Return the fields of a head by their names in lower case.
+
+    Raises ``RequestError`` if a line is none, or the host is named twice: who reads the other one is somebody else.
+    """
+    fields: dict[str, str] = {}
+    for line in lines:
+        name, colon, value = line.partition(":")
+        key = name.lower()
+        if not colon or not key or key != key.strip() or (key == "host" and key in fields):
+            raise invalid("this is no head of a request of HTTP 1")
+        fields[key] = value.strip()
+    return fields
 
 
 async def _read_out(reader: asyncio.StreamReader) -> None:

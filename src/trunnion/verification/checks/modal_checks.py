@@ -10,6 +10,9 @@ from trunnion.messages import Wording, phrase
 from trunnion.model.programmed_words import POSITION_WORDS, names_no_axis
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
+from trunnion.verification.alone.cuts import cuts_of
+from trunnion.verification.alone.left_open import absurd_feeds, left_open
+from trunnion.verification.alone.lengths import wrong_lengths
 from trunnion.verification.basis import TOOL_LENGTH, ZERO, missing_of
 from trunnion.verification.checks.approach_faults import approaches_through_part
 from trunnion.verification.checks.approach_order import not_in_turn
@@ -50,10 +53,12 @@ def check_modal_state(context: Context) -> Check:
     places += lengths_lost_at_part(context)
     places += compensated_askew(context)
     places += compensated_blind(context)
-    planes = list(unused_planes(run))
+    planes, cuts = list(unused_planes(run)), cuts_of(run)
     if isinstance(context, ComparedContext):
         places += [context.place(row, 0.0, Wording("modal", "unused_plane", word=word)) for row, word in planes]
         planes = []
+    else:
+        places += [*wrong_lengths(context, cuts), *absurd_feeds(context, cuts)]
     if not any(event.kind == "end" for event in run.events):
         last = max(context.last_line, run.lines[-1] if len(run) else 1)
         places.append(Place(last, -1, 0.0, Wording("modal", "no_end")))
@@ -66,6 +71,8 @@ def check_modal_state(context: Context) -> Check:
     unasked = tuple(phrase("unasked_plane", word=word, block=context.block_name(row)) for row, word in planes)
     if isinstance(context, ComparedContext):
         unasked += tuple(unset_tolerances(context))
+    else:
+        unasked += tuple(left_open(context, cuts))
     check = replace(check, missing=unasked)
     if not len(rows := rapids_at_unknown_heights(context)):
         return check

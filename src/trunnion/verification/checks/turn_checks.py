@@ -7,6 +7,7 @@ axes are.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from trunnion.messages import Wording
 from trunnion.model.programmed_words import ROTARY_WORDS
 from trunnion.model.run import Run, RunEvent
 from trunnion.records import dataclass
+from trunnion.verification.alone.cuts import cuts_of
+from trunnion.verification.alone.left_open import turned_without_plane
 from trunnion.verification.checks.rotary_moves_at_part import STILL, rotary_moves_at_part, turn_flags
 from trunnion.verification.context import ComparedContext, Context, Faults
 from trunnion.verification.kinematics.positioning_moves import only_positions_rotary_axes
@@ -50,7 +53,9 @@ def check_turns(context: Context) -> Check:
     found = Faults(sorted([*places, *unplaced.places], key=lambda place: place.nc_line), len(places) + unplaced.count)
     on = sum(change.on for change in changes)
     good = Wording("turns", "with_planes", turns=turns.said(), planes=on) if on else turns.said()
-    return found.check("turns", good)
+    check = found.check("turns", good)
+    alone = () if isinstance(context, ComparedContext) else tuple(turned_without_plane(context, cuts_of(context.run)))
+    return replace(check, missing=alone)
 
 
 def _plane_changes(run: Run) -> list[_PlaneChange]:

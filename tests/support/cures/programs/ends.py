@@ -178,7 +178,7 @@ CURES: Final = (
     marked("NC364 length_ends_under_tcp", verify(_LINUXCNC), "G21 G90 G94 G54", "T5 M6", "S500 M3", "G53 G0 Z0",
            "G0 A30", "G43 H5", "M428", "G0 X0 Y0 Z50", "G1 Z5 F100", "- G49", "M429", "G53 G0 Z0", "+ G49", "M2"),
     _in("NC361 length_of_other_tool", "- G43 H6 Z50.", "+ G43 H5 Z50.", "G1 X9. F100.", "G0 Z90.", "G49", "G53 Z0.",
-        on=_FANUC, trial=_with_lengths),
+        "G43 H5 Z50.", on=_FANUC, trial=_with_lengths),
     _in("NC240", "- G98 G81 X1. Z-5. R2.", "+ G98 G81 X1. Z-5. R2. F100.", "G80", on=_FANUC),
     _in("NC341", "M428", "- G53 G0 Z10", "+ M429", "+ G53 G0 Z10", "+ M428", "M429", on=_LINUXCNC),
     _in("NC341 m242_while_tcp", "G196", "- M242", "G197", "+ M242", on=_FIDIA),

@@ -87,7 +87,7 @@ CURES: Final = (
     _said("modal", "", _KLARTEXT.replace(" M3", ""), ("FMAX", "FMAX M3"), on="mikron_600u"),
     _said("modal", "", _SINUMERIK.replace("G1 Z5", "G93\nG1 X11 F2\nG1 X12\nG94\nG1 Z5"), ("G1 X12\n", "G1 X12 F2\n")),
     _said("rpm", "", _SINUMERIK.replace("S500", "S90000"), ("S90000", "S5000")),
-    _said("travel", "", _SINUMERIK.replace("X10 F100", "X10 F100\nG0 G153 Z900 D0"), ("Z900", "Z100")),
+    _said("travel", "", _SINUMERIK.replace("X10 F100", "X10 F100\nG0 G153 Z900 D0\nG0 Z50 D1"), ("Z900", "Z100")),
     _line("NC352", "offset_over_unknown_zero", "G10 L2 P1 X9. Y-5. Z-60.\nG54", "G54", on="matsuura_mx330"),
     _said("NC132", "unknown_or_missing", _SINUMERIK.replace("G1 X10", "MCALL HOLES\nG1 X10"), ("MCALL HOLES\n", "")),
     _said(

@@ -147,12 +147,16 @@ class FanucControl(Rs274Control):
 
         The plane of the rotary position (G254 of a Haas) ends with M2 and M30.
         """
-        shifts = {"G52": self.local.any(), "G92": self.preset.any()}
         if self.mirrored:
             return phrase("left_word", word="G51.1")
         if not self.rotation.is_identity:
             return phrase("left_word", word="G68")
-        return next((phrase("left_word", word=word) for word, on in shifts.items() if on and self.unused_shift), None)
+        return next((phrase("left_word", word=word) for word in self.shifts_on if self.unused_shift), None)
+
+    @property
+    def shifts_on(self) -> list[str]:
+        """The words whose shift of all work offsets is on."""
+        return [word for word, shift in (("G52", self.local), ("G92", self.preset)) if shift.any()]
 
     def mirror(self, axes: Mapping[int, float | None]) -> None:
         """G51.1, G50.1: mirror axes about a position, mm, or no longer (None)."""

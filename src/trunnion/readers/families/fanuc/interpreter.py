@@ -323,6 +323,7 @@ class FanucInterpreter(CycleInterpreter):
         left += [self._length_word] if has_length and not control.sets_behind_use("length") else []
         left += ["G68.2"] if control.tilted and not control.plane_of_pose else []
         left += ["G16"] if self._polar.on else []
+        left += [] if control.unused_shift else control.shifts_on
         left += self._contour_modes.on
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
         return left

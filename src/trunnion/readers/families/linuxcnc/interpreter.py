@@ -163,7 +163,9 @@ class LinuxcncInterpreter(CycleInterpreter):
     def _may_be_left_on(self) -> list[str]:
         control = self.control  # M2 and M30 end cycles, but no tool length
         has_length = control.length_active and control.cuts_behind(0)
-        return ["G43"] if has_length and not control.sets_behind_use("length") else []
+        left = ["G43"] if has_length and not control.sets_behind_use("length") else []
+        shifted = control.axis_offset_active and control.axis_offset.any() and not control.unused_shift
+        return [*left, "G92"] if shifted else left
 
     def _select_motion(self, code: int) -> None:
         """Select a motion; cycles, splines, and G80, which may stand beside one, are selected when the block moves."""
