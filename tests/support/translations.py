@@ -119,7 +119,8 @@ def _of_definitions() -> Iterator[tuple[str, str]]:
     for description in (*descriptions, *(load_machine(key).description for key in shipped_machines())):
         if description:
             yield f"descriptions.{digest(description)}", description
-    for word in WORDS:
+    bodies = (body.name for key in shipped_machines() for body in load_machine(key).bodies)
+    for word in dict.fromkeys((*WORDS, *bodies)):
         yield f"words.{digest(word)}", word
 
 

@@ -56,16 +56,20 @@ class StatedTips:
     lost_feeds: Ints
 
     @staticmethod
-    def of(run: Run) -> "StatedTips":
-        """Return what a run states, found once for all who ask."""
-        found = _of_runs.get(run)
+    def of(run: Run, *, needs_gauge_point: bool = False) -> "StatedTips":
+        """Return what a run states, found once for all who ask.
+
+        needs_gauge_point  positions of the machine are some of the workpiece only where the definition states where the
+                           spindle nose stands
+        """
+        found = _of_runs[needs_gauge_point].get(run)
         if found is None:
-            found = _of_runs[run] = _Walk(run).result()
+            found = _of_runs[needs_gauge_point][run] = _Walk(run, needs_gauge_point=needs_gauge_point).result()
         return found
 
 
-#: Kept as long as the runs.
-_of_runs: WeakKeyDictionary[Run, StatedTips] = WeakKeyDictionary()
+#: Kept as long as the runs, by whether the gauge point is needed.
+_of_runs: dict[bool, WeakKeyDictionary[Run, StatedTips]] = {False: WeakKeyDictionary(), True: WeakKeyDictionary()}
 
 
 def turns_without_tcp(run: Run, rows: Ints) -> Flags:
@@ -81,11 +85,11 @@ class _Walk:
     It is kept as orthonormal columns (3, k); none: the tip is known.
     """
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, *, needs_gauge_point: bool) -> None:
         machine, n = run.machine, len(run)
         self.run = run
         zero, length = (column.column() for column in stated_rows(run))
-        self.placed = zero & length
+        self.placed = zero & length & np.bool_(machine.spindle_point_is_stated or not needs_gauge_point)
         self.turns_in_place = zero & (length | np.bool_(not machine.has_rotary_head))
         self.tip_words = run.state.xyz_is_tip.column()
         self.plane = run.state.plane.column()

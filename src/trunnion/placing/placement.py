@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
 from trunnion.machines.machine import Vector
-from trunnion.messages import Wording, foreign
+from trunnion.messages import Wording, foreign, texts
 from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
@@ -186,7 +186,8 @@ class Placement:
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     left_out  names of pairs of bodies that are not judged: at home they overlap, on one side of the machine
     table     of the machine's definition; None: it states none
-    not_measured  values of the definition that the place stands on, though nobody has measured them
+    unmeasured    values of the definition that the place stands on, though nobody has measured them; ``not_measured``
+                  are the texts
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
 
@@ -214,9 +215,14 @@ class Placement:
     most_distance_mm: float | None = None
     left_out: tuple[tuple[str, str], ...] = ()
     table: Annotated[ClampingArea | None, Figure(after="region")] = None
-    not_measured: Annotated[tuple[str, ...], Figure(after="remarks")] = ()
+    unmeasured: Annotated[tuple[Wording, ...], Figure("not_measured", take=texts, after="remarks")] = ()
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
+
+    @property
+    def not_measured(self) -> tuple[str, ...]:
+        """The values that nobody has measured, in words."""
+        return texts(self.unmeasured)
 
     @property
     def problems(self) -> tuple[Problem, ...]:

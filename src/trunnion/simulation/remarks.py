@@ -178,7 +178,7 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
 
 def _unjudged(run: Run) -> list[Problem]:
     """Motions with a coordinate that no block has stated: they are neither cut nor judged at an invented place."""
-    tips, found = StatedTips.of(run), []
+    tips, found = StatedTips.of(run, needs_gauge_point=True), []
     if len(tips.lost_feeds):
         row = int(tips.lost_feeds[0])
         found.append(

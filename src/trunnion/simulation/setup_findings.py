@@ -13,6 +13,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.records import dataclass
 from trunnion.results import NOT_DATA, BlockNumber, CubicMillimetres, Figure, Millimetres, OptionalLine, OptionalText
+from trunnion.simulation.body_names import body_said
 from trunnion.simulation.contact_times import reached
 from trunnion.simulation.finding import Finding, What
 from trunnion.simulation.findings import file_of_row
@@ -85,7 +86,7 @@ class SimulationFinding:
     @property
     def said(self) -> Wording:
         """What does what, how deep and where."""
-        one, other = map(word_said, self.between)
+        one, other = map(body_said, self.between)
         where = {"kind": word_said(self.kind), "one": one, "other": other, "place": position(self.place)}
         return _when_skipped(self, phrase("finding_deep", **where, depth=self.depth))
 
@@ -139,7 +140,7 @@ class NearMiss:
     @property
     def said(self) -> Wording:
         """What comes near what, how near and where."""
-        one, other = map(word_said, self.between)
+        one, other = map(body_said, self.between)
         where = {"one": one, "other": other, "place": position(self.place)}
         found = phrase("finding_rubs", **where)
         return _when_skipped(self, found if self.rubs else phrase("finding_near", **where, distance=self.distance))

@@ -6,8 +6,11 @@ from dataclasses import replace
 from itertools import chain
 from typing import Protocol
 
+import numpy as np
+
 from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
+from trunnion.model.run import ProgrammedWord
 from trunnion.records import dataclass
 from trunnion.simulation.collisions import Body, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.cutting.shares import JoinedShares, Share
@@ -242,9 +245,26 @@ def _bodies(
         bodies.append(part_body(part, machine))
     if machine.workpiece_zero is not None and _lengths_known(program):
         bodies += machine_bodies(machine, of_machine.append)
+        remarks += _not_where_machine_positions_stand(program)
     elif number == 0 and machine.bodies:
         remarks.append(warning(program.run.files[0], 0, Wording("SIM310", "bodies_machine_not")))
     return bodies
+
+
+def _not_where_machine_positions_stand(program: SimulatedProgram) -> list[Problem]:
+    """Return the warning that the spindle nose stands nowhere known behind blocks that name positions of the machine.
+
+    Elsewhere work offset and tool length say how far it is from the table.
+    """
+    run = program.run
+    if run.machine.spindle_point_is_stated or run.machine.has_rotary_head:
+        return []
+    words = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
+    rows = np.flatnonzero(run.machine_frame[: program.end] & ((run.programmed[: program.end] & words) != 0))
+    if not len(rows):
+        return []
+    file, line = run.files[int(run.state.file[rows[0]])], int(run.lines[int(rows[0])])
+    return [warning(file, line, Wording("SIM310", "gauge_at_machine", count=len(rows)))]
 
 
 def _collisions(

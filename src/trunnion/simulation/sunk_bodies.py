@@ -12,6 +12,7 @@ from trunnion.errors import Problem, warning
 from trunnion.machines import Machine
 from trunnion.machines.links import WORKPIECE
 from trunnion.messages import Wording
+from trunnion.simulation.body_names import body_said
 from trunnion.simulation.collisions import fixture_body, machine_bodies
 from trunnion.simulation.collisions.pairs import are_on_one_side, seen_at_home
 from trunnion.simulation.collisions.queries import PairQuery, Solid, touches
@@ -54,4 +55,4 @@ def sunk_bodies(machine: Machine, meshes: Sequence[TriangleMesh]) -> Iterator[Pr
                 found.append((depth, name))
         depth, name = max(found, default=(0.0, ""))
         if depth > _STANDS:
-            yield warning(mesh.name, 0, Wording("SIM313", "sunk_in", depth=depth, body=name))
+            yield warning(mesh.name, 0, Wording("SIM313", "sunk_in", depth=depth, body=body_said(name)))

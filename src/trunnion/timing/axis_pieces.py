@@ -41,6 +41,7 @@ class AxisPieces:
     joints      (k + 1, 5)  axis values before the first piece and after each; mm or deg, machine order
     tool        (k,)      index of the tool in ``Run.tools``
     known       (k,)      where the tool is at the workpiece is known: no coordinate of it is left unstated
+    at_machine  (k,)      a slide begins or ends where coordinates of the machine put it, or nothing else has
     """
 
     first: int
@@ -51,6 +52,7 @@ class AxisPieces:
     joints: Floats
     tool: Ints
     known: Flags
+    at_machine: Flags
 
 
 def axis_pieces(
@@ -97,6 +99,7 @@ class _Motion:
         tool = run.state.tool.part(first, end).astype(np.int64)
         length = np.array([self.lengths.get(int(k), self.read_with) for k in tool.tolist()]) if n else np.zeros(0)
         xyz_is_tip = run.state.xyz_is_tip.part(first, end)
+        began_at_machine = self.from_machine.any(keepdims=True)
         machine = self._from_machine(first, end, xyz_is_tip)
         joints = self._row_joints(first, end, xyz_is_tip, length, machine)
         tips = StatedTips.of(run)
@@ -113,7 +116,13 @@ class _Motion:
         row, begin, done, along = self._inside.pieces(first, before, length, counts)
         start, self.joints = self.joints, before[-1].copy()
         along = np.concatenate((start[None], along))
-        return AxisPieces(first, end, row + first, begin, done, along, tool[row], known[row])
+        ends = machine.any(axis=1)
+        at_machine = ends | np.concatenate((began_at_machine, ends))[:-1]
+        if not run.machine.spindle_point_is_stated:
+            strict = StatedTips.of(run, needs_gauge_point=True)
+            stated = ~xyz_is_tip & self._has_length(first, end, tool) & ~ends
+            at_machine |= ~(stated | (strict.before[first:end] & strict.after[first:end]))
+        return AxisPieces(first, end, row + first, begin, done, along, tool[row], known[row], at_machine[row])
 
     def _check_count(self, first: int, counts: Ints) -> None:
         """Count pieces before they are made, those of the rows from ``first`` on."""

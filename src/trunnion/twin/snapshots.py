@@ -102,7 +102,10 @@ class TwinProgram:
     @property
     def grounds(self) -> Grounds:
         """What positions and times stand on besides the program."""
-        return grounds_of((self.run,), unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run)))
+        return grounds_of(
+            (self.run,),
+            (value.said for value in unmeasured_values(self.machine, _STANDS_ON, joint_samples(self.run))),
+        )
 
     @cached_property
     def tools(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import Annotated, Final
 
-from trunnion.messages import Wording, phrase
+from trunnion.messages import Wording, phrase, texts
 from trunnion.model.run import Run
 from trunnion.records import dataclass
 from trunnion.results import Figure
@@ -20,28 +20,34 @@ from trunnion.verification.basis import assumed_modes, stated_texts, turns_befor
 class Grounds:
     """What nobody has measured, what is assumed, and what was stated.
 
-    not_measured  values of the definition that it stands on although nobody has measured them
+    unmeasured    values of the definition that it stands on although nobody has measured them; ``not_measured`` are
+                  the texts
     assumed       modes that the control is taken to start with: neither the program nor the definition states them
     stated        words and variables that the program relies on, with what somebody has stated of them
     turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force
     axes_from_home  the axes that the first cut takes to be at home: nothing states them before it
     """
 
-    not_measured: tuple[str, ...] = ()
+    unmeasured: Annotated[tuple[Wording, ...], Figure("not_measured", take=texts)] = ()
     assumed: tuple[str, ...] = ()
     stated: Annotated[tuple[str, ...], Figure(is_optional=True, none=())] = ()
     turns_before_offset: str = ""
     axes_from_home: Annotated[str, Figure(is_optional=True, none="")] = ""
+
+    @property
+    def not_measured(self) -> tuple[str, ...]:
+        """The values that nobody has measured, in words."""
+        return texts(self.unmeasured)
 
     def wordings(self, *, named: bool = False) -> Iterator[Wording]:
         """Yield what is said of it; nothing where it stands on the program and measured values alone.
 
         named  the values that nobody has measured are named; else they are counted
         """
-        if self.not_measured and named:
-            yield phrase("stands_on", values=self.not_measured)
-        elif self.not_measured:
-            yield phrase("standing_not_measured", count=len(self.not_measured))
+        if self.unmeasured and named:
+            yield phrase("stands_on", values=self.unmeasured)
+        elif self.unmeasured:
+            yield phrase("standing_not_measured", count=len(self.unmeasured))
         if self.stated:
             yield phrase("stands_on_stated", words=self.stated)
         if self.assumed:
@@ -89,11 +95,11 @@ class Grounded:
         return self.grounds.axes_from_home
 
 
-def grounds_of(runs: Iterable[Run], not_measured: Iterable[object] = ()) -> Grounds:
-    """Return what an answer about some programs stands on; ``not_measured`` are the values that count for it."""
+def grounds_of(runs: Iterable[Run], unmeasured: Iterable[Wording] = ()) -> Grounds:
+    """Return what an answer about some programs stands on; ``unmeasured`` are the values that count for it."""
     programs = tuple(runs)
     return Grounds(
-        not_measured=tuple(dict.fromkeys(map(str, not_measured))),
+        unmeasured=tuple(dict.fromkeys(unmeasured)),
         assumed=_every(map(assumed_modes, programs)),
         stated=_every(map(stated_texts, programs)),
         turns_before_offset=_listed(str(turns_before_offset(run) or "") for run in programs),
@@ -105,7 +111,7 @@ def joined_grounds(parts: Iterable[Grounds]) -> Grounds:
     """Return the grounds of several answers as those of one."""
     answers = tuple(parts)
     return Grounds(
-        not_measured=_every(each.not_measured for each in answers),
+        unmeasured=tuple(dict.fromkeys(chain.from_iterable(each.unmeasured for each in answers))),
         assumed=_every(each.assumed for each in answers),
         stated=_every(each.stated for each in answers),
         turns_before_offset=_listed(each.turns_before_offset for each in answers),

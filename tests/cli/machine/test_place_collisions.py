@@ -107,7 +107,6 @@ def trunnion_turned(file: str, degrees: float) -> TriangleMesh:
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        (["--machine", "yl569", "--tool-length", "100"], "PLC190"),
         (["--machine", "generic_head_head_ca"], "SIM310"),
         (["--machine", "generic_head_head_ca", "--tool", "2=ball:x"], "SIM153"),
         (["--machine", "generic_head_head_ca", "--tool", TOOL, "--stock", "box:1,2"], "SIM122"),
@@ -119,14 +118,10 @@ def test_what_cannot_be_judged_is_refused(options: list[str], code: str, capsys:
     assert f"[{code}]" in capsys.readouterr().err
 
 
-def test_what_is_missing_is_told_where_no_bodies_could_meet(capsys: pytest.CaptureFixture[str]) -> None:
-    part = ["place", BLADE, "--machine", "yl569", "--turn", "0", "--tool-length", "110"]
-    assert main([*part, "--goal", "collisions"]) == 2
-    assert "--goal: error: yl569 has no spindle.gauge_point_mm, so that" in capsys.readouterr().err
-    assert main([*part, "--tool", TOOL]) == 0  # another goal does without bodies
-    told = capsys.readouterr()
-    assert "--tool: warning: yl569 has no spindle.gauge_point_mm, so that" in told.err
-    assert "nearest to each other" not in told.out
+def test_the_nose_of_a_shipped_machine_without_gauge_point_is_kept_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    part = ["place", BLADE, "--machine", "yl569", "--turn", "0", "--tool-length", "110", "--goal", "collisions"]
+    assert main(part) == 0
+    assert "gauge_point_mm" not in capsys.readouterr().err
 
 
 def test_where_no_place_changes_distances_the_margin_decides(plate: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -9,9 +9,13 @@ import trunnion
 from tests.support.simulating import SLOT, cuboid, simulate
 from trunnion.cli.simulate import simulation_lines
 from trunnion.jobs.simulate.report import simulation_content
+from trunnion.machines import load_machine
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.results import to_data
 from trunnion.simulation.meshes import save_mesh
+
+#: Why the machine is not checked where blocks name its positions.
+AT_MACHINE = "where blocks name positions of the machine: no gauge point stated"
 
 #: The slot for a control of the YL569.
 SLOT_OF_YL569 = (
@@ -82,8 +86,8 @@ def test_the_bodies_of_the_machine_are_checked_where_it_is_known_where_they_are(
     assert not [remark for remark in sunk.remarks if told in remark.what]
     assert {one.between[0] for one in sunk.findings if one.kind == "collision"} & names
     unstated = simulate(tmp_path, SLOT, zero="0,0,-60")
-    assert not {one.between[0] for one in unstated.findings if one.kind == "collision"} & names
-    assert any("has no spindle.gauge_point_mm" in remark.what for remark in unstated.remarks)
+    assert {one.between[0] for one in unstated.findings if one.kind == "collision"} & names
+    assert not any("spindle.gauge_point_mm" in remark.what for remark in unstated.remarks)
 
 
 @pytest.mark.parametrize(("given", "missing"), [({}, "workpiece zero"), ({"zero": "0,0,0"}, "tool length of the run")])
@@ -126,7 +130,8 @@ def test_a_machine_position_across_the_tool_in_the_stock_is_an_error(tmp_path: P
     assert not found.passed
     assert [one.line for one in found.remarks if "across the tool axis" in one.what] == [9]
     assert simulate(tmp_path, SLOT.replace("N70 G0 Z20", "N70 G53 G0 Z0\nN80 G53 G0 X0 Y0")).passed
-    known = simulate(tmp_path, program, zero="0,0,-100", tool_length=60)
+    stated = load_machine("xyzac_trt", {"spindle": {"gauge_point_mm": [0, 0, 0]}})
+    known = simulate(tmp_path, program, machine=stated, zero="0,0,-100", tool_length=60)
     assert ("rapid through stock", 70) in {(one.kind, one.block) for one in known.findings}
 
 
@@ -159,7 +164,7 @@ def test_what_is_sunk_in_the_table_is_a_warning_without_a_gauge_point(tmp_path: 
 
     def sunk(zero: str, **more: object) -> list[str]:
         found = simulate(tmp_path, SLOT_OF_YL569, **(given | more), zero=zero)
-        assert found.not_checked == ("no gauge point stated",)
+        assert found.not_checked in ((), (AT_MACHINE,))
         return [each.what for each in found.remarks if each.code == "SIM313"]
 
     assert sunk("0,0,-5") == []  # it stands on the table
@@ -173,18 +178,20 @@ def test_what_is_sunk_in_the_table_is_a_warning_without_a_gauge_point(tmp_path: 
 def test_the_verdict_says_that_collisions_with_the_machine_were_not_checked(tmp_path: Path) -> None:
     folder = Path("examples/simulation")
     unstated = trunnion.simulate(
-        folder / "plate_top.mpf", machine="yl569", stock="box:100,80,30,-50,-40,-30", zero=(0, 0, -160),
+        folder / "plate_top.mpf", machine="yl569", stock="box:100,80,30,-50,-40,-30", zero=(0, 0, -20),
         tool_libraries=[folder / "tools.toml"], tool_length=110, cell=1.0,
     )  # fmt: skip
     assert unstated.passed
-    why = "collisions with the machine: not checked (no gauge point stated)"
-    stands_on = "stands on 8 values nobody measured; assumed: the control starts with CYCLE800()"
+    why = f"collisions with the machine: not checked ({AT_MACHINE})"
+    stands_on = (
+        "not all was judged (SIM146); stands on 10 values nobody measured; assumed: the control starts with CYCLE800()"
+    )
     assert unstated.verdict == f"nothing found; {why}; {stands_on}"
     assert list(simulation_lines(unstated))[-1] == f"Passed in part: {unstated.verdict}"
     page = b"".join(render_simulation_page(simulation_content(unstated))).decode()
     assert page.count(why) == 1
-    assert "Nothing was found. Collisions with the machine: not checked (no gauge point stated)." in page
-    assert to_data(unstated)["not_checked"] == ["no gauge point stated"]
+    assert "Nothing was found." in page
+    assert to_data(unstated)["not_checked"] == [AT_MACHINE]
     unknown = simulate(tmp_path, SLOT)
     assert "not checked (workpiece zero or tool length not stated); " in unknown.verdict
 
@@ -192,7 +199,7 @@ def test_the_verdict_says_that_collisions_with_the_machine_were_not_checked(tmp_
 @pytest.mark.parametrize("project", ["examples/project/part.toml", "examples/simulation/plate.toml"])
 def test_the_example_stands_on_the_table_and_is_checked_with_the_machine(project: str) -> None:
     found = trunnion.simulate(project)
-    assert found.verdict.startswith("nothing found; stands on 11 values nobody measured; assumed: ")
+    assert found.verdict.startswith("nothing found; stands on 13 values nobody measured; assumed: ")
     assert (found.remarks, found.not_checked) == ((), ())
 
 

@@ -31,7 +31,6 @@ def test_travel_is_judged_in_text_and_data(
     within = zero is None or _ZEROS[zero]
     if not within:  # the table may be in the way elsewhere
         assert (code, found["passed"]) == (1, False)
-        assert not found["collisions"]
     assert travel["state"] == ("not checked" if zero is None else "ok" if within else "FAIL")
 
 

@@ -28,7 +28,7 @@ links = st.sampled_from(["workpiece", "spindle", "bed", "J1", "J3"])
 def pieces_of(joints: Floats) -> AxisPieces:
     n = len(joints) - 1
     zeros = np.zeros(n, np.int64)
-    return AxisPieces(0, n, np.arange(n), np.zeros(n), np.ones(n), joints, zeros, np.ones(n, np.bool_))
+    return AxisPieces(0, n, np.arange(n), np.zeros(n), np.ones(n), joints, zeros, np.ones(n, np.bool_), zeros > 0)
 
 
 def seen_from(machine: Machine, one: str, other: str, joints: Floats) -> Floats:
@@ -85,7 +85,9 @@ def test_what_dense_sampling_finds_is_found(machine: Machine, path: list[list[fl
     watch = PairWatch(machine, ("",), bodies, (solids[0], solids[1]), 0.0, 0.5)
     watch.follow(pieces_of(joints[:3]))
     last = pieces_of(joints[2:])
-    watch.follow(AxisPieces(2, 4, last.row + 2, last.begin, last.done, last.joints, last.tool, last.known))
+    watch.follow(
+        AxisPieces(2, 4, last.row + 2, last.begin, last.done, last.joints, last.tool, last.known, last.at_machine)
+    )
     found = watch.findings()
     query, count = PairQuery(solids[0], solids[1]), 40
     poses = seen_from(machine, one, other, between(joints, count))

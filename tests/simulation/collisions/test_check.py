@@ -166,8 +166,10 @@ def test_a_mesh_beside_the_definition_becomes_a_body(tmp_path: Path) -> None:
 
 def test_a_gauge_point_that_is_not_stated_is_told() -> None:
     said: list[Problem] = []
-    for name in ("yl569", "matsuura_mx330"):
+    for name in ("yl569", "matsuura_mx330"):  # turns no head: work offset and tool length say where the nose is
         machine_bodies(load_machine(name), said.append)
+    assert said == []
+    machine_bodies(replace(load_machine("generic_head_table_bc"), spindle_point_is_stated=False), said.append)
     assert [str(each).partition(": ")[2].partition(";")[0] for each in said] == [
         "warning: has no spindle.gauge_point_mm: spindle and tools are not checked against the rest of the machine"
     ]
@@ -218,7 +220,7 @@ def test_published_programs_hit_nothing_and_a_long_part_does(
 
 
 @pytest.mark.nightly
-def test_what_is_at_a_nose_of_unknown_place_hits_fixtures_and_no_machine() -> None:
+def test_what_is_at_a_nose_of_unknown_place_hits_nothing_where_the_machine_states_positions() -> None:
     unknown = load_machine("yl569", {"workpiece": {"zero_mm": [0, 0, 0]}})
     stated = load_machine("yl569", {"workpiece": {"zero_mm": [0, 0, 0]}, "spindle": {"gauge_point_mm": [0, 0, 0]}})
     clamp = fixture_body(block("clamp", (-80.0, -80.0, -50.0), (80.0, 80.0, 100.0)), unknown)

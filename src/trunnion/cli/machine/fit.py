@@ -35,8 +35,8 @@ def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
         yield f"{each.key:<{wide}}  {padded(words[each.status], of_status)}  {_facts(each)}".rstrip()
         for reason in each.why:
             yield f"{'':<{wide}}  {in_words(reason)}"
-        if each.not_measured:
-            yield f"{'':<{wide}}  {in_words(phrase('stands_on', values=each.not_measured))}"
+        if each.unmeasured:
+            yield f"{'':<{wide}}  {in_words(phrase('stands_on', values=each.unmeasured))}"
 
 
 def _facts(each: MachineFit) -> str:

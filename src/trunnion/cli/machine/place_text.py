@@ -5,10 +5,11 @@ from typing import Final
 
 from trunnion.arrays import Floats
 from trunnion.cli.wording import in_words, line, part
-from trunnion.messages import Wording, phrase, word_said
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, BodyDistance, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.table_limits import KEPT
+from trunnion.simulation.body_names import body_said
 from trunnion.wording import format_duration
 
 #: Turns out of reach that are told one by one.
@@ -49,8 +50,8 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield "  " + line("zero_anywhere", ends=_ends(box.low, box.high))
         if not found.region.is_box:
             yield "  " + line("zero_not_beyond", ends=_ends(found.region.low, found.region.high))
-    if found.not_measured:
-        yield f"  {in_words(phrase('stands_on', values=found.not_measured))}"
+    if found.unmeasured:
+        yield f"  {in_words(phrase('stands_on', values=found.unmeasured))}"
 
 
 def _none_lines(found: Placement) -> Iterator[str]:
@@ -251,7 +252,7 @@ def _touch_line(found: Placement) -> str | None:
 
 def _apart(nearest: BodyDistance) -> Wording:
     """Two bodies, and how far they are apart."""
-    one, other = map(word_said, nearest.between)
+    one, other = map(body_said, nearest.between)
     place = {"one": one, "other": other, "file": nearest.file, "line": nearest.line}
     if nearest.touches:
         return part("bodies_touch", **place)

@@ -75,7 +75,8 @@ class MachineFit:
     missing    how far the linear axes are from reaching it at the best place, mm; None where that is not the reason
     zero_mm    workpiece zero of the best place, machine frame; None: there is no place, or it was not looked for
     turn_deg   turn of the part there, about Z
-    not_measured  values of the definition that this stands on, though nobody has measured them
+    unmeasured  values of the definition that this stands on, though nobody has measured them; ``not_measured`` are
+               the texts
     """
 
     key: Annotated[str, Figure("machine", take=lambda key: Path(key).as_posix() if key.endswith(".toml") else key)]
@@ -86,7 +87,12 @@ class MachineFit:
     missing: Annotated[float | None, Figure(unit="mm", decimals=6, after="turn_deg")] = None
     zero_mm: Vector | None = None
     turn_deg: float | None = None
-    not_measured: tuple[str, ...] = ()
+    unmeasured: Annotated[tuple[Wording, ...], Figure("not_measured", take=texts)] = ()
+
+    @property
+    def not_measured(self) -> tuple[str, ...]:
+        """The values that nobody has measured, in words."""
+        return texts(self.unmeasured)
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -268,7 +274,7 @@ def _fit(
             raise
         return _does_not_fit(error, key)
     if not found.fits:
-        return replace(_beyond(asked, machine, found), not_measured=found.not_measured)
+        return replace(_beyond(asked, machine, found), unmeasured=found.unmeasured)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes) if found.best else ()
     # The placement and the program are let go: of a long path they are large, and there are many machines.
     place_of = found.zero_mm, found.turn_deg
@@ -279,7 +285,7 @@ def _fit(
     reasons = _open_reasons(machine)
     status = FitStatus.OPEN if reasons else FitStatus.FITS
     margins += _rotary_margins(machine, posted)
-    values = tuple(dict.fromkeys((*found.not_measured, *_not_measured(posted))))
+    values = tuple(dict.fromkeys((*found.unmeasured, *_unmeasured(posted))))
     return MachineFit(machine.key, status, reasons, _seconds(posted), margins, None, *place_of, values)
 
 
@@ -291,7 +297,7 @@ def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath], hooks: Sequ
         return _does_not_fit(error, machine.key)
     margins = _rotary_margins(machine, posted)
     fits = MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins)
-    return replace(fits, not_measured=_not_measured(posted))
+    return replace(fits, unmeasured=_unmeasured(posted))
 
 
 def _does_not_fit(error: TrunnionError, key: str, margins: tuple[AxisMargin, ...] = ()) -> MachineFit:
@@ -301,8 +307,8 @@ def _does_not_fit(error: TrunnionError, key: str, margins: tuple[AxisMargin, ...
     return MachineFit(key, FitStatus.NOT, _reasons(error), None, margins)
 
 
-def _not_measured(posted: PostResult) -> tuple[str, ...]:
-    return () if posted.standing is None else posted.standing.not_measured
+def _unmeasured(posted: PostResult) -> tuple[Wording, ...]:
+    return () if posted.standing is None else posted.standing.grounds.unmeasured
 
 
 def _open_reasons(machine: Machine) -> tuple[Wording, ...]:

@@ -87,7 +87,8 @@ def sensitivity(
         found = program_sensitivity(run, pose, *off, tuple(_remarks(run)), advance)
     if not found.motions:
         raise InputError(Problem(run.files[0] if run.files else "nc", 0, Wording("RCH110", "nothing_cut")))
-    return replace(found, grounds=grounds_of((run,), unmeasured_values(run.machine, POSITIONS, joint_samples(run))))
+    values = unmeasured_values(run.machine, POSITIONS, joint_samples(run))
+    return replace(found, grounds=grounds_of((run,), (value.said for value in values)))
 
 
 def _check_amount(name: str, value: object) -> None:

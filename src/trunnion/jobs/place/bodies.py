@@ -90,12 +90,7 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is
 def _none_could_meet(machine: Machine, *, is_needed: bool) -> Problem:
     """Return what is missing where there are no two bodies to be kept apart."""
     name, severity = ("goal", Severity.ERROR) if is_needed else ("tools", Severity.WARNING)
-    is_without_point = bool(machine.bodies) and not machine.spindle_point_is_stated
-    return argument_problem(
-        name,
-        Wording("PLC190", "no_gauge_point" if is_without_point else "no_two_bodies", machine=machine.key),
-        severity=severity,
-    )
+    return argument_problem(name, Wording("PLC190", "no_two_bodies", machine=machine.key), severity=severity)
 
 
 def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:

@@ -151,7 +151,7 @@ def place(
         found = search.find(advance)
     found = replace(
         found, remarks=tuple(problems), toolpaths=read.toolpaths, clamping=read.clamping,
-        not_measured=_not_measured(loaded, found),
+        unmeasured=_unmeasured(loaded, found),
     )  # fmt: skip
     if asked.tool_lengths:
         found = replace(found, tool_length_mm=asked.tool_length, tool_lengths_mm=asked.tool_lengths)
@@ -162,7 +162,7 @@ def place(
     return replace(found, remarks=(*found.remarks, *touching))
 
 
-def _not_measured(machine: Machine, found: Placement) -> tuple[str, ...]:
+def _unmeasured(machine: Machine, found: Placement) -> tuple[Wording, ...]:
     """Return the values that nobody has measured, and that the place stands on."""
     kinds = {*POSITIONS, ValueKind.TRAVEL, *_OF_GOALS.get(Goal(found.goal), ())}
     if found.table is not None:
@@ -174,7 +174,7 @@ def _not_measured(machine: Machine, found: Placement) -> tuple[str, ...]:
         joints = corners(machine, ranges)
     # The zero is what is looked for: it is the place that stands on the geometry, not the position of a tip.
     placed = replace(machine, workpiece_zero=machine.workpiece_zero or (0.0, 0.0, 0.0))
-    return tuple(map(str, unmeasured_values(placed, kinds, joints)))
+    return tuple(value.said for value in unmeasured_values(placed, kinds, joints))
 
 
 def unknown_length(machine: Machine) -> list[Problem]:

@@ -32,6 +32,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.options.groups import BODIES, CUTTING
 from trunnion.options.kinds import FileIn
 from trunnion.options.option import Level
+from trunnion.simulation.body_names import body_said
 from trunnion.simulation.finding import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.setup_findings import SimulationFinding
@@ -296,6 +297,6 @@ def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
 
 
 def _words(finding: SimulationFinding) -> Wording:
-    one, other = map(word_said, finding.between)
+    one, other = map(body_said, finding.between)
     what = phrase("finding_between", kind=word_said(finding.kind), one=one, other=other)
     return what if finding.when is None else phrase("with_skipped", skipped=finding.when, what=what)

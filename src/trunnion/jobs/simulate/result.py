@@ -29,7 +29,8 @@ _MOST_AIR: Final = 20
 
 #: Why bodies of the machine were not checked, by the variants of ``SIM310`` that say so.
 _WHY_NOT_CHECKED: Final = {
-    "no_spindle_gauge": "gauge_point_unstated", "bodies_machine_not": "zero_or_length_unstated",
+    "no_spindle_gauge": "gauge_point_unstated", "gauge_at_machine": "gauge_point_unstated_at_machine",
+    "bodies_machine_not": "zero_or_length_unstated",
 }  # fmt: skip
 
 #: Remarks on what was not judged: the stock outside, where nobody knows the tool, blocks that are not simulated.
@@ -107,7 +108,7 @@ class SimulationResult(Grounded):
     cuts_unknown: Annotated[tuple[Wording, ...], Figure("cuts_not_checked", after="remarks", take=_sentences)] = ()
     skip_meanings: Annotated[tuple[Wording, ...], Figure("meanings", after="remarks", take=_sentences)] = ()
     grounds: Annotated[Grounds, Figure(is_flat=True, after="remarks")] = NO_GROUNDS
-    bodies_on: Annotated[tuple[str, ...], NOT_DATA] = ()
+    bodies_on: Annotated[tuple[Wording, ...], NOT_DATA] = ()
     has_bodies: Annotated[bool, NOT_DATA] = True
     travel: Annotated[tuple[ProgramTravel, ...], Figure(take=travel_data, after="remarks")] = ()
     stock_from: Annotated[str, Figure(after="remarks")] = ""
@@ -256,7 +257,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
         simulation=found,
         setup=cut.setup.name,
         grounds=grounds_of(cut.setup.runs, (*_unmeasured(cut, ValueKind.ANGLES), *on_bodies, *on_travel)),
-        bodies_on=tuple(map(str, on_bodies)),
+        bodies_on=tuple(on_bodies),
         has_bodies=bool(cut.setup.machine.bodies),
         cuts_unknown=tuple(cut.setup.missing()),
         travel=travel,

@@ -21,9 +21,10 @@ from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.machines import Machine
-from trunnion.messages import Wording, joined, phrase, word_said
+from trunnion.messages import Wording, joined, phrase
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.body_names import body_said
 from trunnion.simulation.finding import What
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.tools.profile import cutting_width
@@ -128,7 +129,7 @@ def _found(one: SimulationFinding | NearMiss) -> Wording:
     first, second = one.between
     place = position(one.place)
     if isinstance(one, NearMiss) and one.rubs:
-        what = phrase("finding_rubs", one=word_said(first), other=word_said(second), place=place)
+        what = phrase("finding_rubs", one=body_said(first), other=body_said(second), place=place)
     elif isinstance(one, NearMiss):
         what = phrase("near_each_other", first=first, second=second, distance=one.distance, place=place)
     else:

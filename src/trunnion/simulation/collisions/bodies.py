@@ -69,7 +69,7 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
     """Return the bodies of a machine's definition; meshes are read now.
 
     machine  the machine
-    warn     takes what is odd about meshes, and that the definition does not say where the spindle nose stands
+    warn     takes what is odd about meshes, and that nobody knows where a head turns its spindle nose about
 
     Raises ``InputError`` if a mesh cannot be used, with file and line of the definition that names it.
     """
@@ -93,7 +93,7 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
         found.append(Body(body.name, body.link, mesh.moved(pose).named(body.name), BodyKind.MACHINE, line=line))
     if problems:
         raise InputError(problems)
-    if found and warn is not None and not machine.spindle_point_is_stated:
+    if found and warn is not None and not machine.spindle_point_is_stated and machine.has_rotary_head:
         warn(warning(machine.files[0] if machine.files else machine.key, 0, Wording("SIM310", "no_spindle_gauge")))
     return tuple(found)
 

@@ -3,7 +3,8 @@
 No pair are bodies of one link, a cutter and the part, two tools, and bodies on one side of the machine that overlap
 with all axes at home (table and cradle, head and ram): these touch by construction. What overlaps there from different
 sides is checked all the same. Where the definition does not say where the spindle nose stands, what is at the nose and
-the rest of the machine are no pair either: nobody knows how far apart they are.
+the rest of the machine are apart as work offset and tool length say, and a pair there: not where a block names
+positions of the machine. With rotary axes in the head they are no pair at all: its pivot length is not known.
 """
 
 from collections.abc import Sequence
@@ -55,7 +56,19 @@ def may_meet(machine: Machine, one: Body, other: Body) -> bool:
     """Return whether two bodies move against each other, must not touch, and stand where the definition says."""
     if not axes_between(machine, one.link, other.link) or _never_meet(one, other):
         return False
-    return not _is_apart_unknown(machine, one, other)
+    return not (stands_on_work_offset(machine, one, other) and machine.has_rotary_head)
+
+
+def stands_on_work_offset(machine: Machine, one: Body, other: Body) -> bool:
+    """Return whether two bodies are as far apart as work offset and tool length say, and nobody knows it otherwise.
+
+    One of them is at a spindle nose of unknown place, the other is of the rest of the machine.
+    """
+    if machine.spindle_point_is_stated:
+        return False
+    at_nose = [body.link == SPINDLE for body in (one, other)]
+    rest = [body.kind is BodyKind.MACHINE and body.link != SPINDLE for body in (one, other)]
+    return any(at_nose) and any(rest)
 
 
 def _never_meet(one: Body, other: Body) -> bool:
@@ -63,15 +76,6 @@ def _never_meet(one: Body, other: Body) -> bool:
     if one.kind.is_tool and other.kind.is_tool:
         return True
     return {one.kind, other.kind} == {BodyKind.CUTTER, BodyKind.PART}
-
-
-def _is_apart_unknown(machine: Machine, one: Body, other: Body) -> bool:
-    """Whether one of two bodies is at a spindle nose of unknown place, and the other is of the rest of the machine."""
-    if machine.spindle_point_is_stated:
-        return False
-    at_nose = [body.link == SPINDLE for body in (one, other)]
-    rest = [body.kind is BodyKind.MACHINE and body.link != SPINDLE for body in (one, other)]
-    return any(at_nose) and any(rest)
 
 
 def are_on_one_side(machine: Machine, link: str, other: str) -> bool:

@@ -12,6 +12,7 @@ from trunnion.machines.links import WORKPIECE, link_chain
 from trunnion.records import dataclass
 from trunnion.simulation.collisions.bodies import Body
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds, relative_pose, turns_about_itself
+from trunnion.simulation.collisions.pairs import stands_on_work_offset
 from trunnion.simulation.collisions.queries import PairQuery, Solid
 from trunnion.simulation.finding import Finding, What
 from trunnion.timing import AxisPieces
@@ -149,6 +150,7 @@ class PairWatch:
         self.one, self.other = bodies
         self.machine, self.near, self.step = machine, near, step
         self._tools = tools
+        self._needs_offset = stands_on_work_offset(machine, *bodies)
         self._chain = link_chain(machine)
         self._query = PairQuery(*solids)
         self._there = joint_senses(machine, self.one.link, self.other.link)
@@ -171,10 +173,14 @@ class PairWatch:
     def follow(self, pieces: AxisPieces) -> None:
         """Look at the bodies wherever they may touch in the pieces that follow the last ones."""
         name = self.one.tool or self.other.tool
-        if not name:
+        if not name and not self._needs_offset:
             self._follow(pieces, 0, len(pieces.row))
             return
-        present = pieces.known & np.array([tool == name for tool in self._tools])[pieces.tool]
+        present = pieces.known.copy()
+        if name:
+            present &= np.array([tool == name for tool in self._tools])[pieces.tool]
+        if self._needs_offset:
+            present &= ~pieces.at_machine
         edges = np.flatnonzero(np.diff(present.astype(np.int8), prepend=0, append=0))
         if not len(present) or not present[0]:
             self._leave()

@@ -151,7 +151,7 @@ def unknown_swivels(run: Run, low: Floats, high: Floats) -> Ints:
     Those with the tool farther from a box, (3,) to (3,) mm, than the box is large are left out, and those that begin or
     end at a machine position.
     """
-    tips = StatedTips.of(run)
+    tips = StatedTips.of(run, needs_gauge_point=True)
     rows = np.flatnonzero(tips.before & ~tips.placed)
     rows = rows[turns_without_tcp(run, rows)]
     to_machine = run.state.machine_frame.at(rows) & ((run.programmed[rows] & _XYZ) != 0)
@@ -166,7 +166,7 @@ def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
 
     Where it stands in the workpiece frame is not known after them: it may have gone through the box.
     """
-    rows = StatedTips.of(run).aside
+    rows = StatedTips.of(run, needs_gauge_point=True).aside
     poses = run.positions(rows - 1)
     top = np.maximum(low * poses.axis, high * poses.axis).sum(axis=1)
     below = np.einsum("ij,ij->i", poses.tip, poses.axis) < top - 1e-6
@@ -175,7 +175,7 @@ def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
 
 def _where_stated(run: Run, sweeps: RowSweeps, sizes: SweepSizes) -> RowSweeps:
     """Return the sweeps between known places, and those that leave for unknown ones, or come from them."""
-    tips, row = StatedTips.of(run), sweeps.row
+    tips, row = StatedTips.of(run, needs_gauge_point=True), sweeps.row
     before, after = tips.before[row], tips.after[row]
     turns = ~tips.placed[row] & turns_without_tcp(run, row)
     keep = before & after & ~turns

@@ -38,8 +38,6 @@ _ON: Final = "trunnion place part.cls --machine {} --turn 0 --tool-length 60"
 _OWN: Final = _ON.format("own.toml")
 _BARE: Final = 'write own.toml \'schema = 1\\nextends = "xyzac_trt"\\nname = "Ours"\\nbody = []\\n\'\n'
 _BODIES: Final = _BARE.replace("body = []", "[spindle]\\ngauge_point_mm = [0, 0, 100]")
-_GAUGED: Final = _BODIES.replace("xyzac_trt", "yl569")
-_PLAIN: Final = _BARE.replace("xyzac_trt", "yl569").replace("body = []\\n", "")
 _FORMLESS: Final = "edit part.cls 'TLDATA[^\\n]*\\n' ''\n"
 
 
@@ -94,13 +92,6 @@ CURES: Final = (
         "q.mpf --machine",
     ),
     script("PLC330 zero_of_turned_part", _PROJECT, "--turn 0", "--turn 0 --zero 10,-5,-60"),
-    script(
-        "PLC190 no_gauge_point",
-        f"{_JAW}{_ON.format('yl569')} --goal collisions",
-        "--goal",
-        f"{_TOOL} {_FIXTURE} --goal",
-    ),
-    script("PLC190 no_gauge_point", f"{_PLAIN}{_OWN} --goal collisions", _PLAIN, _GAUGED),
     script("PLC190 no_two_bodies", f"{_BARE}{_JAW}{_OWN} --goal collisions", "--goal", f"{_TOOL} {_FIXTURE} --goal"),
     script("PLC190 no_two_bodies", f"{_BARE}{_OWN} --goal collisions", _BARE, _BODIES),
     script(

@@ -61,7 +61,10 @@ def _saved(text: str, settings: Mapping[str, str], folder: Path) -> Outcome:
 
 
 _SLOT: Final = on()
-_PLACED: Final = on(zero="0,0,-100", tool_length="60")
+SHORT: Final = "1=flat:10,length=30,flutes=20,holder=40x20"
+#: A zero at which the stock stands on the table.
+ABOVE_TABLE: Final = "-25,0,12"
+_PLACED: Final = on(zero=ABOVE_TABLE, tool_length="50", tools=SHORT)
 _TWO_TOOLS: Final = SLOT.replace("M5\nM30", "G49\nT2 M6\nG43 H2\nS1000 M3\nG0 X-20 Y10 Z-3\nG1 X70\nG0 Z20\nM5\nM30")
 _BOTH: Final = on(tools=f"{TOOL} {TOOL.replace('1=', '2=', 1)}")
 _PART: Final = on(part=slotted(5.0))
@@ -113,7 +116,6 @@ CURES: Final = (
     Cure("SIM144", "swivels_beside_stock", on(), _SWIVEL, (("N75", "G53 G0 Z0\nN75"),)),
     Cure("SIM145", "machine_positions_taken", on(), _MOVED_BY_TABLE, (), cured_by=_PLACED),
     Cure("SIM145", "machine_positions_taken_retracts", on(zero="0,0,-100"), _MOVED_BY_TABLE, (), cured_by=_PLACED),
-    Cure("SIM146", "motion_before_all", on(), SLOT.replace("X-20 Y0 Z20", "X-20 Y0"), (), cured_by=_PLACED),
     Cure(
         "SIM148",
         "nothing_moves",
