@@ -186,8 +186,7 @@ class Placement:
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     left_out  names of pairs of bodies that are not judged: at home they overlap, on one side of the machine
     table     of the machine's definition; None: it states none
-    unmeasured    values of the definition that the place stands on, though nobody has measured them; ``not_measured``
-                  are the texts
+    unmeasured    values of the definition that the place stands on, though nobody has measured them
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
 

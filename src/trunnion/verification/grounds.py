@@ -20,8 +20,7 @@ from trunnion.verification.basis import assumed_modes, stated_texts, turns_befor
 class Grounds:
     """What nobody has measured, what is assumed, and what was stated.
 
-    unmeasured    values of the definition that it stands on although nobody has measured them; ``not_measured`` are
-                  the texts
+    unmeasured    values of the definition that it stands on although nobody has measured them
     assumed       modes that the control is taken to start with: neither the program nor the definition states them
     stated        words and variables that the program relies on, with what somebody has stated of them
     turns_before_offset  the block that turns rotary axes before a work offset is selected: none is taken to be in force

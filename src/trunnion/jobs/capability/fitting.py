@@ -75,8 +75,7 @@ class MachineFit:
     missing    how far the linear axes are from reaching it at the best place, mm; None where that is not the reason
     zero_mm    workpiece zero of the best place, machine frame; None: there is no place, or it was not looked for
     turn_deg   turn of the part there, about Z
-    unmeasured  values of the definition that this stands on, though nobody has measured them; ``not_measured`` are
-               the texts
+    unmeasured  values of the definition that this stands on, though nobody has measured them
     """
 
     key: Annotated[str, Figure("machine", take=lambda key: Path(key).as_posix() if key.endswith(".toml") else key)]
