@@ -101,6 +101,13 @@ def test_heads_say_radius_or_diameter_as_the_control_takes_it(programs: dict[str
     assert "ENTER THE RADIUS MINUS 6 MM IN D1, TWICE THAT IF BIT 2 OF PARAMETER 5004 IS 1" in entered("matsuura_mx330")
 
 
+def test_the_entry_counts_as_the_program_does(tmp_path: Path) -> None:
+    program = tmp_path / "pocket.nc"
+    trunnion.post(POCKET, machine="haas_umc750", output=program, settings={"units": "inch"})
+    said = " ".join(program.read_text().replace("(", "").replace(")", "").split())
+    assert "ENTER THE RADIUS MINUS 0.23622 INCH IN D1" in said
+
+
 @pytest.mark.parametrize("machine", MACHINES)
 def test_a_conversion_says_once_what_to_enter(machine: str, programs: dict[str, Path], tmp_path: Path) -> None:
     again = tmp_path / f"again{programs[machine].suffix}"

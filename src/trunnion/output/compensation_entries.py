@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from trunnion.controls.vocabulary import ENTRY_NOTICE, RADIUS_NUMBER_WORD, RADIUS_REGISTER_SETTING
+from trunnion.controls.definition import MM_PER_INCH
+from trunnion.controls.vocabulary import ENTRY_NOTICE, INCH, MM, RADIUS_NUMBER_WORD, RADIUS_REGISTER_SETTING
 from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.motion import Motion
@@ -34,6 +35,7 @@ class CompensationEntry:
     holds     what the register holds: ``difference``, ``radius`` or ``unknown``
     contour   the path is that of the contour, and not that of the tool's centre
     doubled   when the control takes the diameter instead: ``always``, a condition, or never (empty)
+    units     in which the program counts, and what is entered: ``mm`` or ``inch``
     """
 
     call: str
@@ -42,6 +44,7 @@ class CompensationEntry:
     holds: str
     contour: bool
     doubled: str
+    units: str
 
     @property
     def where(self) -> str:
@@ -60,9 +63,12 @@ class CompensationEntry:
         return "diameter" if self.doubled == _ALWAYS else "radius"
 
     @property
-    def size(self) -> float:
-        """Its size in the CL file, mm; 0: not known."""
-        return 2.0 * self.radius if self.doubled == _ALWAYS else self.radius
+    def size(self) -> str:
+        """Its size in the CL file, with its unit; empty: not known."""
+        size = 2.0 * self.radius if self.doubled == _ALWAYS else self.radius
+        if not size:
+            return ""
+        return f"{size:.10g} {MM}" if self.units == MM else f"{size / MM_PER_INCH:.5g} {INCH}"
 
     @property
     def value(self) -> str:
@@ -70,7 +76,7 @@ class CompensationEntry:
         what, size = self.size_name, self.size
         if self.contour or self.holds == "radius":
             return f"the {what}"
-        return f"the {what} minus {size:.10g} mm" if size else f"the {what} minus that of CAM"
+        return f"the {what} minus {size}" if size else f"the {what} minus that of CAM"
 
 
 def entries_at_control(program: Program) -> list[str]:
@@ -113,7 +119,9 @@ def entries_of(program: Program, motions: Sequence[Motion], call: str) -> Iterat
     )
     for register, contour in registers:
         doubled = program.control.radius_as_diameter
-        yield CompensationEntry(call, register, 0.5 * operation.tool.diameter, holds, contour, doubled)
+        yield CompensationEntry(
+            call, register, 0.5 * operation.tool.diameter, holds, contour, doubled, program.control.units
+        )
 
 
 def with_radius_taken_off(program: Program) -> Program:

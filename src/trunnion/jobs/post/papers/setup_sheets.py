@@ -187,7 +187,7 @@ def _entered(each: CompensationEntry) -> str:
     what, size = word(each.size_name), each.size
     if each.contour or each.holds == "radius":
         return on_sheet("entered_whole", what=what)
-    return on_sheet("entered_less", what=what, size=f"{size:.10g}") if size else on_sheet("entered_less_cam", what=what)
+    return on_sheet("entered_less", what=what, size=size) if size else on_sheet("entered_less_cam", what=what)
 
 
 def _place_of_entry(each: CompensationEntry) -> str:
