@@ -38,7 +38,7 @@ _TURNS: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWor
 class StatedTips:
     """What a program of n rows states of its tips.
 
-    placed         (n,)    zero and length are stated: positions of the machine are some of the workpiece too
+    placed         (n,)    zero and length are stated: where rotary axes turn a known tip to is known too
     before, after  (n,)    the whole tip is known where a row begins, and where it ends
     ways           rows in which the tool leaves for, or comes from, a place that nobody knows, and in which unit
                    vector that place is, far from the part
@@ -89,7 +89,9 @@ class _Walk:
         machine, n = run.machine, len(run)
         self.run = run
         zero, length = (column.column() for column in stated_rows(run))
-        self.placed = zero & length & np.bool_(machine.spindle_point_is_stated or not needs_gauge_point)
+        self.turns_known = zero & length
+        #: Positions of the machine are some of the workpiece too.
+        self.placed = self.turns_known & np.bool_(machine.spindle_point_is_stated or not needs_gauge_point)
         self.turns_in_place = zero & (length | np.bool_(not machine.has_rotary_head))
         self.tip_words = run.state.xyz_is_tip.column()
         self.plane = run.state.plane.column()
@@ -121,7 +123,7 @@ class _Walk:
             self._end_stretch()
         feeds = np.array(self.lost_feeds, np.int64)
         return StatedTips(
-            self.placed, self.before, self.after, self.ways, np.array(self.aside, np.int64),
+            self.turns_known, self.before, self.after, self.ways, np.array(self.aside, np.int64),
             np.array(self.unjudged, np.int64), feeds[run.kind[feeds] != Kind.RAPID],
         )  # fmt: skip
 
