@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.locations import ROOT
-from trunnion.jit.wheel_libraries import SYSTEMS, System
+from trunnion.jit.wheel_libraries import SYSTEMS, System, make_libraries
 
 #: A room with a single small kernel.
 KERNELS = "trunnion.output.blocks"
@@ -41,17 +41,11 @@ print(*sorted({"numba", "llvmlite"} & sys.modules.keys()))
 """
 
 
-def _make(folder: Path, *tags: str) -> None:
-    only = [word for tag in tags for word in ("--only", tag)]
-    command = [sys.executable, "-m", "trunnion.jit.wheel_libraries", str(folder), "--kernels", KERNELS, *only]
-    subprocess.run(command, check=True, cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT / "src")})
-
-
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the package with machine code for this system; tests that change it change it back."""
     folder = tmp_path_factory.mktemp("made")
-    _make(folder / "libraries", HERE)
+    make_libraries(folder / "libraries", [HERE], KERNELS)
     shutil.copytree(ROOT / "src" / "trunnion", folder / "trunnion", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(folder / "libraries" / HERE, folder / "trunnion" / "jit" / "shipped")
     return folder
@@ -92,7 +86,7 @@ def test_without_a_base_library_nothing_is_loaded(made: Path) -> None:
 @pytest.mark.nightly
 @pytest.mark.parametrize("tag", sorted(SYSTEMS))
 def test_libraries_for_every_system_are_made_on_any(tag: str, tmp_path: Path) -> None:
-    _make(tmp_path, tag)
+    make_libraries(tmp_path, [tag], KERNELS)
     system: System = SYSTEMS[tag]
     names = {f"kernels-{level}{system.suffix}" for level in ("base", *system.levels)}
     assert {each.name for each in (tmp_path / tag).iterdir()} == names

@@ -1,4 +1,4 @@
-"""Machine code for wheels: ``python -m trunnion.jit.wheel_libraries FOLDER [--only TAG] [--kernels PREFIX]``.
+"""Machine code for wheels: ``python -m trunnion.jit.wheel_libraries FOLDER``.
 
 Leaves in the folder, for each system that a wheel is made for, a folder of libraries as ``trunnion.jit.shipped`` loads
 them. All systems are served from any computer: LLVM emits object code for all processors, and the linker of Zig makes
@@ -6,7 +6,6 @@ libraries for all systems (extra ``wheels``). Numba compiles each kernel once fo
 depend on how many numbers a processor takes at a time.
 """
 
-import argparse
 import os
 import subprocess
 import sys
@@ -134,48 +133,51 @@ def link(objects: Sequence[Path], system: System, output: Path) -> None:
     listed.unlink()
 
 
-def main() -> None:
-    """Run from the command line."""
-    parser = argparse.ArgumentParser(description="Make machine code for wheels.")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--only", choices=sorted(SYSTEMS), action="append", help="the systems; default: all")
-    parser.add_argument("--kernels", default="trunnion.", help="how the names of the kernels begin; default: all")
-    parser.add_argument("--compile-as", type=int, choices=sorted(set(_COMPILED_AS.values())), help=argparse.SUPPRESS)
-    given = parser.parse_args()
-    systems = given.only or sorted(SYSTEMS)
-    if given.compile_as:
-        for tag, level, name, code in emit_kernels(given.compile_as, given.kernels, systems):
-            (given.folder / tag / f"{level}-{name}.o").write_bytes(code)
-        return
-    for tag in systems:
-        (given.folder / tag).mkdir(parents=True)
-        (given.folder / tag / f"{BASE}.o").write_bytes(emit_level(SYSTEMS[tag]))
-    _compile_all(given.folder, given.kernels, systems)
-    for tag in systems:
-        system, folder = SYSTEMS[tag], given.folder / tag
-        link([folder / f"{BASE}.o"], system, folder / f"{BASE}{system.suffix}")
+def make_libraries(folder: Path, tags: Sequence[str] = tuple(SYSTEMS), kernels: str = "trunnion.") -> None:
+    """Leave a folder of libraries for each system in a folder.
+
+    tags     of the systems
+    kernels  how the names of the kernels begin
+
+    Raises ``OSError`` where such folders are there, and ``subprocess.CalledProcessError``.
+    """
+    for tag in tags:
+        (folder / tag).mkdir(parents=True)
+        (folder / tag / f"{BASE}.o").write_bytes(emit_level(SYSTEMS[tag]))
+    _emit_all(folder, tags, kernels)
+    for tag in tags:
+        system, own = SYSTEMS[tag], folder / tag
+        link([own / f"{BASE}.o"], system, own / f"{BASE}{system.suffix}")
         for level in system.levels:
-            objects = sorted(folder.glob(f"{level}-*.o"))
-            link(objects, system, folder / f"{library_name(level)}{system.suffix}")
+            objects = sorted(own.glob(f"{level}-*.o"))
+            link(objects, system, own / f"{library_name(level)}{system.suffix}")
             sys.stdout.write(f"{tag}: level {level}: {len(objects)} kernels\n")
-        for file in folder.iterdir():
+        for file in own.iterdir():
             if file.suffix != system.suffix:
                 file.unlink()
 
 
-def _compile_all(folder: Path, kernels: str, systems: Sequence[str]) -> None:
+def _emit_all(folder: Path, tags: Sequence[str], kernels: str) -> None:
     """Compile for all levels, each in a process of its own: Numba is told of a processor before it is imported."""
-    levels = sorted({_COMPILED_AS[level] for tag in systems for level in SYSTEMS[tag].levels})
+    call = f"from {emit_named.__module__} import emit_named; emit_named()"
     with tempfile.TemporaryDirectory() as kept:
         running = []
-        for level in levels:
+        for level in sorted({_COMPILED_AS[level] for tag in tags for level in SYSTEMS[tag].levels}):
             named = {"NUMBA_CPU_NAME": _PROCESSORS[level], "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": kept}
-            only = [word for tag in systems for word in ("--only", tag)]
-            command = [sys.executable, "-m", __spec__.name, str(folder), "--kernels", kernels, *only]
-            running.append(subprocess.Popen([*command, "--compile-as", str(level)], env={**os.environ, **named}))
-        if sum(abs(process.wait()) for process in running):
-            sys.exit("kernels were not compiled")
+            path = os.pathsep.join(filter(None, (str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH"))))
+            command = [sys.executable, "-c", call, str(level), str(folder), kernels, *tags]
+            running.append((command, subprocess.Popen(command, env={**os.environ, **named, "PYTHONPATH": path})))
+        for command, status in [(command, process.wait()) for command, process in running]:
+            if status:
+                raise subprocess.CalledProcessError(status, command)
+
+
+def emit_named() -> None:
+    """Write object code of the kernels, for a level and the systems that the arguments name."""
+    level, folder, kernels, *tags = sys.argv[1:]
+    for tag, each, name, code in emit_kernels(int(level), kernels, tags):
+        Path(folder, tag, f"{each}-{name}.o").write_bytes(code)
 
 
 if __name__ == "__main__":
-    main()
+    make_libraries(Path(sys.argv[1]))

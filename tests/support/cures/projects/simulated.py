@@ -15,7 +15,9 @@ from trunnion.jobs.simulate.shares import simulate_share
 from trunnion.simulation.cutting.shares import Share
 from trunnion.simulation.meshes import save_mesh
 
-_TWO_OFFSETS: Final = SLOT.replace("N50", "G54\nN50").replace("M5\n", "G55\nG0 X-20 Y10\nG0 Z-3\nG1 X70\nG0 Z20\nM5\n")
+_TWO_OFFSETS: Final = SLOT.replace("G43 H1", "G54\nG43 H1").replace(
+    "M5\n", "G55\nG0 X-20 Y10\nG0 Z-3\nG1 X70\nG0 Z20\nM5\n"
+)
 _PROGRAMS: Final = {
     "one.ngc": SLOT.replace("N50", "G54\nN50"),
     "two.ngc": _TWO_OFFSETS,
@@ -139,9 +141,9 @@ CURES: Final = (
     Cure(
         "SIM111",
         "of_all_setups",
-        _simulated(zero="0,0,-100"),
+        _simulated(zero="-25,0,12"),
         TWO,
-        (('[[setup]]\nname = "A"', 'zero_mm = [0, 0, -100]\n[[setup]]\nname = "A"'),),
+        (('[[setup]]\nname = "A"', 'zero_mm = [-25, 0, 12]\n[[setup]]\nname = "A"'),),
         cured_by=_simulated(),
     ),
     Cure(
@@ -203,8 +205,8 @@ CURES: Final = (
         "SIM141",
         "place_of_offset_unknown",
         _simulated("part.toml"),
-        ONE.replace("one", "two") + "zero_mm = { G54 = [0, 0, -100] }\n",
-        (("100] }", "100], G55 = [0, 0, -100] }"),),
+        ONE.replace("one", "two") + "zero_mm = { G54 = [-25, 0, 12] }\n",
+        (("12] }", "12], G55 = [-25, 0, 12] }"),),
     ),
     Cure("SIM131", "reaches_mm_beyond", _simulated(), TWO + 'part = "beside.stl"\n', (('"beside.stl"', '"part.stl"'),)),
     Cure("SIM132", "missing_before_this_setup", _simulated(), _HIGH, (("one.ngc", "high.ngc"),)),

@@ -89,5 +89,5 @@ CURES: Final = (
         ({"fixtures": "vice:50,opening=40,jaw=10x5,base=80x9,at=25/0/-10"},),
         {"fixtures": "vice:50,opening=36,jaw=10x5,base=80x9,at=25/0/-10"},
     ),
-    Cure("SIM313", "sunk_in", on(), SLOT, ({"zero": "0,0,-60"},), {"zero": "0,0,-75"}),
+    Cure("SIM313", "sunk_in", on(), SLOT, ({"zero": "-25,0,12"},), {"zero": "-25,0,2"}),
 )

@@ -17,8 +17,8 @@ _TOOL: Final = "5=flat:10,length=60,flutes=30"
 
 def _centre(machine: str = "yl569", **given: str) -> Trial:
     """Return what simulates a contour at the edge of a block, whose compensation is by the radius of the tool."""
-    how = {"tools": _TOOL, "radius_register": "radius", **given}
-    return on(machine, stock="box:40,40,10", zero="0,0,0", tool_length="100", **how)
+    how = {"tools": _TOOL, "radius_register": "radius", "zero": "0,0,0", "tool_length": "100", **given}
+    return on(machine, stock="box:40,40,10", **how)
 
 
 _UNSTATED: Final = on("yl569", tools=_TOOL, stock="box:40,40,10", zero="0,0,0", tool_length="100")
@@ -86,7 +86,13 @@ CURES: Final = (
     Cure("SIM164", "tight", _centre(), _NARROW, (), cured_by=_centre(tools=_TOOL.replace("10", "3", 1))),
     Cure("SIM164", "tight", _centre(), _NARROW, (("G1 X-4\nG1 Y0\n", ""),)),
     Cure("SIM164", "on_circle", _centre(), _CIRCLE, (("G2 X0 Y-10 CR=30", "G1 X0 Y-10"),)),
-    Cure("SIM164", "short_entry", _centre("xyzac_trt"), _LINUXCNC, (("X-16 Y-20", "X0 Y-10"),)),
+    Cure(
+        "SIM164",
+        "short_entry",
+        _centre("xyzac_trt", zero="0,-20,12", tool_length="60"),
+        _LINUXCNC,
+        (("X-16 Y-20", "X2 Y-10"),),
+    ),
     Cure("SIM164", "no_contour", _centre(), _CONTOUR.replace("G1 Y20\n", ""), (("G41 ", ""), ("G40 ", ""))),
     Cure("SIM164", "unsure", _centre(), _CONTOUR.replace("G41", "KONT G41"), (("KONT G41 ", ""), ("G40 ", ""))),
     Cure("SIM164", "corners_unsure", _centre_of(0), _CL, (("$$ contact contour data\n", ""),)),

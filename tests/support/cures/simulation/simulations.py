@@ -98,7 +98,7 @@ CURES: Final = (
     Cure("SIM120", "cells_mm_take", limited(on(), solids, "MOST_BYTES", 1e5), SLOT, ({"cell": "1.4"},), {"cell": "1"}),
     Cure("SIM121", "coarser_than_cells", on(), SLOT, ({"accuracy": "1"},), {"accuracy": "1.2"}),
     Cure("SIM121", "coarser_than_cells", on(), SLOT, ({"cell": "3"},), {"accuracy": "1.2"}),
-    Cure("SIM130", "reaches_mm_beyond", on(), SLOT, ({"zero": "0,0,-100"},), {"zero": "-900,0,-100"}),
+    Cure("SIM130", "reaches_mm_beyond", on(), SLOT, ({"zero": "-25,0,12"},), {"zero": "-900,0,12"}),
     Cure("SIM131", "reaches_mm_beyond_stock", _PART, SLOT, ({"stock": STOCK},), {"stock": "box:50,40,9,0,-20,-10"}),
     Cure(
         "SIM132",
