@@ -107,7 +107,7 @@ def test_a_job_killed_at_any_operation_is_finished_or_rolled_back_by_the_next(af
 @needs_fork
 def test_a_command_that_rolls_back_may_be_killed_as_well(tmp_path: Path) -> None:
     outcomes = set()
-    for number in range(32, 41, 4):
+    for number in range(32, 51, 6):
         for second in count(1):
             folder = old_job(tmp_path / f"{number}_{second}")
             in_a_process_that_dies(lambda folder=folder: write_job(folder, b"new", "MORE.SPF"), number, after=True)  # type: ignore[misc]
