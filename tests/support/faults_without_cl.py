@@ -184,7 +184,7 @@ FAULTS: Final = (
     ("xyzac_trt", "G43 H2", "", "fails modal"),
     ("xyzac_trt", "G43 H2", "G43", "passes"),
     ("xyzac_trt", "G43 H2", "G49", "fails modal"),
-    ("xyzac_trt", "G43 H2", "G43 H0", "fails modal"),
+    ("xyzac_trt", "G43 H2", "G43 H0", "passes"),
     ("xyzac_trt", "G64 P0.02", "G61", "passes"),
     ("hs664rt", "M306 T.2", "M306 T.1", "passes"),
     ("hs664rt", "M306 T.2", "", "passes"),

@@ -116,7 +116,7 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
         edge, tool = run.edge[rows], run.tool[rows]
         # A tool that no program has called may be measured by hand, as long as no other one has a length.
         called = np.array([name not in ("", "0") for name in run.tools])[tool] | (edge > 0).any()
-        # H0 is no length (LinuxCNC), and neither is D0.
+        # 0 is no length: D0, and the number of a tool that is not known.
         without = ((edge <= 0) if run.uses_length_numbers else (edge == 0)) & called & ~run.machine_frame[rows]
         if without.any():
             row = int(rows[np.argmax(without)])
