@@ -42,6 +42,9 @@ _MAX_COORDINATE = 1e6
 #: Couplets of CYCLE whose numbers are lengths.
 CYCLE_LENGTHS = frozenset({"RAPTO", "FEDTO", "RTRCTO", "CLEAR", "STEP", "CSKDIA", "HOLDIA"})
 
+#: The couplet of CYCLE with a feed in units of the file per minute, of which no statement says what they are.
+FILE_FEED = "FEED IN UNITS OF THE FILE"
+
 
 def assemble_operation(
     builder: OperationBuilder, columns: MoveColumns, unit: float, modal_axis: Floats, diagnostics: Diagnostics
@@ -176,7 +179,10 @@ def _event_in_mm(event: Event, unit: float, tool: Tool, diagnostics: Diagnostics
     """Return ``event`` with lengths in mm and surface speeds in rev/min."""
     if isinstance(event, CycleOn):
         values = [
-            (word, tuple(number * unit for number in given) if word in CYCLE_LENGTHS else given)
+            (
+                "MMPM" if word == FILE_FEED else word,
+                tuple(number * unit for number in given) if word in CYCLE_LENGTHS or word == FILE_FEED else given,
+            )
             for word, given in event.values
         ]
         return replace(event, values=tuple(values))
