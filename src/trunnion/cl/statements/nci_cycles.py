@@ -79,13 +79,11 @@ def begin(state: ReaderState, statement: Statement) -> None:
 
 def repeat(state: ReaderState, statement: Statement) -> None:
     """Make another hole by the cycle that is on."""
-    kind, *values = values_of(state, statement, _HOLE_VALUES)
+    unknown, *values = values_of(state, statement, _HOLE_VALUES)
     if not state.cycle_line:
         raise StatementError(Wording("CL850", "hole_without_cycle", record=record(state, statement)))
-    known = state.own(Drilling).kind
-    if kind not in (0.0, known):
-        raise StatementError(Wording("CL165", "unknown_value", record=record(state, statement), value=kind,
-                                     known=("0", f"{known:g}")))  # fmt: skip
+    if unknown:
+        remark_values(state, state.line, statement, frozenset(range(2, _HOLE_VALUES + 1)))
     begin_at, feeds, dwell, feed = values[3:7]
     points = _points(state, statement, values[:3], values[7:10], values[11])
     _make(state, statement, _Hole(*points, begin_at, feeds, dwell, feed, values[10]))
@@ -93,6 +91,7 @@ def repeat(state: ReaderState, statement: Statement) -> None:
 
 def end(state: ReaderState, statement: Statement) -> None:
     """End the cycle; nothing stands in the line below."""
+    values_of(state, statement, 0)
     cycles.cycle(state, statement._replace(major="CYCLE", values=("OFF",)))
 
 
