@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from tests.support import nci
 from tests.support.cl_dialects import Step, Z, write_in
 from tests.support.cl_paths import changes, content, paths
 from tests.support.examples import examples
+from trunnion.arrays import Floats
 from trunnion.cl import ClReading, can_be_unknown, read_cl, unknown_statements
 from trunnion.cl.dialects import recognize_dialect
 from trunnion.cl.read import read_source
@@ -21,6 +23,8 @@ from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import (
     Coolant,
     CutterComp,
+    CycleOff,
+    CycleOn,
     Dwell,
     Insert,
     Kind,
@@ -30,6 +34,7 @@ from trunnion.model.toolpath import (
     SpindleOn,
     Toolpath,
 )
+from trunnion.planning.holes.cycles import Cycle
 
 CUT = [
     *nci.tool(3, 10, 1, 900),
@@ -118,6 +123,88 @@ def test_arcs_turn_by_their_code_and_a_full_circle_is_marked(reads: Reads) -> No
     assert arcs.full_turns.tolist() == [0, 0, 0]
 
 
+@pytest.mark.parametrize("values", ["41 0", "0 41"])
+def test_compensation_word_and_plane_of_an_arc_stand_in_either_order(reads: Reads, values: str) -> None:
+    operation = reads(*CUT, "3", f"{values} 0 20 0 0 -2 -1 0 0", cutcom="contour").operations[0]
+    assert [event.side for event in operation.events if isinstance(event, CutterComp)] == ["LEFT"]
+    assert operation.arcs.normal.tolist() == [[0, 0, 1]]
+
+
+def test_arcs_in_other_planes_and_helices(reads: Reads) -> None:
+    (operation,) = reads(
+        *CUT, "3", "1 0 10 -2 5 -2 20 -1 0 0", "2", "0 2 15 3 20 3 10 -1 0 0", "3", "0 0 15 10 15 12 7 -1 0 1"
+    ).operations
+    assert operation.moves.tip[3:].tolist() == [[20, 10, -2], [15, 10, 3], [15, 10, 7]]
+    assert operation.arcs.centre.tolist() == [[20, 5, -2], [20, 10, 3], [15, 12, 3]]
+    assert operation.arcs.normal.tolist() == [[1, 0, 0], [0, -1, 0], [0, 0, 1]]
+    assert operation.arcs.radius.tolist() == [5, 5, 2]
+
+
+def test_holes_of_a_cycle_and_what_ends_it(reads: Reads) -> None:
+    """The second hole is exchanged top for bottom and as deep; the third is deeper, with a dwell, in a tilted axis."""
+    tilted = nci.Hole((30, 0, 0), (0.6, 0, 0.8), 9, 3, 50, 1, 0.5)
+    first = "1 10 20 -7 0 120 2 0 0.1 0 51 4 1 0 10 20 51 0 0"
+    second, third = "1 30 20 51 51 4 0 120 30 20 -7 0 1", nci.cycle(1, [tilted, tilted], 150)[2:4]
+    toolpath = reads(*CUT, "81", first, "100", second, *third, *nci.five_axis((0, 0, 99), (0.6, 0, 0.8), -2, 42))
+    (operation,) = toolpath.operations
+    moves = operation.moves
+    np.testing.assert_allclose(moves.tip[3:], [[10, 20, 1], [30, 20, 1], [30, 0, 0], [0, 0, 99]], atol=1e-8)
+    np.testing.assert_allclose(moves.axis[3:], np.array([Z, Z, tilted.axis, tilted.axis]), atol=1e-8)
+    on = [event for event in operation.events if isinstance(event, CycleOn)]
+    heights = (("STEP", (2,)), ("RAPTO", (3,)), ("FEDTO", (-8,)), ("RTRCTO", (50,)), ("MMPM", (120,)))
+    deeper = (("STEP", (2,)), ("RAPTO", (3,)), ("FEDTO", (-9,)), ("RTRCTO", (50,)), ("MMPM", (150,)), ("DWELL", (0.5,)))
+    assert [(event.row, event.mode, event.values) for event in on] == [
+        (3, ("DRILL", "DEEP"), heights), (5, ("DRILL", "DEEP"), deeper)
+    ]  # fmt: skip
+    assert [event.row for event in operation.events if isinstance(event, CycleOff)] == [6]
+    assert any("not followed, by their places: 9: 0.1" in problem.what for problem in toolpath.remarks)
+
+
+def test_heights_and_feeds_of_holes_are_in_the_unit_that_is_given(reads: Reads) -> None:
+    hole = nci.Hole((0, 0, 0), Z, 1, 0.1, 1)
+    (on,) = (
+        e for e in reads(*CUT, *nci.cycle(0, [hole], 5), units="inch").operations[0].events if isinstance(e, CycleOn)
+    )
+    assert dict(on.values)["FEDTO"] == pytest.approx((-25.4,))
+    assert dict(on.values)["MMPM"] == (127,)
+
+
+FRONT = ["1014", "1. 0. 0. 0. 0. 1. 0. -1. 0."]
+
+
+def test_points_of_a_turned_tool_plane_are_in_its_coordinates(reads: Reads) -> None:
+    """The front view: its X is X, its Y is Z, and its Z, along which the tool stands, is -Y."""
+    null = ["1000", "0 100 2 3 0 0 0 900 0. 0 0. 0. 0."]
+    hole = nci.Hole((1, 2, 3), Z, 5, 2, 9)
+    path = [
+        *nci.line(0, (1, 2, 30), -2), *nci.cycle(0, [hole], 100), *nci.line(0, (0, 0, 9), -2),
+        *nci.line(1, (0, 0, 3), 200), "3", "0 0 20 0 10 0 3 -1 0 0", *nci.five_axis((5, 6, 7), (0, 0.6, 0.8), -1),
+    ]  # fmt: skip
+    first, second, third = reads(
+        *CUT, *nci.line(0, (0, 0, 50), -2), *FRONT, *null, *path, "1014", nci.TOP, *null, *nci.line(0, (9, 8, 7), -2)
+    ).operations
+    assert first.moves.tip.tolist()[-1] == [0, 0, 50]
+    moves = second.moves
+    expected = [[1, -30, 2], [1, -3, 2], [0, -9, 0], [0, -3, 0], [20, -3, 0], [5, -7, 6]]
+    np.testing.assert_allclose(moves.tip, np.array(expected, float), atol=1e-12)
+    np.testing.assert_allclose(moves.axis, np.array([*[[0, -1, 0]] * 5, [0, -0.8, 0.6]], float), atol=1e-12)
+    assert second.arcs.centre.tolist() == [[10, -3, 0]]
+    assert second.arcs.normal.tolist() == [[0, -1, 0]]
+    assert (third.moves.tip.tolist(), third.moves.axis.tolist()) == ([[9, 8, 7]], [[0, 0, 1]])
+
+
+def test_operations_of_two_planes_that_are_one_cut_keep_their_coordinates(reads: Reads) -> None:
+    null = ["1000", "0 100 2 3 0 0 0 900 0. 0 0. 0. 0."]
+    (operation,) = reads(*CUT, *FRONT, *null, *nci.line(1, (20, -2, 5), 300), *nci.line(1, (25, -2, 5), -1)).operations
+    assert operation.moves.tip.tolist()[-3:] == [[20, 0, -2], [20, -5, -2], [25, -5, -2]]
+    assert operation.moves.axis.tolist()[-3:] == [[0, 0, 1], [0, -1, 0], [0, -1, 0]]
+
+
+def test_lengths_of_the_tool(reads: Reads) -> None:
+    tool = reads("20007", "0. 12. 60. 20. 10. 50. 40. 0 0. 0. 0", *CUT).operations[0].tool
+    assert (tool.length, tool.flute_length, tool.diameter) == (60, 12, 10)
+
+
 def test_texts_literals_and_dwells(reads: Reads) -> None:
     texts = ["1005", "A NOTE", "1006", "M101 (X)", "4", "0.5 900"]
     events = reads(*CUT, *texts, *nci.line(1, (30, 0, -2), -1)).operations[0].events
@@ -141,14 +228,29 @@ def test_compensation_in_the_control_wants_its_points_stated(
 @pytest.mark.parametrize(
     ("lines", "code", "what"),
     [
-        (["81", "1 2 3"], "CL250", "record 81 (line 18) is a drilling cycle"),
-        (["100", "1 2 3"], "CL250", "record 100 (line 18) is a drilling cycle"),
+        (["81", "1 2 3"], "CL165", "record 81 (line 18) has 3 values, and 19 belong to it"),
+        (["100", "0 2 3 -1 9 5 0 100 2 3 9 0 0"], "CL850", "record 100 (line 18) is a hole, and no cycle is on"),
+        (["81", "5 0 0 -9 0 100 0 0 0 0 9 2 0 0 0 0 9 0 0"], "CL250", "cycle of type 5"),
+        (["81", "4 0 0 -9 1 100 0 0 0 0 9 2 0 0 0 0 9 0 0"], "CL250", "cycle of type 4"),
+        (["81", "1 0 0 -9 0 100 0 0 0 0 9 2 0 0 0 0 9 0 0"], "CL830", "has the pecks 0 and 0"),
+        (["81", "2 0 0 -9 0 100 3 1 0 0 9 2 0 0 0 0 9 0 0"], "CL830", "has the pecks 3 and 1"),
+        (["81", "0 0 0 -9 0 100 0 0 0 0 9 -1 0 0 0 0 9 0 0"], "CL830", "has the heights 9, -1, 0, -9"),
+        (["81", "0 0 0 -9 0 100 0 0 0 0 9 10 0 0 0 0 9 0 0"], "CL830", "has the heights 9, 10, 0, -9"),
+        (["81", "0 0 0 9 0 100 0 0 0 0 9 2 0 0 0 0 9 0 0"], "CL830", "has the heights 9, 2, 0, 9"),
+        (["81", "0 0 0 -9 -1 100 0 0 0 0 9 2 0 0 0 0 9 0 0"], "CL830", "has the dwell -1, below 0"),
+        (["81", "0 0 0 -9 0 -2 0 0 0 0 9 2 0 0 0 0 9 0 0"], "CL710", "has the feed -2"),
+        (["81", "0 0 0 -9 0 100 0 0 0 0 9 2 0 0 0 0 9 0 2"], "CL165", "has 2, where 0, 1 are known"),
+        (["81", "0 0 0 -9 0 100 0 0 0 0 9 2 0 0 0 0 9 3 0"], "CL165", "has 3, where 0, 100, 1000 are known"),
+        (["20007", "0 9 8", *nci.tool(4, 8, 0)], "CL770", "has the cutting length 9 and the length 8"),
         (["200", "1 2 3"], "CL260", "record 200 (line 18) belongs to turning"),
         (["1018", "1"], "CL260", "record 1018 (line 18) belongs to a subprogram"),
-        (["1014", "1 0 0 0 0 1 0 -1 0"], "CL430", "turns the tool plane"),
+        (["1014", "1 0 0 0 0 1 0 -1 0.1"], "CL430", "has no three unit vectors"),
+        (["1014", "1 0 0 0 1 0 0 0 -1"], "CL430", "has no three unit vectors"),
+        (["1014", "1 0 0 0 0 1 0 -1 0", "1000", "0 100 2 3 0 0 0 900 0. 0 0. 0. 0.", "2", "0 0 0 20 0 0 -2 100 0 0"],
+         "CL250", "without a point to begin in"),
         (["1027", f"{nci.TOP} 5 0 0"], "CL430", "work coordinate system"),
-        (["2", "0 1 0 20 0 0 -2 -1 0 0"], "CL250", "is an arc in plane 1"),
-        (["2", "0 0 0 20 0 0 -3 -1 0 0"], "CL250", "from the height -2 to -3"),
+        (["2", "0 3 0 20 0 0 -2 -1 0 0"], "CL250", "has 0 and 3, where a compensation word"),
+        (["2", "1 2 0 20 0 0 -2 -1 0 0"], "CL250", "has 1 and 2, where a compensation word"),
         (["2", "0 0 20 0 0 0 -2 -1 0 0"], "CL250", "full circle"),
         (["11", "0 0 0 0 0 1 -1 22 0 0 0.6 0.8"], "CL540", "the second point is 0.600000 off"),
         (["11", "0 0 0 0 0 1.1 -1 22 0 0 0 1"], "CL540", "the second point"),
@@ -231,30 +333,58 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, cut: str, what: str) 
         read_cl(file)
 
 
+#: Tool planes: the top view, the front view, and one that is turned about two axes.
+PLANES = [
+    np.eye(3), np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]]),
+    np.array([[0.6, 0, -0.8], [0, 1, 0], [0.8, 0, 0.6]]) @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1.0]]),
+]  # fmt: skip
+
+
 @st.composite
-def said_paths(draw: st.DrawFn) -> list[Step]:
-    """Paths of which records can say each step."""
-    steps = [step for step in draw(paths()) if nci.can_say([step])]
+def said_paths(draw: st.DrawFn) -> tuple[list[Step], Floats]:
+    """Paths of which records can say each step, in a tool plane; in half of them the tool stands along it."""
+    plane = draw(st.sampled_from(PLANES))
+    steps = draw(paths())
+    if draw(st.booleans()):  # the path itself is turned, so that its upright tool axes are those of the plane
+        steps = [nci.in_plane(step, plane.T) for step in steps]
     kept: list[Step] = []
     for step in steps:
-        if step.word == "ARC" and (kept[-1].word != "GOTO" or kept[-1].point != step.start or kept[-1].axis != Z):
+        inside = nci.in_plane(step, plane)
+        if not nci.can_say([inside]):
+            continue
+        before = nci.in_plane(kept[-1], plane) if kept else inside
+        if step.word == "ARC" and (before.word != "GOTO" or before.point != inside.start or before.axis != Z):
             continue  # its line has been left out
         kept.append(step)
-    return kept
+    return kept, plane
+
+
+def outside_of_holes(found: dict[str, Any]) -> Floats:
+    """Feeds of the rows that are no holes: a cycle has a feed of its own, and that before it counts for nothing."""
+    feed = np.asarray(found["feed"], np.float64).copy()
+    begin = len(feed)
+    for row, what, *_ in found["events"]:
+        if isinstance(what, Cycle):
+            begin = min(begin, row)
+        elif what == "CycleOff":
+            feed[begin:row] = 0.0
+            begin = len(feed)
+    return feed
 
 
 @settings(max_examples=examples(25), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(steps=said_paths(), inch=st.booleans())
-def test_a_path_is_the_same_as_apt(tmp_path: Path, steps: list[Step], inch: bool) -> None:
-    found = []
-    for name, text in (("apt", write_in("apt", steps, inch)), ("nci", nci.write(steps))):
+@given(path=said_paths(), inch=st.booleans())
+def test_a_path_is_the_same_as_apt(tmp_path: Path, path: tuple[list[Step], Floats], inch: bool) -> None:
+    (steps, plane), found = path, []
+    for name, text in (("apt", write_in("apt", steps, inch)), ("nci", nci.write(steps, plane))):
         file = tmp_path / name
         file.write_text(text or "", encoding="utf-8")
         toolpath = read_cl(file, ClReading(units="inch" if inch else "mm"))
         assert toolpath.dialect == name
         found.append(content(toolpath))
     expected, other = found
-    for name in ("tip", "axis", "feed", "arcs"):
+    np.testing.assert_allclose(outside_of_holes(other), outside_of_holes(expected), atol=3e-5, rtol=0)
+    for name in ("tip", "axis", "arcs"):
         np.testing.assert_allclose(other[name], expected[name], atol=3e-5, rtol=0, err_msg=name)
     for name in ("kind", "arc rows", "turns"):
         np.testing.assert_array_equal(other[name], expected[name], err_msg=name)
@@ -264,8 +394,8 @@ def test_a_path_is_the_same_as_apt(tmp_path: Path, steps: list[Step], inch: bool
 
 pairs = st.lists(
     st.tuples(
-        st.sampled_from(["0", "1", "2", "3", "4", "11", "81", "1000", "1002", "1003", "1005", "1013", "1014", "1027",
-                         "1050", "10010", "20001", "x", ""]),
+        st.sampled_from(["0", "1", "2", "3", "4", "11", "80", "81", "100", "20007", "1000", "1002", "1003", "1005",
+                         "1013", "1014", "1027", "1050", "10010", "20001", "x", ""]),
         st.lists(st.sampled_from(["0", "1", "-1", "-2", "40", "41", "22", "0.5", "1e3", "1e400", "nan", "-", "A", "é"]),
                  max_size=14).map(" ".join),
     ),

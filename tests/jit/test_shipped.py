@@ -45,7 +45,8 @@ print(*sorted({"numba", "llvmlite"} & sys.modules.keys()))
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the package with machine code for this system; tests that change it change it back."""
     folder = tmp_path_factory.mktemp("made")
-    make_libraries(folder / "libraries", [HERE], KERNELS)
+    command = [sys.executable, "-m", "trunnion.jit.wheel_libraries", str(folder / "libraries"), KERNELS, HERE]
+    subprocess.run(command, check=True)
     shutil.copytree(ROOT / "src" / "trunnion", folder / "trunnion", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(folder / "libraries" / HERE, folder / "trunnion" / "jit" / "shipped")
     return folder

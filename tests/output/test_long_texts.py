@@ -36,3 +36,17 @@ def test_only_comments_are_divided_and_only_long_ones() -> None:
     assert divided_comment("; SHORT", 7, ("; ",)) == ["; SHORT"]
     assert divided_comment("* - ABCDEF", 7, ("; ", "* - ")) == ["* - ABC", "; DEF"]
     assert split_text("äö", 2) == ["ä", "ö"]
+
+
+@pytest.mark.parametrize("machine", ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt"])
+@pytest.mark.parametrize(("statement", "told"), [("STOP/", True), ("PPRINT/", True), ("PPRINT/turn", False)])
+def test_a_text_that_fills_many_lines_is_written_whole_and_told(
+    machine: str, statement: str, told: bool, tmp_path: Path
+) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text(HEAD + statement + ("turn it " * 2000 if told else "") + "\n" + FOOT, encoding="utf-8")
+    result = trunnion.post(cl, machine=machine)
+    assert result.passed
+    assert [problem.line for problem in result.problems if problem.code == "CTL815"] == (
+        [HEAD.count("\n") + 1] if told else []
+    )

@@ -35,6 +35,19 @@ def test_a_circle_that_ends_beside_its_start_is_remarked_upon(
     assert ("NC323" in _said(machine, _CIRCLES[machine].format(end, f"{height}."), tmp_path)) is found
 
 
+@pytest.mark.parametrize(
+    ("machine", "block"),
+    [("yl569", "G3 X1 Y{} Z-1 I-1 J0 TURN=1"), ("xyzac_trt", "G3 X1 Y{} Z-1 I-1 J0 P2")],
+)
+@pytest.mark.parametrize(("end", "found"), [("-0.001", True), ("0.001", True), ("0", False)])
+def test_a_helix_of_several_turns_that_ends_beside_its_start_is_remarked_upon(
+    machine: str, block: str, end: str, found: bool, tmp_path: Path
+) -> None:
+    text = f"G21 G17 G90 G94\nG0 X0 Y0 Z0\nG1 X1 F9\n{block.format(end)}\nM2\n"
+    text = text.replace("G21", "G71") if machine == "yl569" else text
+    assert ("NC323" in _said(machine, text, tmp_path)) is found
+
+
 _SINUMERIK = "%_N_PART_MPF\n;$PATH=/_N_WKS_DIR\nG17 G90 G71\nG0 X0 Y0 Z0\nG1 X1 F9\n"
 
 

@@ -1,7 +1,7 @@
 """Four-axis jobs, posted for three controls and simulated to the form of the part."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,8 @@ from trunnion.simulation.meshes import box_mesh
 
 ON_AXIS = "zero=-450,-203,-400"
 MACHINES = (("desk_mill_a", "zero=-200,-90,-120"), ("haas_vf2_a", ON_AXIS), ("four_axis/klartext.toml", ON_AXIS))
+#: Those whose controls have plane words besides.
+WITH_PLANES = (*MACHINES, ("four_axis/fanuc.toml", ON_AXIS), ("four_axis/sinumerik.toml", ON_AXIS))
 
 HEAD = (
     "$$-> TRUNNION / 1\nUNITS/MM\n$$-> STOCK / BOX,40,44,44,0,-22,-22\n{begin}"
@@ -48,6 +50,22 @@ def flats() -> str:
     return "\n".join(lines) + "\n" + END
 
 
+def planes() -> str:
+    """The same four flats, each an operation in a plane of its own."""
+    lines = [HEAD.partition("{begin}")[0].rstrip()]
+    for degrees in (0, 90, 180, 270):
+        c, s = round(math.cos(math.radians(degrees))), round(math.sin(math.radians(degrees)))
+        head = HEAD.partition("{begin}")[2].replace(
+            "MSYS/0,0,0,1,0,0,0,1,0", f"MSYS/0,{-s * HALF},{c * HALF},1,0,0,0,{c},{s}"
+        )
+        lines += [f"TOOL PATH/FLAT {degrees},TOOL,FLAT 10", head.rstrip()]
+        lines += ["RAPID", "GOTO/-8,-18,42", "RAPID", "GOTO/-8,-18,0", "FEDRAT/MMPM,400"]
+        for k, y in enumerate((-18.0, -9.0, 0.0, 9.0, 18.0)):
+            lines += [f"GOTO/{x},{y},0" for x in ((-8.0, 48.0) if k % 2 == 0 else (48.0, -8.0))]
+        lines += ["RAPID", "GOTO/48,18,42", "SPINDL/OFF", "END-OF-PATH"]
+    return "\n".join(lines) + "\nFINI\n"
+
+
 def rounds(radius: float) -> Sequence[str]:
     """A round bar, turned under the tool while it goes along: continuous motion of four axes."""
     lines = [HEAD.format(begin="TOOL PATH/ROUND,TOOL,FLAT 10\n").rstrip()]
@@ -58,16 +76,18 @@ def rounds(radius: float) -> Sequence[str]:
     return [*lines, "RAPID", goto(48.0, 0.0, 60.0, 360.0 * turns)]
 
 
-@pytest.mark.parametrize(("machine", "zero"), MACHINES, ids=[name for name, _ in MACHINES])
-def test_flats_by_indexing_come_out_as_the_part(machine: str, zero: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("path", [flats, planes])
+@pytest.mark.parametrize(("machine", "zero"), WITH_PLANES, ids=[name for name, _ in WITH_PLANES])
+def test_flats_by_indexing_come_out_as_the_part(
+    machine: str, zero: str, path: Callable[[], str], tmp_path: Path
+) -> None:
     file = tmp_path / "flats.apt"
-    file.write_text(flats(), encoding="utf-8")
+    file.write_text(path(), encoding="utf-8")
     key, value = zero.split("=")
+    settings = {key: value, "tool_length": "60", "frame": "absolute"}
     named = GOLDEN / machine if "/" in machine else machine
     part = box_mesh(np.array((0.0, -HALF, -HALF)), np.array((40.0, HALF, HALF)), "part")
-    result = trunnion.post(
-        file, machine=named, settings={key: value, "tool_length": "60"}, simulation={"part": part, "cell": 0.8}
-    )
+    result = trunnion.post(file, machine=named, settings=settings, simulation={"part": part, "cell": 0.8})
     assert result.passed
     assert result.run is not None
     found = result.simulation

@@ -17,7 +17,9 @@ class Case:
 
 
 _BLADE = "yl569/3_blade_finish.cls"
-_ROLLER = "four_axis/roller.cls"
+_ROLLER, _FLATS = "four_axis/roller.cls", "four_axis/flats.cls"
+_ON_A = ("zero=-450,-203,-400", "tool_length=60")
+_ON_DESK = ("zero=-200,-90,-120", "tool_length=60")
 _CAP = "mikron_600u/cap.cls"
 _PLACE = ("zero=0,0,100", "tool_length=100")
 _NO_TOLERANCE = " has no INTOL and OUTTOL"
@@ -31,9 +33,14 @@ CASES = {
     "fanuc/blade_without_options.expected.nc": Case(
         _BLADE, "fanuc/without_options.toml", ("zero=0,0,120", "tool_length=120", "numbers=off")
     ),
-    "four_axis/roller.expected.h": Case(_ROLLER, "four_axis/klartext.toml", ("zero=-450,-203,-400", "tool_length=60")),
-    "four_axis/roller.expected.nc": Case(_ROLLER, "haas_vf2_a", ("zero=-450,-203,-400", "tool_length=60")),
-    "four_axis/roller.expected.ngc": Case(_ROLLER, "desk_mill_a", ("zero=-200,-90,-120", "tool_length=60")),
+    "four_axis/flats.expected.h": Case(_FLATS, "four_axis/klartext.toml", _ON_A),
+    "four_axis/flats.expected.mpf": Case(_FLATS, "four_axis/sinumerik.toml", _ON_A),
+    "four_axis/flats.expected.nc": Case(_FLATS, "haas_vf2_a", _ON_A),
+    "four_axis/flats.expected.ngc": Case(_FLATS, "desk_mill_a", _ON_DESK, warned=" tilted "),
+    "four_axis/flats_g68.expected.nc": Case(_FLATS, "four_axis/fanuc.toml", _ON_A),
+    "four_axis/roller.expected.h": Case(_ROLLER, "four_axis/klartext.toml", _ON_A),
+    "four_axis/roller.expected.nc": Case(_ROLLER, "haas_vf2_a", _ON_A),
+    "four_axis/roller.expected.ngc": Case(_ROLLER, "desk_mill_a", _ON_DESK),
     "haas/blade.expected.nc": Case(_BLADE, "haas_umc750", ("smoothing=G187 P3",)),
     "haas/flange.expected.nc": Case(
         "fanuc/flange.cls",

@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Sequence
-from typing import Final
+from dataclasses import replace
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tests.support.cl_dialects import Step, Z
+from tests.support.cl_dialects import Step, Vector, Z
 from tests.support.locations import SHARED
 from trunnion.arrays import Floats
 
@@ -75,23 +76,91 @@ def line(code: int, point: Sequence[float], feed: float) -> list[str]:
     return [str(code), "0 " + " ".join(f"{value:.6f}" for value in point) + f" {feed:g} 0"]
 
 
+class Hole(NamedTuple):
+    """A hole: its point in the surface, its tool axis, and along it depth, height of the feed and of the upper point.
+
+    ``surface`` is the coordinate that the surface has along the axis: only differences of heights count.
+    """
+
+    point: Sequence[float]
+    axis: Sequence[float]
+    depth: float
+    feeds: float
+    begin: float
+    surface: float = 0.0
+    dwell: float = 0.0
+
+    def at(self, height: float) -> str:
+        """A point of it, printed."""
+        return " ".join(f"{p + height * a:.9f}" for p, a in zip(self.point, self.axis, strict=True))
+
+
+def cycle(kind: int, holes: Sequence[Hole], feed: float, peck: float = 0.0) -> list[str]:
+    """The records 81, 100 for each further hole, and 80."""
+    lines = []
+    for number, hole in enumerate(holes):
+        bottom, upper = hole.at(-hole.depth), hole.at(hole.begin)
+        heights = f"{hole.surface + hole.begin:.6f} {hole.surface + hole.feeds:.6f}"
+        if number == 0:
+            before = f"{kind} {bottom} {hole.dwell:g} {feed:g} {peck:g} 0. 0. 0."
+            lines += ["81", f"{before} {heights} {hole.surface:.6f} 0. {upper} 0 0"]
+        else:
+            lines += ["100", f"0 {bottom} {heights} {hole.dwell:g} {feed:g} {upper} 0 0"]
+    return [*lines, "80", ""]
+
+
+#: Types of cycles by their words in APT.
+KINDS: Final = {"DRILL": 0, "FACE": 0, "DEEP": 1, "BRKCHP": 2, "TAP": 3, "REAM": 4}
+
+#: Planes of arcs by the coordinate across: the number of the plane, and the coordinates within it.
+PLANES: Final = {2: (0, (0, 1)), 0: (1, (1, 2)), 1: (2, (0, 2))}
+
+
+def arc(step: Step, feed: float) -> list[str]:
+    """A record 2 or 3 about an axis of coordinates."""
+    across = next(k for k in range(3) if step.normal[k])
+    plane, (one, other) = PLANES[across]
+    numbers = (step.point[one], step.point[other], step.centre[one], step.centre[other], step.point[across])
+    shown = " ".join(f"{number:.6f}" for number in numbers)
+    return [str(3 if step.normal[across] > 0 else 2), f"{plane} 0 {shown} {feed:g} 0 0"]
+
+
 def file_of(*lines: str) -> str:
     """The text of a file with its header and its end."""
     return "\n".join([*header(), *lines, "1003", "0. 0. 0."]) + "\n"
 
 
 def can_say(steps: Sequence[Step]) -> bool:
-    """Whether records have words for all steps: no cycles, no switches between moves, arcs upright about Z."""
+    """Whether records have words for all steps: no switches between moves, arcs about coordinates, tool upright."""
     for step in steps:
-        if step.word in ("CYCLE", "COOLANT", "CUTCOM"):
+        if step.word in ("COOLANT", "CUTCOM"):
             return False
-        if step.word == "ARC" and (step.axis != Z or abs(step.normal[2]) != 1.0):
+        if step.word == "ARC" and (step.axis != Z or sorted(map(abs, step.normal)) != [0.0, 0.0, 1.0]):
             return False
     return True
 
 
-def write(steps: Sequence[Step]) -> str:
-    """A path as an NCI: rapids by -2, a feed where it changes, and -1 where it does not."""
+def in_plane(step: Step, plane: Floats) -> Step:
+    """A step in the coordinates of a tool plane: (3, 3), its rows are the axes of the plane."""
+    names = ("point", "axis", "centre", "normal", "start")
+    moved: dict[str, Any] = {name: _rounded(plane @ np.array(getattr(step, name))) for name in names}
+    return replace(step, **moved, holes=tuple(_rounded(plane @ np.array(hole)) for hole in step.holes))
+
+
+def _rounded(vector: Floats) -> Vector:
+    """Without the noise of a turn, which would hide that a tool is upright."""
+    x, y, z = (round(value, 12) + 0.0 for value in vector.tolist())
+    return (x, y, z)
+
+
+def write(steps: Sequence[Step], plane: Floats | None = None) -> str:
+    """A path as an NCI: rapids by -2, a feed where it changes, and -1 where it does not; all in a tool plane."""
+    turned = TOP if plane is None else " ".join(f"{value:.9f}" for value in plane.ravel())
+    text = _write([step if plane is None else in_plane(step, plane) for step in steps])
+    return text.replace(f"1014\n{TOP}\n", f"1014\n{turned}\n")
+
+
+def _write(steps: Sequence[Step]) -> str:
     lines: list[str] = []
     feed, given, cuts = 0.0, 0.0, False
     pending: Step | None = None
@@ -119,14 +188,17 @@ def write(steps: Sequence[Step]) -> str:
                 word = -1.0 if cuts and feed == given else feed
                 given, cuts = feed, True
                 if step.word == "ARC":
-                    x, y, z = step.point
-                    numbers = f"{x:.6f} {y:.6f} {step.centre[0]:.6f} {step.centre[1]:.6f} {z:.6f}"
-                    lines += [str(3 if step.normal[2] > 0 else 2), f"0 0 {numbers} {word:g} 0 0"]
+                    lines += arc(step, word)
                 elif upright:
                     lines += line(1, step.point, word)
                 else:
                     lines += five_axis(step.point, step.axis, word)
                 axis = step.axis
+            case "CYCLE":
+                depth, clear, drilled, peck = step.numbers
+                holes = [Hole(point, step.axis, depth, clear, clear, 7.5) for point in step.holes]
+                lines += cycle(KINDS[step.text], holes, drilled, peck)
+                given, cuts, axis = 0.0, False, step.axis
     return file_of(*lines)
 
 

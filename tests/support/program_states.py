@@ -313,6 +313,9 @@ SAMPLES: Final = {
     "limits of the axes off": Sample("Fanuc", rooms={"head": "G23"}, says="G23 is not carried over"),
     "override of the feed": Sample("LinuxCNC", rooms={"above": "M49"}, says="M49 is not carried over"),
     "output of the machine": Sample("LinuxCNC", rooms={"above": "M67 E0 Q1"}, says="M67 is not carried over"),
+    "function that prints, waits, or speaks to the PLC": Sample(
+        "Klartext", rooms={"above": "FN 20: WAIT FOR I16==1"}, says="FN 20 is not carried over",
+    ),
     "unit": Sample("LinuxCNC", rooms={"cut": "G20\nX0.5\nG21"}, cl=r"GOTO/12\.7"),
     "position of the machine": Sample(
         "Sinumerik", rooms={"head": "SUPA G0 Z300 D0\nD1"}, says="Z goes to the machine position 300",

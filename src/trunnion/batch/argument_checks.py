@@ -13,7 +13,7 @@ from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import Machine
 from trunnion.messages import Wording, phrase
 from trunnion.options.words import MOST_TILES
-from trunnion.simulation.stock.solids import check_cell, is_mesh, stock_shape
+from trunnion.simulation.stock.solids import CL_STOCK, check_cell, is_mesh, stock_shape
 from trunnion.simulation.tools.text import parse_tool
 
 #: Diameters for tools that state none, which CL files may state, mm: a tool is wrong if it is with each.
@@ -66,7 +66,9 @@ def check_simulation(said: Mapping[str, Any]) -> None:
         problems += _tool_faults(str(text))
     stock = str(said["stock"])
     try:
-        if not is_mesh(stock):
+        if stock == CL_STOCK:
+            pass  # each file has its own
+        elif not is_mesh(stock):
             shape = stock_shape(stock)
             if (cell := said.get("cell")) is not None:
                 check_cell(shape, cell)

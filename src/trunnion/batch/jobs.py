@@ -31,6 +31,7 @@ from trunnion.messages import Wording
 from trunnion.options.groups import BODIES
 from trunnion.options.kinds import FileIn
 from trunnion.records import dataclass
+from trunnion.simulation.stock.solids import CL_STOCK
 
 #: Files that a folder may have, all and those of a batch: a record of each is held while it runs.
 MOST_FILES: Final = 1_000_000
@@ -148,7 +149,7 @@ def folder_batch(
                 wording = Wording("ARG140", "no_name_beside", name=name[:100], fault=fault)
                 raise InputError(argument_problem(argument, wording))
     report, tiles = str(given.pop("report", "")), check_tiles(action, arguments.get("tiles", 1))
-    said, shared, extensions = judged(action, given, folder)
+    said, shared, extensions = judged(action, given, folder, has_cl="cl" in beside)
     sought = (extensions.read,) if extensions.read else CL_EXTENSIONS
     files = [
         name for name in folder_files(folder, results)
@@ -188,12 +189,13 @@ class Extensions(NamedTuple):
 
 
 def judged(
-    action: Action, arguments: Mapping[str, Any], folder: Path
+    action: Action, arguments: Mapping[str, Any], folder: Path, *, has_cl: bool = False
 ) -> tuple[dict[str, Any], dict[str, Path], Extensions]:
     """Judge the arguments of an action before any work.
 
     arguments  of the function of the library; files by their paths
     folder     beside which the files of the jobs lie
+    has_cl     CL files go with each of these, and may state the stock
 
     dict        the arguments with logical names of files, as JSON has them
     dict        the paths of these, and of what they lead to, by logical names
@@ -210,6 +212,8 @@ def judged(
     if action is not Action.CONVERT and "machine" not in machines:
         raise InputError(argument_problem("machine", Wording("ARG130", "missing_machine_of_programs")))
     if action is Action.SIMULATE:
+        if has_cl:
+            said.setdefault("stock", CL_STOCK)
         if not said.get("stock"):
             raise InputError(argument_problem("stock", Wording("ARG130", "missing_stock")))
         check_simulation(said)

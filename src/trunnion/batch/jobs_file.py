@@ -218,7 +218,7 @@ def _judged(entry: _Entry, values: dict[str, Any], folder: Path) -> list[BatchJo
     arguments = {_KEYS[key].argument: value for key, value in values.items() if value}
     keys = {_KEYS[key].argument: key for key in values}
     try:
-        said, shared, extensions = judged(action, arguments, folder)
+        said, shared, extensions = judged(action, arguments, folder, has_cl="cl" in beside)
     except InputError as error:
         for each in error.problems:
             if each.argument:

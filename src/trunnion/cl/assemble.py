@@ -16,6 +16,7 @@ from trunnion.cl.builder import FeedChange, MoveColumns, OperationBuilder, Surfa
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.tool_axes import fill_tool_axes
+from trunnion.cl.tool_planes import turned
 from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.model.arcs import arc_lengths
@@ -41,6 +42,9 @@ _MAX_COORDINATE = 1e6
 
 #: Couplets of CYCLE whose numbers are lengths.
 CYCLE_LENGTHS = frozenset({"RAPTO", "FEDTO", "RTRCTO", "CLEAR", "STEP", "CSKDIA", "HOLDIA"})
+
+#: The couplet of CYCLE with a feed in units of the file per minute, of which no statement says what they are.
+FILE_FEED = "FEED IN UNITS OF THE FILE"
 
 
 def assemble_operation(
@@ -75,7 +79,7 @@ def assemble_operation(
     tool = _tool_in_mm(builder.tool, unit)
     _report_tool(builder, tool, diagnostics)
     events = [*(_event_in_mm(event, unit, tool, diagnostics) for event in builder.events), *starts]
-    return Operation(
+    operation = Operation(
         name=builder.name,
         tool=tool,
         frame=_frame_in_mm(builder.frame, unit),
@@ -89,6 +93,7 @@ def assemble_operation(
         splines=Splines.of(builder.curves),
         joined=tuple(builder.joined),
     )
+    return turned(operation, builder.planes)
 
 
 def _fill_feeds(feed: Floats, per_rev: Flags, feeds: Sequence[FeedChange], unit: float) -> None:
@@ -176,7 +181,10 @@ def _event_in_mm(event: Event, unit: float, tool: Tool, diagnostics: Diagnostics
     """Return ``event`` with lengths in mm and surface speeds in rev/min."""
     if isinstance(event, CycleOn):
         values = [
-            (word, tuple(number * unit for number in given) if word in CYCLE_LENGTHS else given)
+            (
+                "MMPM" if word == FILE_FEED else word,
+                tuple(number * unit for number in given) if word in CYCLE_LENGTHS or word == FILE_FEED else given,
+            )
             for word, given in event.values
         ]
         return replace(event, values=tuple(values))

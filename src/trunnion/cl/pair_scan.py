@@ -90,7 +90,7 @@ def pair_scan(piece: Piece, row: int, columns: PointColumns, spans: Ints2, value
             place = values[7] if is_five_axis else 0.0
         else:
             feed, place = _NO_FEED, 0.0
-        if mark == 0 and (0 <= code <= 3 or code == 11):
+        if mark == 0 and (0 <= code <= 3 or code in (11, 81, 100)):
             mark = MAKES_ROW
             lines[row] = line
             for k in range(3):

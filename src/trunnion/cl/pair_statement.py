@@ -11,9 +11,10 @@ _CODE: Final = re.compile(r"0|[1-9]\d{0,5}", re.ASCII)
 _NUMBER: Final = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?", re.ASCII)
 _CONTROL_CHARACTER: Final = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
-#: Major words of parameters by the first digit of their codes, and the code of the name of a tool.
+#: Major words of parameters by the first digit of their codes, and the codes of name and lengths of a tool.
 PARAMETERS: Final = {"1": "10000", "2": "20000"}
 TOOL_NAME: Final = "20001"
+TOOL_LENGTHS: Final = "20007"
 _PARAMETER_DIGITS: Final = 5
 
 #: Letters of a line that a message shows.
@@ -36,7 +37,8 @@ def parse_pair(raw: bytes, encoding: str) -> Statement:
     if "\r" in text:
         raise StatementError(Wording("CL150", "carriage_return_without"))
     fields = text.split()
-    major = code if len(code) < _PARAMETER_DIGITS or code == TOOL_NAME else PARAMETERS.get(code[:-4], code)
+    is_own = len(code) < _PARAMETER_DIGITS or code in (TOOL_NAME, TOOL_LENGTHS)
+    major = code if is_own else PARAMETERS.get(code[:-4], code)
     return Statement(major, tuple(map(_value, fields)), text, f"{code}/{','.join(fields)}")
 
 

@@ -2,10 +2,12 @@
 
 import re
 from collections.abc import Iterator
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
+from trunnion.arrays import Bytes, Flags, Ints
 from trunnion.encoding import decode
 
 #: What precedes the words of a block: the block skip sign, and a number after its letter or without one.
@@ -15,6 +17,12 @@ _NUMBER_PREFIX = r"\s*\d+\s+/?"
 #: Words that dense motion does not repeat in every block: words of several letters, M words, and G words but G0 to G3.
 _SPARSE_WORDS = rb"(?<![A-Z_])(?:[A-Z_]{2}[A-Z_0-9]*|G(?!0?[0-3](?![\d.]))\d+(?:\.\d)?|M\d+)"
 _SLASH, _NEWLINE, _RETURN = b"/\n\r"
+
+#: What lines of dense motion consist of: these bytes, and letters that stand alone.
+_NUMERIC, _LETTERS = b"0123456789.+-= \t\r\n", b"ABCDEFGHIJKLMNOPQRSTUVWXYZ_abcdefghijklmnopqrstuvwxyz"
+_IS_LETTER: Flags = np.isin(np.arange(256), list(_LETTERS))
+_IS_DENSE: Flags = _IS_LETTER | np.isin(np.arange(256), list(_NUMERIC))
+_CHUNK = 1 << 20  #: bytes that are looked through at a time
 
 
 class ProgramText:
@@ -56,11 +64,14 @@ class ProgramText:
 
     def sparse_words(self) -> Iterator[tuple[int, list[str]]]:
         """Yield the lines with words that dense motion does not repeat, and these words in capitals."""
+        numbers, data = self._sparse_lines
+        starts = self._line_starts
+        ends = np.cumsum(starts[numbers] - starts[numbers - 1])
         line, words = 0, list[str]()
-        for match in self._word_pattern.finditer(self._data):
+        for match in self._word_pattern.finditer(data):
             if match[1] is None:
                 continue
-            number = int(np.searchsorted(self._line_starts, match.start(), "right"))
+            number = int(numbers[np.searchsorted(ends, match.start(), "right")])
             if number != line and words:
                 yield line, words
                 words = []
@@ -68,3 +79,32 @@ class ProgramText:
             words.append(match[0].decode("ascii").upper())
         if words:
             yield line, words
+
+    @cached_property
+    def _sparse_lines(self) -> tuple[Ints, bytes]:
+        """Numbers (n,) and text of the lines that may hold sparse words; comments begin and end on such lines."""
+        data = np.frombuffer(self._data + b"\n", np.uint8)
+        found = np.zeros(self.line_count, np.bool_)
+        begin = 0
+        while begin < self.line_count:
+            end = max(begin + 1, int(np.searchsorted(self._line_starts, self._line_starts[begin] + _CHUNK)))
+            starts = self._line_starts[begin : end + 1]
+            marked = np.flatnonzero(_sparse_bytes(data[starts[0] : starts[-1]]))
+            found[begin + np.searchsorted(starts - starts[0], marked, "right") - 1] = True
+            begin = end
+        return np.flatnonzero(found) + 1, data[np.repeat(found, np.diff(self._line_starts))].tobytes()
+
+
+def _sparse_bytes(lines: Bytes) -> Flags:
+    """Mark at least one of the bytes (n,) of each sparse word and comment, and none in lines of dense motion alone."""
+    letters = _IS_LETTER[lines]
+    capitals = lines & 0xDF
+    marked: Flags = ~_IS_DENSE[lines] | (capitals == ord("M"))
+    marked[1:] |= letters[1:] & letters[:-1]
+    words = np.flatnonzero(capitals == ord("G"))
+    following = np.concatenate((lines, [_NEWLINE] * 3)).astype(np.int64)
+    first, second, third = (following[words + place] for place in (1, 2, 3))
+    padded = (first == ord("0")) & np.isin(second, list(b"0123"))
+    digit, behind = np.where(padded, second, first), np.where(padded, third, second)
+    marked[words] |= ~np.isin(digit, list(b"0123")) | np.isin(behind, list(b"0123456789."))
+    return marked

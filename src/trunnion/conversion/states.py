@@ -144,6 +144,7 @@ STATES: Final = (
     State("limits of the axes off", "G23", _REPORTED),
     State("override of the feed", "M49, M50 P0", _REPORTED, kinds=("unasked",)),
     State("output of the machine", "M67", _REPORTED),
+    State("function that prints, waits, or speaks to the PLC", "FN 14 to FN 38, SETAL, M118", _REPORTED),
     State("unit", "G20, G70, INCH", _PATH, columns=("inches",)),
     State(
         "position of the machine", "SUPA, G53, M91, M140", _REPORTED, kinds=("retract", "leave"),
@@ -174,7 +175,8 @@ def loss_of(kind: str, value: object = None) -> tuple[Fate, Wording | None]:
     if state is None:
         return Fate.REFUSED, Wording("CNV170", "unknown_state", kind=kind)
     if state.by_value:
-        return state.fate, Wording("CNV150", "not_carried", lost=(str(value),))
+        variant = "variable_not_carried" if kind == "variable" else "not_carried"
+        return state.fate, Wording("CNV150", variant, lost=(str(value),))
     return state.fate, state.loss
 
 

@@ -32,6 +32,7 @@ from trunnion.conversion.unsaid import (
 from trunnion.conversion.unsupported import (
     Warnings,
     refuse_unsimulated_motions,
+    warn_of_acting_words,
     warn_of_cycles,
     warn_of_interpolation,
     warn_of_machine_words,
@@ -218,6 +219,7 @@ class _ToolpathBuilder:
         warn_of_poses(run, zip(rows, (operation.moves for operation in operations), strict=True), self._warn)
         machine_words, template_lines = self._reader.words_without_path, self._headers.template_lines
         warn_of_machine_words(self._texts, machine_words, template_lines, self._warn)
+        warn_of_acting_words(self._run, self._warn)
 
 
 def _coolant_words(control: Control) -> dict[int, str]:

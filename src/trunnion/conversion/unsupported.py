@@ -20,6 +20,14 @@ _MAX_WORD_WARNINGS = 5
 
 _SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
 
+#: Findings of readers about what acts on the control or stops it, by their codes and variants: how its word is written.
+_ACTING = {
+    ("NC221", "fn_known_not_simulated"): "FN {number}",
+    ("NC226", "fn_known_not_simulated"): "FN {number}",
+    ("NC221", "not_simulated"): "{word}",
+    ("NC226", "alarm"): "{word}",
+}
+
 #: How findings of readers begin where the path is that of the wall, or of the tool centre as programmed.
 _WITHOUT_RADIUS = ("cycle 208:", "G41.2:", "G42.2:")
 
@@ -47,8 +55,10 @@ class Warnings:
         self._found: list[Problem] = []
 
     def __call__(self, line: int, wording: Wording, file: int = 0) -> None:
-        """Add a warning; ``file`` is an index as in ``Run.file``."""
-        self._found.append(warning(self._files[file], line, wording))
+        """Add a warning, once; ``file`` is an index as in ``Run.file``."""
+        problem = warning(self._files[file], line, wording)
+        if problem not in self._found:
+            self._found.append(problem)
 
     def refuse(self, line: int, wording: Wording, file: int = 0) -> None:
         """Add an error: the program must not be converted without it."""
@@ -84,6 +94,19 @@ def warn_of_machine_words(
                 warn(line, Wording("CNV150", "not_carried", lost=tuple(lost)), file)
     if count > _MAX_WORD_WARNINGS:
         warn(0, Wording("CNV150", "more_lines_words", count=count - _MAX_WORD_WARNINGS))
+
+
+def warn_of_acting_words(run: Run, warn: Warnings) -> None:
+    """Warn of what no word of a block says alone: functions that print, speak to the PLC, wait, or raise an alarm."""
+    lost: dict[tuple[str, int], str] = {}
+    for found in run.diagnostics:
+        written = _ACTING.get((found.code, found.wording.variant))
+        if written is not None:
+            lost[found.file, found.line] = written.format(**dict(found.wording.parameters))
+    for (file, line), word in list(lost.items())[:_MAX_WORD_WARNINGS]:
+        warn(line, Wording("CNV150", "not_carried", lost=(word,)), run.files.index(file))
+    if len(lost) > _MAX_WORD_WARNINGS:
+        warn(0, Wording("CNV150", "more_lines_words", count=len(lost) - _MAX_WORD_WARNINGS))
 
 
 def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warnings) -> None:

@@ -84,8 +84,9 @@ def without_turns_in_place(run: Run, rows: Ints, blocks: Collection[tuple[int, i
     at_rest = np.abs(end.tip - start.tip).max(axis=1) < _AT_REST
     for axis in (end.axis, half_way):
         at_rest &= np.abs(axis - start.axis).max(axis=1) < _AT_REST
-    bare = [(int(run.line[row]), int(run.file[row])) not in blocks for row in rows[here]]
-    return np.delete(rows, here[at_rest & np.array(bare)])
+    resting = here[at_rest]
+    bare = [(int(run.line[row]), int(run.file[row])) not in blocks for row in rows[resting]]
+    return np.delete(rows, resting[np.array(bare, np.bool_)])
 
 
 def _with_arc_start(run: Run, known: Flags, stretch: Ints, warn: Warnings) -> Ints:

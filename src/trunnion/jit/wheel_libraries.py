@@ -1,8 +1,8 @@
-"""Machine code for wheels: ``python -m trunnion.jit.wheel_libraries FOLDER``.
+"""Machine code for wheels: ``python -m trunnion.jit.wheel_libraries FOLDER [KERNELS [SYSTEM …]]``.
 
 Leaves in the folder, for each system that a wheel is made for, a folder of libraries as ``trunnion.jit.shipped`` loads
 them. All systems are served from any computer: LLVM emits object code for all processors, and the linker of Zig makes
-libraries for all systems (extra ``wheels``). Numba compiles each kernel once for each level of processor: its loops
+libraries for all systems (extra ``test``). Numba compiles each kernel once for each level of processor: its loops
 depend on how many numbers a processor takes at a time.
 """
 
@@ -159,7 +159,7 @@ def make_libraries(folder: Path, tags: Sequence[str] = tuple(SYSTEMS), kernels: 
 
 def _emit_all(folder: Path, tags: Sequence[str], kernels: str) -> None:
     """Compile for all levels, each in a process of its own: Numba is told of a processor before it is imported."""
-    call = f"from {emit_named.__module__} import emit_named; emit_named()"
+    call = "from trunnion.jit.wheel_libraries import emit_named; emit_named()"  # __name__ may be __main__
     with tempfile.TemporaryDirectory() as kept:
         running = []
         for level in sorted({_COMPILED_AS[level] for tag in tags for level in SYSTEMS[tag].levels}):
@@ -180,4 +180,4 @@ def emit_named() -> None:
 
 
 if __name__ == "__main__":
-    make_libraries(Path(sys.argv[1]))
+    make_libraries(Path(sys.argv[1]), sys.argv[3:] or tuple(SYSTEMS), (sys.argv[2:] or ["trunnion."])[0])

@@ -182,7 +182,7 @@ STOCK: Final = Option(
     "--stock",
     FileIn("STOCK", leads="stock"),
     "box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner; by default 0,0,0), cylinder:D,H[,z0] (by default 0), or a mesh file;"
-    " mm",
+    " mm. cl: as the CL files state it",
     key="stock",
     level=Level.WHOLE,
 )

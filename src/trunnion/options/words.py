@@ -14,6 +14,9 @@ EDITED: Final = ("refuse", "keep", "replace")
 #: Settings that say how CL files are read, in every command that reads them.
 CL_SETTINGS: Final = ("cl_units", "dialect", "cutcom", "open_cycle", "spline_tolerance")
 
+#: The setting of a post that says which coordinate system the program has, and so where stock of CL files lies.
+FRAME_SETTING: Final = "frame"
+
 #: Settings of a post that its CL files do not show and the proof stands on: ``verify`` is told them again.
 PROOF_SETTINGS: Final = (
     "same_tool", "operation_clearance", "first_approach", "stop_between", "radius_offset", "edge_from", "rapid_feed",

@@ -28,6 +28,10 @@ from trunnion.records import dataclass
 #: Planes whose numbers differ by less are one.
 _SAME_PLANE: Final = 1e-9
 
+#: A leg along the tool that is shorter is none, mm; what is tried of one that the travel has no room for.
+_NO_LEG: Final = 0.01
+_SHARES: Final = (2.0, 4.0, 8.0, 16.0)
+
 
 class Passage(StrEnum):
     """The way to the next operation.
@@ -119,9 +123,8 @@ class Passages:
 
     def first_leg(self, motion: Motion) -> Floats | None:
         """Return where the first leg of an approach under TCP ends, (3,) mm, straight above its first point along the
-        tool, where axes move one group after the other: with that along the spindle at home, or above all operations.
-
-        None where they need not, or cannot: so high the linear axes do not reach.
+        tool, where axes move one group after the other: with that along the spindle at home, or above all operations,
+        or as high as the travel lets it. None where they need not, or cannot.
         """
         if not motion.mode.holds_tips or not self.in_turn(motion):
             return None
@@ -130,12 +133,11 @@ class Passages:
             motion.operation.moves.tip[0],
             motion.operation.moves.axis[0],
         )
-        home = height_at_home(machine, tip, motion.rotary[0])
-        place = self.above(motion, self.height(axis) if home is None else home)
-        if not _beyond_travel(machine, place[None], motion.rotary):
-            return place
-        lowest = self.above(motion, self.highest(axis))
-        return None if _beyond_travel(machine, lowest[None], motion.rotary) else lowest
+        home, at = height_at_home(machine, tip, motion.rotary[0]), float(tip @ axis)
+        heights = [*(() if home is None else (home,)), self.height(axis), self.highest(axis)]
+        heights += [at + (self.height(axis) - at) / share for share in _SHARES]
+        raised = (self.above(motion, height) for height in heights if height > at + _NO_LEG)
+        return next((place for place in raised if not _beyond_travel(machine, place[None], motion.rotary)), None)
 
     def in_turn(self, motion: Motion) -> bool:
         """Whether the axes move one group after the other from home to an operation, and behind turns within it."""

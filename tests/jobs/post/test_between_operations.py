@@ -368,3 +368,21 @@ def test_a_program_that_moves_axes_together_behind_a_turn_is_faulted_where_turns
 ) -> None:
     lines = programs.post(base, "holes", *way)
     assert [line for line in _modal_places(lines, base, way, programs) if line > _last_turn(lines)]
+
+
+#: Workpiece zero and tool length at which the first point under TCP is 1.7 mm below home, above it, or just below the
+#: end of the travel.
+_NEAR_HOME = [(120, "0,0,20", "40"), (60, "0,0,20", "40"), (120, "0,0,21.5", "40"), (0, "0,0,-60", "70")]
+
+
+@pytest.mark.parametrize(("home", "zero", "length"), _NEAR_HOME)
+def test_the_first_approach_goes_in_turn_where_the_point_is_near_home(
+    home: int, zero: str, length: str, tmp_path: Path
+) -> None:
+    machine, source = tmp_path / "ours.toml", tmp_path / "side.cls"
+    machine.write_text(f'extends = "xyzac_trt"\nname = "Ours"\n[[axis]]\nname = "Z"\nhome_mm = {home}\n')
+    text = PATHS["tcp"].replace("0.0,30.0", "-30.0,40.0").replace("0.0,0.5,0.8", "0.0,-0.5,0.8")
+    source.write_text(text.replace("0.0,0.5150381", "0.0,-0.5150381"), encoding="utf-8")
+    settings = {"zero": zero, "tool_length": length}
+    for way in ({}, dict([_IN_TURN])):
+        assert trunnion.post(source, machine=machine, settings={**settings, **way}).passed

@@ -78,7 +78,6 @@ longest_s = 0
         (PROJECT.replace("top.mpf", "CON:x"), 3, "leads out of the folder"),
         (SETUPS.replace('machine = "yl569"', 'machine = "yl569"\noutput = "x.mpf"'), 2, "stands beside set-ups"),
         (SETUPS.replace('name = "bottom"', 'name = "top"'), 11, 'is "top" twice'),
-        (PROJECT + '[checks]\nsimulate = "refuse"\n', 1, "stock is missing"),
         (PROJECT + 'work_offset = "G54"\n[settings.x]\ny = 1\n', 6, "is not TOML"),
         (PROJECT + 'work_offset = "G54"\nsettings.work_offset = "G55"\n', 6, "is not TOML"),
         (PROJECT.replace("{ ", '{ work_offset = "G55", ') + 'work_offset = "G54"\n', 4, "said by the key work_offset"),

@@ -1,4 +1,4 @@
-"""The stock that CL files state is the one that is simulated, in the coordinates of the program."""
+"""The stock that CL files state is the one that is simulated, in the coordinates of the program, by every command."""
 
 from pathlib import Path
 
@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import trunnion
+from trunnion.batch import run_batch
 from trunnion.cl.read import read_cl
 from trunnion.cli import main
+from trunnion.jobs.view.viewing import prepare_view
 from trunnion.simulation.stock.solids import stock_shape
 from trunnion.simulation.stock.stated_stock import stated_stock
 
@@ -20,6 +22,7 @@ CUT = (
 TOOL = "TOOL PATH/SLOT,TOOL,FLAT\n$$-> TOOL / MILL,DIAMETER,10,LENGTH,60,FLUTE,20\n"
 ABSOLUTE = "MSYS/0,0,0,1,0,0,0,1,0\n"
 REMOVED = 60.0 * 10.0 * 4.0
+PROJECT = 'machine = "dmu65"\ncl = ["part.apt"]\noutput = "part.h"\ncell_mm = 1.0\n'
 
 
 def written(folder: Path, stock: str = BOX, system: str = ABSOLUTE, name: str = "part") -> Path:
@@ -85,3 +88,71 @@ def test_a_block_form_is_that_of_the_stock_of_the_cl_file(tmp_path: Path) -> Non
     text = str(result.text)
     assert "BLK FORM 0.1 Z X+0 Y-20 Z-10\n" in text
     assert "BLK FORM 0.2 X+60 Y+20 Z+0\n" in text
+
+
+def project(folder: Path, text: str) -> Path:
+    file = folder / "part.toml"
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+@pytest.mark.parametrize("stated", ["", 'stock = "cl"\n'])
+def test_a_project_cuts_the_stock_of_its_cl_files(tmp_path: Path, stated: str) -> None:
+    cl = written(tmp_path)
+    file = project(tmp_path, stated + PROJECT + '[checks]\nsimulate = "refuse"\n')
+    found = trunnion.post_project(file).simulation
+    assert found is not None
+    assert found.removed == pytest.approx(REMOVED, rel=1e-3)
+    assert found.stock_from == str(cl)
+    again = trunnion.simulate(file)
+    assert again.removed == pytest.approx(REMOVED, rel=1e-3)
+    assert again.stock_from == str(cl)
+
+
+def test_a_project_without_any_stock_is_refused(tmp_path: Path) -> None:
+    written(tmp_path, stock="")
+    file = project(tmp_path, PROJECT + '[checks]\nsimulate = "warn"\n')
+    with pytest.raises(trunnion.InputError, match="no CL file states it"):
+        trunnion.post_project(file)
+    file = project(tmp_path, 'machine = "dmu65"\nprograms = ["part.h"]\n')
+    (tmp_path / "part.h").write_text("BEGIN PGM A MM\nEND PGM A MM\n", encoding="utf-8")
+    with pytest.raises(trunnion.InputError, match="stock"):
+        trunnion.simulate(file)
+
+
+def test_the_frame_of_the_program_is_that_of_the_stock(tmp_path: Path) -> None:
+    cl = written(tmp_path, "$$-> STOCK / BOX,40,60,10,40,0,-10\n", "MSYS/60,0,0,0,1,0,-1,0,0\n")
+    place = tmp_path / "part.h"
+    trunnion.post(cl, machine="dmu65", output=place, settings={"frame": "absolute"})
+    how = {"machine": "dmu65", "cl": [cl], "settings": {"frame": "absolute"}}
+    found = trunnion.simulate(place, cell=1.0, **how)  # type: ignore[arg-type]
+    assert found.removed == pytest.approx(REMOVED, rel=1e-3)
+    view = prepare_view(place, stock="cl", cell=1.0, **how)  # type: ignore[arg-type]
+    assert view.stock is not None
+    file = project(tmp_path, PROJECT + '[settings]\nframe = "absolute"\n')
+    assert trunnion.simulate(file).removed == pytest.approx(REMOVED, rel=1e-3)
+
+
+def test_a_batch_cuts_the_stock_of_each_cl_file(tmp_path: Path) -> None:
+    for name, width in (("one", 60), ("two", 30)):
+        cl = written(tmp_path, f"$$-> STOCK / BOX,{width},40,10,0,-20,-10\n", name=name)
+        trunnion.post(cl, machine="dmu65", output=tmp_path / f"{name}.h")
+    how = {"action": "simulate", "machine": "dmu65", "workers": 1}
+    result = run_batch(tmp_path, results=tmp_path / "out", cl=["{folder}/{stem}.apt"], **how)  # type: ignore[arg-type]
+    removed = [record.figures["removed_mm3"] for record in result.records()]
+    assert result.passed
+    assert removed == pytest.approx([REMOVED, REMOVED / 2], rel=0.05)  # within cells
+    with pytest.raises(trunnion.InputError, match="stock"):
+        run_batch(tmp_path, results=tmp_path / "out", **how)  # type: ignore[arg-type]
+
+
+def test_a_view_shows_it_where_it_is_asked_for(tmp_path: Path) -> None:
+    cl = written(tmp_path)
+    place = tmp_path / "part.h"
+    trunnion.post(cl, machine="dmu65", output=place)
+    assert prepare_view(place, machine="dmu65", cl=[cl]).stock is None
+    view = prepare_view(place, machine="dmu65", cl=[cl], stock="cl", cell=1.0)
+    assert view.stock is not None
+    assert prepare_view(project(tmp_path, PROJECT)).stock is not None
+    with pytest.raises(trunnion.InputError, match="no CL file states it"):
+        prepare_view(place, machine="dmu65", stock="cl", cl=[written(tmp_path, stock="")])

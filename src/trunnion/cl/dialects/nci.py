@@ -7,8 +7,8 @@ from trunnion.cl.builder import NoAxis
 from trunnion.cl.conventions import CycleWords
 from trunnion.cl.dialect import Dialect, Handler, marks
 from trunnion.cl.pair_scan import scan_pairs
-from trunnion.cl.pair_statement import PARAMETERS, TOOL_NAME, parse_pair
-from trunnion.cl.statements import nci_motion, nci_records
+from trunnion.cl.pair_statement import PARAMETERS, TOOL_LENGTHS, TOOL_NAME, parse_pair
+from trunnion.cl.statements import nci_cycles, nci_motion, nci_records
 from trunnion.cl.text_format import TextFormat
 
 _UNREAD: Final = ("1016", "1017", "1020", *PARAMETERS.values())
@@ -19,7 +19,9 @@ _HANDLERS: Final[Mapping[str, Handler]] = {
     **dict.fromkeys(("2", "3"), nci_motion.arc),
     "4": nci_motion.dwell,
     "11": nci_motion.five_axis,
-    **dict.fromkeys(("80", "81", "100"), nci_records.cycle),
+    "80": nci_cycles.end,
+    "81": nci_cycles.begin,
+    "100": nci_cycles.repeat,
     **dict.fromkeys(("200", "201"), nci_records.lathe),
     **dict.fromkeys(("1000", "1001", "1002"), nci_records.tool_change),
     "1003": nci_records.end_of_file,
@@ -35,6 +37,7 @@ _HANDLERS: Final[Mapping[str, Handler]] = {
     "1027": nci_records.work_system,
     "1050": nci_records.header,
     TOOL_NAME: nci_records.tool_name,
+    TOOL_LENGTHS: nci_records.tool_lengths,
 }
 
 NCI: Final = Dialect(

@@ -48,10 +48,21 @@ def cycle(state: ReaderState, statement: Statement) -> None:
             raise StatementError(Wording("CL850", "cycle_before_any"))
         state.cycle = replace(state.cycle, row=row, line=line)
     else:
-        found = _parse(state, statement)
-        state.cycle = CycleOn(row, line, tuple(found.mode), tuple(found.couplets), tuple(found.words))
+        begin_cycle(state, _parse(state, statement))
+        return
     state.add(state.cycle)
     state.cycle_line = line
+
+
+def begin_cycle(state: ReaderState, found: CycleParts) -> None:
+    """Begin a cycle of which all parts are known.
+
+    Raises ``StatementError`` for a dwell or pecks that cannot be.
+    """
+    _refuse_impossible(found)
+    state.cycle = CycleOn(state.operation_row, state.line, tuple(found.mode), tuple(found.couplets), tuple(found.words))
+    state.add(state.cycle)
+    state.cycle_line = state.line
 
 
 def _parse(state: ReaderState, statement: Statement) -> CycleParts:
@@ -86,7 +97,6 @@ def _parse(state: ReaderState, statement: Statement) -> CycleParts:
     if dialect.settle is not None:
         dialect.settle(found)
     _refuse_repetitions(found)
-    _refuse_impossible(found)
     # The same height under its other name.
     heights = [("RAPTO" if word == "CLEAR" else word, given) for word, given in found.couplets]
     found.couplets = list(dict.fromkeys(heights))

@@ -11,8 +11,9 @@ from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.statements import events, motion
 from trunnion.cl.statements.cutcom_points import CutcomPoints
-from trunnion.cl.statements.nci_records import Contour, ToolNow, begin_motion, record, values_of
+from trunnion.cl.statements.nci_records import Contour, ToolNow, ToolPlane, begin_motion, record, values_of
 from trunnion.messages import Wording
+from trunnion.model.toolpath import CycleOff
 
 _UNCHANGED: Final = -1.0
 _RAPID: Final = -2.0
@@ -31,19 +32,22 @@ _FOLLOWS: Final = {
     0: (42, 12), 42: (42, 12), 12: (22, 32), 22: (22, 32), 32: (52,), 52: (52, 42),
 }  # fmt: skip
 
-#: How far two heights may differ to be one, in units of the file.
-_SAME_HEIGHT: Final = 1e-6
+#: How far two points may be from each other to be one, in units of the file.
+_SAME_POINT: Final = 1e-6
+
+#: Planes of arcs: which coordinates the first and the second number of a point are, and which one is across.
+_PLANES: Final = {0.0: (0, 1, 2), 1.0: (1, 2, 0), 2.0: (0, 2, 1)}
 
 
 def line(state: ReaderState, statement: Statement) -> None:
     """Move along a line, the tool upright: record 1 with a feed, record 0 at rapid."""
-    contour = begin_motion(state)
+    contour = _begin_path(state)
     side, x, y, z, feed, flag = values_of(state, statement, LINE_VALUES)
     if statement.major == "0" and feed != _RAPID:
         raise StatementError(Wording("CL710", "rapid_with_feed", record=record(state, statement), feed=feed))
     if statement.major == "1" and feed == _RAPID:
         raise StatementError(Wording("CL710", "line_at_rapid", record=record(state, statement), feed=feed))
-    _check_flag(state, statement, flag)
+    check_flag(state, statement, flag)
     _compensate(state, statement, side)
     _take_feed(state, statement, contour, feed)
     motion.write_row(state, (x, y, z))
@@ -51,40 +55,58 @@ def line(state: ReaderState, statement: Statement) -> None:
 
 def five_axis(state: ReaderState, statement: Statement) -> None:
     """Move along a line to a tip with a tool axis: the vector from the tip to the second point."""
-    contour = begin_motion(state)
+    contour = _begin_path(state)
     values = values_of(state, statement, FIVE_AXIS_VALUES)
     tip, second, (feed, place, flag), vector = values[:3], values[3:6], values[6:9], values[9:]
     off = max(abs(t + v - s) for t, v, s in zip(tip, vector, second, strict=True))
     if not off <= SECOND_POINT_TOLERANCE:
         raise StatementError(Wording("CL540", "second_point", record=record(state, statement), off=off))
-    _check_flag(state, statement, flag)
+    check_flag(state, statement, flag)
     _note_place(state, statement, contour, place, flag)
     _take_feed(state, statement, contour, feed)
     motion.write_row(state, (*tip, *vector))
 
 
 def arc(state: ReaderState, statement: Statement) -> None:
-    """Move along an arc in the plane XY, at one height: record 2 clockwise, record 3 counter-clockwise."""
-    contour = begin_motion(state)
-    side, plane, x, y, centre_x, centre_y, z, feed, flag, full = values_of(state, statement, 10)
-    if plane != 0.0:
-        raise StatementError(Wording("CL250", "arc_plane", record=record(state, statement), plane=plane))
-    start = motion.current_tip(state)
+    """Move along an arc or a helix: record 2 clockwise, record 3 counter-clockwise about the axis across its plane.
+
+    Descriptions have compensation word and plane in either order; but for 0 their values differ.
+    """
+    contour = _begin_path(state)
+    first, second, *numbers, height, feed, flag, full = values_of(state, statement, 10)
+    if first in _SIDES and second in _PLANES:
+        side, plane = first, second
+    elif first in _PLANES and second in _SIDES:
+        side, plane = second, first
+    else:
+        raise StatementError(Wording("CL250", "arc_plane", record=record(state, statement), first=first, second=second))
+    start = None if state.own(ToolPlane).row == state.row else motion.current_tip(state)
     if start is None:
         raise StatementError(Wording("CL250", "arc_without_start", record=record(state, statement)))
-    if abs(start[2] - z) > _SAME_HEIGHT:
-        raise StatementError(Wording("CL250", "arc_rises", record=record(state, statement), before=start[2], z=z))
-    is_closed = max(abs(start[0] - x), abs(start[1] - y)) <= _SAME_HEIGHT
+    one, other, across = _PLANES[plane]
+    end, centre, normal = [0.0] * 3, [0.0] * 3, [0.0] * 3
+    end[one], end[other], centre[one], centre[other] = numbers
+    end[across], centre[across] = height, start[across]
+    normal[across] = -1.0 if statement.major == "2" else 1.0
+    is_closed = max(abs(start[one] - end[one]), abs(start[other] - end[other])) <= _SAME_POINT
     if full not in (0.0, 1.0) or is_closed is not (full == 1.0):
         raise StatementError(Wording("CL250", "arc_full", record=record(state, statement), full=full))
     if feed == _RAPID:
         raise StatementError(Wording("CL710", "line_at_rapid", record=record(state, statement), feed=feed))
-    _check_flag(state, statement, flag)
+    check_flag(state, statement, flag)
     _compensate(state, statement, side)
     _take_feed(state, statement, contour, feed)
-    normal = (0.0, 0.0, -1.0 if statement.major == "2" else 1.0)
-    motion.begin_circle(state, (centre_x, centre_y, z, *normal, float("nan")), 1)
-    motion.write_row(state, (x, y, z))
+    motion.begin_circle(state, (*centre, *normal, float("nan")), 1)
+    motion.write_row(state, tuple(end))
+
+
+def _begin_path(state: ReaderState) -> Contour:
+    """Return where the motion is; a motion that is no hole ends a cycle."""
+    contour = begin_motion(state)
+    if state.cycle_line:
+        state.add(CycleOff(state.operation_row, state.line))
+        state.cycle_line = 0
+    return contour
 
 
 def dwell(state: ReaderState, statement: Statement) -> None:
@@ -102,7 +124,8 @@ def compensation_off(state: ReaderState, statement: Statement) -> None:
     _compensate(state, statement, 40.0)
 
 
-def _check_flag(state: ReaderState, statement: Statement, flag: float) -> None:
+def check_flag(state: ReaderState, statement: Statement, flag: float) -> None:
+    """Refuse a flag of a motion that is not known."""
     if flag not in _FLAGS:
         raise StatementError(Wording("CL165", "unknown_value", record=record(state, statement), value=flag,
                                      known=("0", "100", "1000")))  # fmt: skip

@@ -4,22 +4,22 @@ Records about an operation stand before the tool change (1000 to 1002) that begi
 """
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import PureWindowsPath
 from typing import Final
 
-from trunnion.cl.builder import NoAxis
+from trunnion.cl.builder import NoAxis, PlaneStatement
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.pair_statement import code_of
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole
 from trunnion.cl.statements import apt_tools, events, operations
+from trunnion.cl.tool_planes import TOP, squared
 from trunnion.messages import Wording, phrase
 from trunnion.records import dataclass
 
-#: The numbers of a plane that is the top view, and of a work coordinate system that shifts nothing either.
-_TOP: Final = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-_NO_SHIFT: Final = (*_TOP, 0.0, 0.0, 0.0)
+#: The numbers of a work coordinate system that turns and shifts nothing.
+_NO_SHIFT: Final = (*TOP, 0.0, 0.0, 0.0)
 
 #: Coolants of a tool change.
 _COOLANTS: Final = {0.0: "OFF", 1.0: "FLOOD", 2.0: "MIST", 3.0: "THRU"}
@@ -54,6 +54,16 @@ class Pending:
     name: str = ""
     tool_name: str = ""
     size: tuple[float, float] | None = None
+    lengths: tuple[float, float] | None = None
+    plane: tuple[float, ...] | None = None
+
+
+@dataclass(slots=True)
+class ToolPlane:
+    """The tool plane, and the row from which on it is another one than that before."""
+
+    axes: tuple[float, ...] = TOP
+    row: int = -1
 
 
 @dataclass(slots=True)
@@ -131,7 +141,7 @@ def end_of_file(state: ReaderState, statement: Statement) -> None:
     _refuse_pending(state)
     note_end_of_operation(state)
     values_of(state, statement, 3)
-    _remark_values(state, state.line, statement)
+    remark_values(state, state.line, statement)
     operations.end_of_file(state, statement)
     unread = state.own(Unread)
     if unread.counts:
@@ -165,6 +175,16 @@ def tool_name(state: ReaderState, statement: Statement) -> None:
     pending.tool_name = statement.text
 
 
+def tool_lengths(state: ReaderState, statement: Statement) -> None:
+    """Take length and cutting length of the next tool, in units of the file; those of its holder are not settled."""
+    unread(state, statement)
+    _, cutting, overall, *_ = values_of(state, statement, 3, 40)
+    if not 0.0 <= cutting <= overall:
+        said = Wording("CL770", "nci_lengths", record=record(state, statement), cutting=cutting, overall=overall)
+        raise StatementError(said)
+    _pend(state).lengths = (overall, cutting)
+
+
 def comment(state: ReaderState, statement: Statement) -> None:
     """Write a comment into the program."""
     events.message(state, statement)
@@ -183,7 +203,7 @@ def literal(state: ReaderState, statement: Statement) -> None:
 def miscellaneous(state: ReaderState, statement: Statement) -> None:
     """Say that nothing becomes of miscellaneous reals and integers: each post has meanings of its own for them."""
     values_of(state, statement, 10)
-    _remark_values(state, state.line, statement)
+    remark_values(state, state.line, statement)
 
 
 def cutter(state: ReaderState, statement: Statement) -> None:
@@ -194,14 +214,15 @@ def cutter(state: ReaderState, statement: Statement) -> None:
     _pend(state).size = (diameter, corner)
     unread(state, statement)
     if side:
-        _remark_values(state, state.line, statement._replace(source=f"1013/{side:g}"))
+        remark_values(state, state.line, statement._replace(source=f"1013/{side:g}"))
 
 
 def tool_plane(state: ReaderState, statement: Statement) -> None:
-    """Refuse a tool plane that is not the top view: how its points are to be turned is not settled."""
+    """Take the tool plane of the next tool change: points of the operation are in its coordinates."""
     numbers = values_of(state, statement, 9)
-    _pend(state)
-    if numbers != _TOP:
+    pending = _pend(state)
+    pending.plane = squared(numbers)
+    if pending.plane is None:
         raise StatementError(Wording("CL430", "tool_plane", record=record(state, statement)))
 
 
@@ -217,11 +238,6 @@ def canned_text(state: ReaderState, statement: Statement) -> None:
     """Note a text of the post, which may switch something."""
     if any(values_of(state, statement, 10)):
         state.note_unknown(statement, phrase("calls_text_of_post", record=statement.major))
-
-
-def cycle(state: ReaderState, statement: Statement) -> None:
-    """Refuse a drilling cycle: the order of its values is not settled."""
-    raise StatementError(Wording("CL250", "cycle_record", record=record(state, statement)))
 
 
 def lathe(state: ReaderState, statement: Statement) -> None:
@@ -252,12 +268,19 @@ def tool_change(state: ReaderState, statement: Statement) -> None:
         state.name_operation(pending.name)
     if pending.size is not None:
         apt_tools.cutter(state, statement._replace(major="CUTTER", values=pending.size))
+    if pending.lengths is not None:
+        overall, cutting = pending.lengths
+        state.builder.tool = replace(state.builder.tool, length=overall, flute_length=cutting)
     if pending.tool_name:
         apt_tools.name_tool(state, pending.tool_name)
     if not is_null:
         state.own(Contour).feed, state.own(Contour).cuts = 0.0, False
         given = (float(number), float(length)) if length else (float(number),)
         apt_tools.loadtl(state, statement._replace(major="LOADTL", values=given))
+    plane = state.own(ToolPlane)
+    if pending.plane is not None and pending.plane != plane.axes:
+        plane.axes, plane.row = pending.plane, state.row
+    state.builder.planes.append(PlaneStatement(state.operation_row, plane.axes))
     state.own(Pending).__init__()  # type: ignore[misc]
     now = state.own(ToolNow)
     now.register, now.is_used, now.statement = diameter, now.side != "OFF", (state.line, statement)
@@ -276,7 +299,7 @@ def _switch(state: ReaderState, statement: Statement, rpm: float, coolant: str) 
     now.coolant = coolant
 
 
-def _remark_values(state: ReaderState, line: int, statement: Statement, followed: frozenset[int] = frozenset()) -> None:
+def remark_values(state: ReaderState, line: int, statement: Statement, followed: frozenset[int] = frozenset()) -> None:
     """Say of which values of a record nothing becomes: their places, from 1, and what they are."""
     fields = statement.source.partition("/")[2].split(",")
     left = tuple(
@@ -315,7 +338,7 @@ def note_end_of_operation(state: ReaderState) -> None:
     if now.statement is not None:
         (line, statement), now.statement = now.statement, None
         followed = _FOLLOWED if now.is_used else _FOLLOWED - {5}
-        _remark_values(state, line, statement, followed)
+        remark_values(state, line, statement, followed)
     contour = state.own(Contour)
     if contour.place not in (0, 32, 52):
         state.diagnostics.remark(state.line, Wording("CL225", "ends_within", place=contour.place))

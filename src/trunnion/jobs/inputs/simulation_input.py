@@ -9,13 +9,17 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import TypeAlias
 
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.stated_setup import LengthLike, ZeroLike
+from trunnion.messages import Wording
 from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
 from trunnion.records import dataclass
 from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.stock.solids import CL_STOCK
+from trunnion.simulation.stock.stated_stock import stated_stock
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.profile import ToolShape
 
@@ -66,7 +70,7 @@ class SetupInput:
 class SimulationInput:
     """Stock, and the set-ups in which it is cut one after another; the rest as ``trunnion.simulate`` has it.
 
-    stock       empty: that which the CL files of the first set-up state
+    stock       empty, or ``cl``: that which the CL files of the first set-up state
     stock_from  the CL file that states it; empty where it is given
     """
 
@@ -79,6 +83,28 @@ class SimulationInput:
     stop_at: str | None = None
     threads: int | None = None
     places: Places = field(default_factory=dict)
+
+
+def leaves_stock_to_cl(stock: str | Path | TriangleMesh | None) -> bool:
+    """Whether what is stated of a stock leaves it to CL files."""
+    return stock in (None, "", CL_STOCK)
+
+
+def with_decided_stock(
+    given: SimulationInput, drawn: Sequence[Toolpath], *, is_absolute: bool = False
+) -> SimulationInput:
+    """Return what is simulated with its stock: the one that is given, else that which CL files state.
+
+    drawn        toolpaths of the part as it is drawn
+    is_absolute  the program has the absolute coordinate system of the CAM system
+
+    Raises ``InputError`` if there is none.
+    """
+    if not leaves_stock_to_cl(given.stock):
+        return given
+    if (stated := stated_stock(drawn, absolute=is_absolute)) is None:
+        raise InputError(argument_problem("stock", Wording("SIM110", "stock_nowhere")))
+    return replace(given, stock=stated.stock, stock_from=stated.file)
 
 
 @contextmanager

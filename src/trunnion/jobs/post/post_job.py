@@ -77,6 +77,7 @@ class PostJob:
     decisions     what was decided before planning, for reports
     can_force     whether ``force`` can be asked for, which refusals then say
     stock         of the part as it is drawn, where a simulation, a project or a CL file states it
+    stock_from    the CL file that states it
     blank         corners of its box as the part is clamped, for the setting ``blank``; empty: not known
     setups        the machine with the tool and the work offset of single operations
     strict        a basis of the proof that is missing is an error
@@ -101,6 +102,7 @@ class PostJob:
     can_force: bool = True
     strict: bool = False
     stock: "str | Path | TriangleMesh | None" = None
+    stock_from: str = ""
     blank: str = ""
     setups: Mapping[OperationKey, Machine] = field(default_factory=dict)
 

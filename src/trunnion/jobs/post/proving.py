@@ -7,12 +7,15 @@ Out:    its proof, and the result of the post, whose warnings have been reported
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from trunnion.errors import Problem, Severity, warning
 from trunnion.jobs.observer import Untold
 from trunnion.jobs.post.expected_values import Expectation
 from trunnion.jobs.post.forced_program import write_forced
 from trunnion.jobs.post.machining_times import operation_times
+from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram
 from trunnion.jobs.post.writing import named_run, named_verification
@@ -23,6 +26,9 @@ from trunnion.model.run import Run
 from trunnion.output.compensation_entries import entries_at_control
 from trunnion.verification import Verification, rows_from_starts, verify, without_columns
 from trunnion.verification.skip_meanings import with_other_meanings
+
+if TYPE_CHECKING:  # imported where a CL file states its stock
+    from trunnion.simulation.stock.stated_stock import StatedStock
 
 
 def prove(posting: Posting, written: WrittenProgram, expected: Expectation) -> Proof:
@@ -98,8 +104,18 @@ def report_proof(posting: Posting, planned: PlannedProgram, proof: Proof) -> Pos
     toolpaths = tuple(posting.toolpaths)
     entered = tuple(entries_at_control(planned.program))
     return PostResult(
-        toolpaths, planned.plan, found, (*remarks, *problems), simulation=proof.simulation, entered=entered
-    )
+        toolpaths, planned.plan, found, (*remarks, *problems), simulation=proof.simulation, entered=entered,
+        stated_stock=_stated_stock(job),
+    )  # fmt: skip
+
+
+def _stated_stock(job: PostJob) -> "StatedStock | None":
+    """Return the stock that a CL file states; None where another one counts, or none does."""
+    if not job.stock_from or job.stock is None or isinstance(job.stock, Path):
+        return None
+    from trunnion.simulation.stock.stated_stock import StatedStock  # few CL files state their stock
+
+    return StatedStock(job.stock, job.stock_from)
 
 
 def _nothing_checked(posting: Posting) -> Problem:

@@ -54,18 +54,20 @@ def as_clamped(
 
 def _with_stated_stock(toolpaths: Sequence[Toolpath], job: PostJob) -> PostJob:
     """Return the job with the stock that its CL files state, where nothing else states one."""
-    if job.stock is not None:
+    if not any(toolpath.stock for toolpath in toolpaths) and job.simulation is None:
         return job
-    if job.simulation is None and not any(toolpath.stock for toolpath in toolpaths):
-        return job
-    from trunnion.simulation.stock.stated_stock import stated_stock  # few posts know their stock
+    from trunnion.jobs.inputs.simulation_input import leaves_stock_to_cl, with_decided_stock  # few posts know stock
 
-    stated = stated_stock(toolpaths, absolute=job.options.absolute_frame)
+    is_absolute = job.options.absolute_frame
     if job.simulation is not None:
-        from trunnion.jobs.simulate.posted import with_stated_stock
+        simulation = with_decided_stock(job.simulation, toolpaths, is_absolute=is_absolute)
+        return replace(job, simulation=simulation, stock=simulation.stock, stock_from=simulation.stock_from)
+    if not leaves_stock_to_cl(job.stock):
+        return job
+    from trunnion.simulation.stock.stated_stock import stated_stock
 
-        job = replace(job, simulation=with_stated_stock(job.simulation, stated))
-    return replace(job, stock=None if stated is None else stated.stock)
+    stated = stated_stock(toolpaths, absolute=is_absolute)
+    return job if stated is None else replace(job, stock=stated.stock, stock_from=stated.file)
 
 
 def _without_notices(toolpaths: Sequence[Toolpath], job: PostJob) -> tuple[list[Toolpath], tuple[str, ...]]:

@@ -20,6 +20,7 @@ from trunnion.wording import counted
 
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.simulate.result import SimulationResult
+    from trunnion.simulation.stock.stated_stock import StatedStock
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -35,6 +36,7 @@ class PostResult:
     simulation    what it cuts and hits; None: it was not simulated
     encoding      of its files
     entered       what the operator enters for radius compensation, and where
+    stated_stock  of the part as it is drawn, in the coordinates of the program; None: no CL file states it
     """
 
     toolpaths: Annotated[tuple[Toolpath, ...], NOT_DATA]
@@ -50,6 +52,7 @@ class PostResult:
     simulation: Annotated["SimulationResult | None", NOT_DATA] = None
     encoding: Annotated[str, NOT_DATA] = "utf-8"
     entered: tuple[str, ...] = ()
+    stated_stock: Annotated["StatedStock | None", NOT_DATA] = None
     _memory: io.BytesIO | None = None
 
     def __repr__(self) -> str:

@@ -16,6 +16,7 @@ from trunnion.files import OutputGroup, check_outputs, output_group, resolve_out
 from trunnion.jobs.inputs.arguments import check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import Settings, as_texts
+from trunnion.jobs.inputs.simulation_input import leaves_stock_to_cl
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post_project.checks import SetupFindings, check_project
@@ -116,12 +117,25 @@ def post_into(
     """Post a project; its files appear with those of the ``group``. Errors are those of ``post_project``."""
     posting = _prepared(group, project, options, observer)
     posted = post_setups(posting)
+    posting = _with_stated_stock(posting, posted)
     found = _judged(posting, posted)
     outputs = [(setup, each.output) for setup, results in posted for each in results if each.output is not None]
     remember_setups(group, project, outputs)
     warnings = _reported(posting, found)
     _write_papers(posting, found)
     return ProjectResult(project, tuple(posted), found.simulation, tuple(warnings))
+
+
+def _with_stated_stock(posting: ProjectPosting, posted: Sequence[PostedPrograms]) -> ProjectPosting:
+    """Return the project with the stock that the CL files of its first set-up state, where it states none itself."""
+    project = posting.project
+    if not posted or posted[0][0] is not project.posted[0] or not leaves_stock_to_cl(project.simulation.stock):
+        return posting
+    stated = posted[0][1][0].stated_stock if posted[0][1] else None
+    if stated is None:
+        return posting
+    simulation = replace(project.simulation, stock=stated.stock, stock_from=stated.file)
+    return replace(posting, project=replace(project, simulation=simulation))
 
 
 def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, observer: Observer) -> ProjectPosting:

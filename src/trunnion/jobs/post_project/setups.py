@@ -13,6 +13,7 @@ from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup
 from trunnion.jobs.inputs.reading import FilePath, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.simulation_input import leaves_stock_to_cl
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.papers.writing import PostPapers
 from trunnion.jobs.post.planning import load_toolpaths
@@ -145,7 +146,7 @@ def _stock_of(project: Project, setup: PostedSetup) -> "str | Path | TriangleMes
     first = project.simulation.setups[0]
     if setup is not project.posted[0] or first.pose is not None:
         return None
-    return project.simulation.stock or None
+    return None if leaves_stock_to_cl(project.simulation.stock) else project.simulation.stock
 
 
 def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program: _Program) -> PostResult:

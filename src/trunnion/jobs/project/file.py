@@ -26,7 +26,7 @@ from trunnion.jobs.project.setups import OF_ONE_PROGRAM, Purpose, SetupReader, p
 from trunnion.jobs.project.stated_values import StatedValues
 from trunnion.machines import shipped_machines
 from trunnion.messages import Wording, phrase
-from trunnion.simulation.stock.solids import is_mesh, stock_shape
+from trunnion.simulation.stock.solids import CL_STOCK, is_mesh, stock_shape
 
 #: A line that begins the table of a simulation: no control has one like it.
 _HEADER: Final = re.compile(rb"^[ \t]*\[{1,2}[ \t]*[\"']?simulation[\"']?[ \t]*[\].]", re.MULTILINE)
@@ -108,8 +108,8 @@ class _Reader:
         checks = _checks(table.table("checks"))
         hooks = self._stated.paths.files(table, "hooks")
         strict = table.flag("strict", False)
-        whole = self._whole(table, checks)
         own = _tables(table)
+        whole = self._whole(table, checks, has_cl="cl" in table or bool(own and "cl" in own[0]))
         shared = self._setups.shared(table, is_alone=not own)
         setups = [self._setups.one(each, shared) for each in own] if own else [self._setups.alone(table, shared)]
         _check_names(own, [each.simulated.name for each in setups])
@@ -122,11 +122,12 @@ class _Reader:
         simulation = SimulationInput(setups=simulated, places=places_of(table), **whole)
         return Project(self._purpose.path, simulation, posted, checks, hooks, strict, files=tuple(root.files()))
 
-    def _whole(self, table: Table, checks: ProjectChecks) -> dict[str, Any]:
+    def _whole(self, table: Table, checks: ProjectChecks, *, has_cl: bool) -> dict[str, Any]:
         """Return what is stated of the simulation as a whole, by the names of arguments."""
         is_simulated = not self._purpose.is_posted or checks.simulate is not Judgement.OFF
         found = {each.name: self._stated.value(table, each) for each in OF_PROJECT if each.name != "stock"}
-        found["stock"] = self._stock(table, is_needed=is_simulated and "stock" not in self._purpose.elsewhere)
+        is_needed = is_simulated and not has_cl and not {"stock", "cl"} & {*self._purpose.elsewhere}
+        found["stock"] = self._stock(table, is_needed=is_needed)
         if found["until"] is not None and self._purpose.is_posted and is_simulated:
             table.add_problem("until", Wording("DEF330", "ends_early"))
         return found
@@ -137,7 +138,7 @@ class _Reader:
             table.add_problem("stock", Wording("DEF330", "no_stock"))
         elif stock and is_mesh(stock):
             return self._stated.paths.file(table, "stock", stock)
-        elif stock and "stock" not in self._purpose.elsewhere:
+        elif stock not in ("", CL_STOCK) and "stock" not in self._purpose.elsewhere:
             try_value(table, stock_shape, stock)
         return stock
 

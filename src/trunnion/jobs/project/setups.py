@@ -23,7 +23,7 @@ from trunnion.jobs.project.stated_values import StatedValues
 from trunnion.jobs.result_output import NO_PAPERS, PAPERS, PaperFiles, paper_files
 from trunnion.messages import Wording
 from trunnion.options.option import Option
-from trunnion.options.words import CL_SETTINGS
+from trunnion.options.words import CL_SETTINGS, FRAME_SETTING
 from trunnion.records import dataclass
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.text import parse_tool
@@ -152,7 +152,8 @@ class SetupReader:
             )
         values = {each.name: stated.values[each.name] for each in OF_SETUP}
         values["radius_register"] = values["radius_register"] or stated.settings.get(RADIUS_REGISTER_SETTING)
-        values["settings"] = {key: value for key, value in stated.settings.items() if key in CL_SETTINGS}
+        known = (*CL_SETTINGS, FRAME_SETTING)
+        values["settings"] = {key: value for key, value in stated.settings.items() if key in known}
         return ReadSetup(SetupInput(programs, name=name, pose=pose, places=stated.places, **values), posted)
 
     def _existing_programs(self, table: Table, stated: StatedSetup) -> tuple[str, ...]:

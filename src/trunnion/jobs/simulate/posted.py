@@ -17,7 +17,7 @@ from trunnion.jobs.arguments import with_present_names
 from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.bodies import fixture_files, fixture_meshes
 from trunnion.jobs.inputs.reading import FilePath, as_machine
-from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput
+from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput, leaves_stock_to_cl
 from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.project.file import is_project, read_project
@@ -37,7 +37,6 @@ from trunnion.simulation.finding import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
-from trunnion.simulation.stock.stated_stock import StatedStock
 from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place
 from trunnion.wording import position
@@ -85,21 +84,9 @@ def simulation_input(given: SimulationLike, machine: Machine, radius_register: s
     setup = replace(base.setups[0], machine=machine, **own)
     setup = replace(setup, radius_register=setup.radius_register or radius_register)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
-    if isinstance(found.stock, str) and found.stock and not is_mesh(found.stock):
+    if isinstance(found.stock, str) and not leaves_stock_to_cl(found.stock) and not is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
-
-
-def with_stated_stock(given: SimulationInput, stated: StatedStock | None) -> SimulationInput:
-    """Return what is simulated with the stock that the CL files state, where none is given.
-
-    Raises ``InputError`` if they state none either.
-    """
-    if given.stock:
-        return given
-    if stated is None:
-        raise InputError(argument_problem("stock", Wording("SIM110", "stock_nowhere")))
-    return replace(given, stock=stated.stock, stock_from=stated.file)
 
 
 def simulated_as_clamped(given: SimulationInput, clamping: Clamping) -> SimulationInput:

@@ -33,7 +33,7 @@ from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.model.unknown_setups import tools_without_length
-from trunnion.options.words import CL_SETTINGS
+from trunnion.options.words import CL_SETTINGS, FRAME_SETTING
 from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.offset_places import cuts_at_unknown_places
@@ -57,7 +57,7 @@ def prepare_setup(
     """
     machine, left = with_stated(as_machine(given.machine), given.settings, given.assume)
     of_reading = {key: value for key, value in left.items() if key in CL_SETTINGS and given.cl}
-    refuse_settings(left.keys() - of_reading.keys(), machine)
+    refuse_settings(left.keys() - of_reading.keys() - {FRAME_SETTING}, machine)
     readers.reader_of(machine)
     machine = set_up_machine(machine, given.zero, given.tool_length)
     angles = checked_angles(given.turn, given.tilt)

@@ -38,8 +38,8 @@ def simulate(
         The machine that runs them: a name, a path or a ``Machine``. Only a project may leave it out.
     stock
         ``"box:X,Y,Z[,x0,y0,z0]"`` with its sizes and its lowest corner (0,0,0 by default), ``"cylinder:D,H[,z0]"``
-        standing on Z = z0 (0 by default) about X0 Y0, mm in the workpiece frame, or a closed mesh. By default that
-        which the CL files state (``$$-> STOCK``); the result has the file as ``stock_from``.
+        standing on Z = z0 (0 by default) about X0 Y0, mm in the workpiece frame, or a closed mesh. By default, and as
+        ``"cl"``, that which the CL files state (``$$-> STOCK``); the result has the file as ``stock_from``.
     part
         The design, a closed mesh in the workpiece frame.
     fixtures

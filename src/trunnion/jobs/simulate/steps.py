@@ -11,19 +11,24 @@ from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.jobs.inputs.arguments import check_choice, check_whole
 from trunnion.jobs.inputs.settings import check_tolerance
-from trunnion.jobs.inputs.simulation_input import SimulationInput, told_with_places
+from trunnion.jobs.inputs.simulation_input import (
+    SimulationInput,
+    leaves_stock_to_cl,
+    told_with_places,
+    with_decided_stock,
+)
 from trunnion.jobs.observer import Observer, Untold
 from trunnion.jobs.simulate.meanings import in_other_meanings
 from trunnion.jobs.simulate.result import SimulationResult, join_results, make_result
 from trunnion.jobs.simulate.setups import prepare_setup
 from trunnion.machines.forward import tool_axis_rows
 from trunnion.messages import Wording
+from trunnion.options.words import FRAME_SETTING
 from trunnion.simulation.cutting.shares import JoinedShares, Share
 from trunnion.simulation.meshes import DEVIATION
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.steps import CuttingOptions, SetupSteps
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
-from trunnion.simulation.stock.stated_stock import stated_stock
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 
@@ -122,7 +127,8 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
     threads = None if given.threads is None else check_whole("threads", given.threads, 1)
     remarks: list[list[Problem]] = [[] for _ in given.setups]
     deviation = _deviation(given)
-    shape = stock_shape(given.stock, remarks[0].append, deviation) if given.stock else None
+    is_known = not leaves_stock_to_cl(given.stock)
+    shape = stock_shape(given.stock, remarks[0].append, deviation) if is_known else None
     setups, problems = [], list[Problem]()
     for each, told in zip(given.setups, remarks, strict=True):
         try:
@@ -132,11 +138,10 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
             problems += error.problems
     if problems:
         raise InputError(dict.fromkeys(problems))
-    stock_from = given.stock_from
     if shape is None:
-        if (stated := stated_stock(setups[0].drawn)) is None:
-            raise InputError(argument_problem("stock", Wording("SIM110", "stock_nowhere")))
-        shape, stock_from = stock_shape(stated.stock), stated.file
+        is_absolute = (given.setups[0].settings or {}).get(FRAME_SETTING) == "absolute"
+        given = with_decided_stock(given, setups[0].drawn, is_absolute=is_absolute)
+        shape = stock_shape(given.stock)
     widths = {name: cutting_width(tool) for each in setups for name, tool in each.tools.items()}
     cell = given.cell or default_cell(shape, min(widths.values(), default=math.inf))
     check_narrow_tools(widths, cell)
@@ -150,7 +155,7 @@ def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares |
     simulation.check_cell(shape, cell)
     tolerance, to_first = given.accuracy or _TOLERANCE * cell, given.stop_at == "first"
     options = CuttingOptions(cell, tolerance, given.near or 0.0, to_first, threads)
-    return SetupSteps(options, observer, shares), shape, setups, remarks, stock_from
+    return SetupSteps(options, observer, shares), shape, setups, remarks, given.stock_from
 
 
 def _deviation(given: SimulationInput) -> float:

@@ -34,9 +34,10 @@ from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import stated_clamping
 from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
-from trunnion.options.words import CL_SETTINGS
+from trunnion.options.words import CL_SETTINGS, FRAME_SETTING
 from trunnion.placing.program_heads import stated_place
 from trunnion.records import dataclass
+from trunnion.simulation.stock.solids import CL_STOCK
 from trunnion.verification import Verification, restore_rapids
 
 #: Arguments of a view that a set-up of a project states; and those of the project as a whole.
@@ -86,7 +87,7 @@ def view_program(
         }  # fmt: skip
         return _posted(files, machine, stated, observer)
     cl, texts_of_settings = given["cl"], as_texts(settings)
-    if not {*CL_SETTINGS}.issuperset(texts_of_settings) or (texts_of_settings and not cl):
+    if not {*CL_SETTINGS, FRAME_SETTING}.issuperset(texts_of_settings) or (texts_of_settings and not cl):
         raise InputError(Problem(str(files[0]), 0, Wording("PAG111", "settings_for_program")))
     others = [*files[1:], *subprograms]
     run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))
@@ -171,7 +172,7 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
     found = {name: getattr(chosen, name) for name in _OF_SETUP} | {name: getattr(project, name) for name in _OF_PROJECT}
     if number:  # what an earlier set-up leaves is known to the simulation of all of them only
         found |= dict.fromkeys(_OF_PROJECT)
-    found["stock"] = found["stock"] or None
+    found["stock"] = found["stock"] or (None if number else CL_STOCK)
     return {**given, **found, **stated, "nc": programs}
 
 

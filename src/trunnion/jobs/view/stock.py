@@ -24,6 +24,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording, joined, phrase
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.words import FRAME_SETTING
 from trunnion.simulation.body_names import body_said
 from trunnion.simulation.finding import What
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
@@ -47,13 +48,18 @@ _KINDS: Final[Mapping[str, str]] = {
 _MOST: Final = 200
 
 
-def view_simulation(machine: Machine, holds: RegisterValue, **given: Any) -> SimulationInput | None:
+def view_simulation(machine: Machine, holds: RegisterValue, frame: str | None, **given: Any) -> SimulationInput | None:
     """Return what is to be simulated, before any work; None without stock.
+
+    frame  the setting of that name of the program
 
     Raises ``InputError`` if an argument needs stock and there is none, or says nothing.
     """
     if given["stock"] is not None:
-        return simulation_input(given, machine, holds)
+        found = simulation_input(given, machine, holds)
+        if frame is None:
+            return found
+        return replace(found, setups=[replace(found.setups[0], settings={FRAME_SETTING: frame})])
     alone = [name for name in _OF_STOCK if given[name] is not None]
     if alone:
         raise InputError([argument_problem(name, Wording("PAG111", "of_a_simulation")) for name in alone])

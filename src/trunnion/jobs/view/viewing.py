@@ -16,7 +16,7 @@ from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools
 from trunnion.jobs.inputs.control_settings import register_value
 from trunnion.jobs.inputs.reading import FilePath, as_machine
-from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.inputs.stated_setup import set_up_machine
 from trunnion.jobs.inputs.stated_words import with_stated
 from trunnion.jobs.observer import SILENT, Observer
@@ -28,6 +28,7 @@ from trunnion.machines import Machine
 from trunnion.messages import Wording
 from trunnion.model.one_frame import WorkpieceFrame, frame_of_offset
 from trunnion.model.run import Run
+from trunnion.options.words import FRAME_SETTING
 from trunnion.simulation.collisions.bodies import fixture_body, part_body
 from trunnion.simulation.meshes import load_mesh
 from trunnion.simulation.tool_deltas import radius_of
@@ -84,7 +85,8 @@ def _prepared(
     placed = set_up_machine(stated, given["zero"], given["tool_length"])
     of_stock = ("stock", "part", "fixtures", "tools", "tool_libraries", "unit", "near", "cell", "accuracy")
     holds = register_value(given["radius_register"], settings, placed)
-    simulated = view_simulation(placed, holds, **{name: given[name] for name in of_stock})
+    frame = as_texts(settings).get(FRAME_SETTING)
+    simulated = view_simulation(placed, holds, frame, **{name: given[name] for name in of_stock})
     viewed = view_program(files, placed, given=given, settings=settings, observer=observer)
     if any(given[name] for name in ("stock", "part", "fixtures")):
         observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
@@ -149,7 +151,7 @@ def write_view(
         Files of the subprograms that it calls. No others are opened.
     stock, near, cell, accuracy
         As for ``simulate``: the page then shows the stock as it is cut, how far it is from ``part`` in the end, and
-        what the simulation finds. Without ``stock`` nothing is simulated.
+        what the simulation finds. Without ``stock`` nothing is simulated; ``"cl"`` is that of the CL files.
     part, fixtures
         Meshes in the workpiece frame.
     radius_register

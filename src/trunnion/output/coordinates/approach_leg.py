@@ -42,9 +42,9 @@ def tilts_tool(machine: Machine, motion: Motion) -> bool:
 
 
 def height_at_home(machine: Machine, tip: Floats, rotary: Floats) -> float | None:
-    """Return how high along the tool the tip is over a point (3,) with the axis along the spindle near home, mm.
-
-    None where that is not known, or where a head has turned the tool from it, by ``rotary`` (2,) degrees.
+    """Return how high along the tool the tip is over a point (3,) with the axis along the spindle near home, mm: at
+    least half way there. None where that is not known, or where a head has turned the tool from it, by ``rotary`` (2,)
+    degrees.
     """
     tilts = any(
         machine.axes[k].mount is Mount.TOOL and abs(a) > _STILL for k, a in zip(machine.rotary, rotary, strict=True)
@@ -56,7 +56,7 @@ def height_at_home(machine: Machine, tip: Floats, rotary: Floats) -> float | Non
         return None
     along = max(machine.linear, key=lambda k: abs(float(np.dot(machine.axes[k].direction, machine.spindle_direction))))
     way = machine.home[along] - end[0, along]
-    end[0, along] += way - np.clip(way, -_FROM_HOME, _FROM_HOME)
+    end[0, along] += way - np.sign(way) * min(_FROM_HOME, abs(way) / 2.0)
     place, axis = forward(machine, end)[:2]
     return float(place[0] @ axis[0])
 

@@ -1,7 +1,8 @@
-"""Names and texts that the encoding of a program cannot hold."""
+"""Names and texts that the encoding of a program cannot hold, or that fill many lines of it."""
 
 from collections.abc import Iterator
 from contextlib import suppress
+from typing import Final
 
 from trunnion.errors import InputError, Problem, warning
 from trunnion.messages import Wording, phrase
@@ -10,16 +11,36 @@ from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls
 from trunnion.transliteration import lacking, spelled
 
+#: A text of more lines is told; its beginning is shown up to this many letters.
+_MANY_LINES: Final = 20
+_SHOWN: Final = 40
+
 
 def text_problems(program: Program) -> list[Problem]:
-    """Return a warning for each text that is transliterated, and an error for one that must stay as it is."""
+    """Return a warning for each text that is transliterated or long, and an error for one that must stay as it is."""
     encoding, found = program.text_form.encoding, dict[str, Problem]()
     for kind, text, file, line in (*_texts(program), *_settings(program)):
         written = spelled(text, encoding)
         if written != text and text not in found:
             wording = _transliterated(program, kind, text, written)
             found[text] = warning(file, line, wording)
-    return [*found.values(), *_called(program), *_inserted(program)]
+    return [*found.values(), *_long(program), *_called(program), *_inserted(program)]
+
+
+def _long(program: Program) -> Iterator[Problem]:
+    """Texts of messages and stops that fill many lines, each once."""
+    told = set[str]()
+    for motion in program.motions:
+        for event in motion.operation.events:
+            text = event.text if isinstance(event, Message | Stop) else ""
+            if len(text) <= _MANY_LINES or text in told:
+                continue
+            told.add(text)
+            count = len(program.control.family.comment(text))
+            if count > _MANY_LINES:
+                shown = repr(f"{text[:_SHOWN]}…")
+                wording = Wording("CTL815", "fills_lines", text=shown, count=count)
+                yield warning(program.file_of(motion.operation), event.line, wording)
 
 
 def _transliterated(program: Program, kind: Wording, text: str, written: str) -> Wording:

@@ -89,17 +89,18 @@ class ArcMap:
 def gap_of_turn(start: Floats, arc: Arc) -> float:
     """Return how far off a full turn a circle or helix ends, mm; 0 if it does not end right beside its start.
 
-    A last digit decides there between a whole turn and nearly none. A short arc that does not rise is one.
+    A last digit decides there between a whole turn and nearly none, or between so many turns and one more. A short arc
+    that neither rises nor turns is one.
     """
     chord = arc.end - start
     a, b, c = chord.tolist()
     x, y, z = arc.normal.tolist()
     rise = a * x + b * y + c * z
     gap = math.hypot(a - rise * x, b - rise * y, c - rise * z)
-    if arc.turns or not SAME_POINT < gap < _GAP or arc.radius < _GAPS * gap:
+    if not SAME_POINT < gap < _GAP or arc.radius < _GAPS * gap:
         return 0.0
-    turns_on = float(cross(start - arc.centre, chord) @ arc.normal) > 0.0
-    return 0.0 if turns_on and abs(rise) < _GAPS * gap else gap
+    goes_on = not arc.turns and float(cross(start - arc.centre, chord) @ arc.normal) > 0.0
+    return 0.0 if goes_on and abs(rise) < _GAPS * gap else gap
 
 
 def normal_of(plane: int, clockwise: bool) -> Floats:

@@ -40,6 +40,9 @@ _LARGEST: Final = 1e5
 _SIZE: Final = re.compile(r"-?\d+(?:\.\d+)?", re.ASCII)
 _SIZES: Final = re.compile(rf"{_SIZE.pattern}(?: ?[xX\u00d7*,;] ?{_SIZE.pattern}){{1,5}}", re.ASCII)
 
+#: Stock that CL files state, where one is asked for in words.
+CL_STOCK: Final = "cl"
+
 _NUMBER: Final = re.compile(r"[+-]?(\d{1,9}(\.\d{0,12})?|\.\d{1,12})", re.ASCII)
 
 
@@ -86,8 +89,8 @@ class StockShape:
 
 
 def is_mesh(text: str) -> bool:
-    """Whether a text names a file with a mesh; else it states a box or a cylinder."""
-    return not text.startswith(("box:", "cylinder:"))
+    """Whether a text names a file with a mesh; else it states a box or a cylinder, or leaves that to CL files."""
+    return text != CL_STOCK and not text.startswith(("box:", "cylinder:"))
 
 
 def stock_shape(
@@ -107,6 +110,8 @@ def stock_shape(
         raise InputError(
             argument_problem("stock", Wording("ARG140", "unusable_type", type=type(text).__name__, remedy=remedy))
         )
+    if text == CL_STOCK:
+        raise InputError(argument_problem("stock", Wording("SIM110", "stock_nowhere")))
     kind, colon, sizes = str(text).partition(":")
     if _SIZES.fullmatch(str(text)) and not Path(str(text)).exists():
         found = tuple(_SIZE.findall(str(text)))

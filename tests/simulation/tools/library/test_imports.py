@@ -424,7 +424,23 @@ def test_a_tool_bit_that_cannot_be_read_is_refused(library: ToolLibrary, said: s
 
 @pytest.mark.parametrize(
     ("text", "diameter"),
-    [("0,25 in", 6.35), ("6,000 mm", 6.0), ('3/8"', 9.525), ("3/8 in", 9.525), ('1 1/2"', 38.1), ("1+1/2 in", 38.1)],
+    [
+        ("0,25 in", 6.35),
+        ("6,000 mm", 6.0),
+        ('3/8"', 9.525),
+        ("3/8 in", 9.525),
+        ('1 1/2"', 38.1),
+        ("1+1/2 in", 38.1),
+        ("3/8″", 9.525),
+        ("3/8''", 9.525),
+        (".25 inch", 6.35),
+        ("0.25\xa0in", 6.35),
+        ("+6 mm", 6.0),
+        ("6e0 mm", 6.0),
+        ("6000 µm", 6.0),
+        ("250 thou", 6.35),
+        ("0.5 ft", 152.4),
+    ],
 )
 def test_a_size_may_have_a_comma_or_be_a_fraction_of_an_inch(text: str, diameter: float) -> None:
     assert bit("endmill.fcstd", Diameter=text).tools[0].sizes.diameter == pytest.approx(diameter)
@@ -442,11 +458,26 @@ def test_other_numbers_are_none(text: str) -> None:
         ("endmill.fcstd", {"CuttingEdgeHeight": "60 mm"}, "CuttingEdgeHeight is 60 mm, more than Length, 50 mm"),
         ("torus.fcstd", {"FlatRadius": 1.0, "TorusRadius": 1.0}, "the radius of its corner is 2 mm by one"),
         ("bullnose.fcstd", {"CornerRadius": 1.0, "TorusRadius": 2.0}, "the radius of its corner is 1 mm by one"),
+        ("endmill.fcstd", {"CornerRadius": 1.0}, "CornerRadius is 1, and a bit of the shape endmill has 0"),
+        ("ballend.fcstd", {"TorusRadius": 1.0}, "TorusRadius is 1, and a bit of the shape ballend has 3"),
+        ("ballend.fcstd", {"FlatRadius": 1.0}, "FlatRadius is 1, and a bit of the shape ballend has 0"),
+        ("endmill.fcstd", {"TipAngle": "118°"}, "TipAngle is 118, and a bit of the shape endmill has 180"),
     ],
 )
 def test_a_tool_bit_that_contradicts_itself_is_refused(shape: str, parameters: dict[str, object], said: str) -> None:
     with pytest.raises(InputError, match=said):
         bit(shape, **parameters).tool(None, "bit")
+
+
+@pytest.mark.parametrize(
+    ("shape", "parameters"),
+    [
+        ("endmill.fcstd", {"CornerRadius": 0.0, "FlatRadius": 3.0, "TipAngle": 180.0}),
+        ("ballend.fcstd", {"CornerRadius": 3.0, "FlatRadius": 0.0}),
+    ],
+)
+def test_a_tool_bit_may_say_what_its_shape_has(shape: str, parameters: dict[str, object]) -> None:
+    assert bit(shape, **parameters).tools[0].sizes.diameter == pytest.approx(6.0)
 
 
 def test_a_tool_bit_with_two_shapes_is_refused() -> None:

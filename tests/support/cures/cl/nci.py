@@ -65,6 +65,9 @@ def _places(message: str, *places: int, flag: int = 0) -> Cure:
 
 
 _CHANGE: Final = "0 100 2 {} 0 0 {} 900 0. {} 0. 0. 0."
+#: A hole: type, dwell and two pecks are open.
+_HOLE: Final = "{} 0 0 -9 {} 100 {} 0 0 9 2 0 0 0 0 9 0 0"
+_DRILLED: Final = _HOLE.format(0, 0, "0 0")
 _STATED: Final = _nci(
     "CL470 points_of_compensation", "1", "41 30. 0. -2. -1. 0", "1", "40 40. 0. -2. -1. 0"
 )  # fmt: skip
@@ -82,9 +85,13 @@ CURES: Final = (
     _places("CL225 place", 42, 12, 22, 52),
     _places("CL225 flag", 42, 12, 22, 22, flag=100),
     _places("CL225 ends_within", 42, 12, 22),
-    _out("CL250 cycle_record", "81", "0 0 0 0 0"),
-    _out("CL250 arc_plane", "2", "0 1 0 20 0 0 -2 -1 0 0"),
-    _out("CL250 arc_rises", "3", "0 0 20 0 10 0 -3 -1 0 0"),
+    _other("CL250 cycle_record", "81", _HOLE.format(5, 0, "0 0"), _DRILLED),
+    _other("CL830 nci_pecks", "81", _HOLE.format(1, 0, "3 1"), _HOLE.format(1, 0, "3 0")),
+    _other("CL830 nci_heights", "81", _DRILLED.replace(" 9 2 0 ", " 9 2 4 "), _DRILLED),
+    _other("CL830 nci_dwell", "81", _HOLE.format(0, -1, "0 0"), _HOLE.format(0, 1, "0 0")),
+    _nci("CL850 hole_without_cycle", "+ 81", f"+ {_DRILLED}", "100", "0 5 0 -9 9 2 0 100 5 0 9 0 0"),
+    _nci("CL770 nci_lengths", "20007", "- 0 9 8", "+ 0 8 9", "1002", _CHANGE.format(5, 0, 0)),
+    _other("CL250 arc_plane", "2", "0 3 0 0 10 0 -2 -1 0 0", "0 0 0 0 10 0 -2 -1 0 1"),
     _other("CL250 arc_full", "3", "0 0 0 0 10 0 -2 -1 0 0", "0 0 0 0 10 0 -2 -1 0 1"),
     marked("CL250 arc_without_start", read, "+ 0", "+ 0 0 0 -2 -2 0", "3", "0 0 20 0 10 0 -2 300 0 0",
            head="\n".join([*nci.header(), *_CUT[:8]]) + "\n", foot=_FOOT),
@@ -92,8 +99,8 @@ CURES: Final = (
     _out("CL260 subprogram_record", "1018", "1"),
     _other("CL320 dwell_speed", "4", "0.5 700", "0.5 900"),
     _other("CL330 coolant_number", "1002", _CHANGE.format(5, 0, 9), _CHANGE.format(5, 0, 1)),
-    _nci("CL430 tool_plane", "1014", "- 1 0 0 0 0 1 0 -1 0", f"+ {nci.TOP}", "1000", _CHANGE.format(3, 0, 0),
-         "- 1", "- 0 20 0 -2 100 0", "+ 11", "+ 20 0 -2 20 -1 -2 100 42 0 0 -1 0"),
+    _nci("CL430 tool_plane", "1014", "- 1 0 0 0 0 1 0 -1 0.5", "+ 1 0 0 0 0 1 0 -1 0", "1000", _CHANGE.format(3, 0, 0),
+         "0", "0 20 0 -2 -2 0", "1", "0 20 0 -9 100 0"),
     _nci("CL430 work_system", "1027", f"- {nci.TOP} 5 0 0", f"+ {nci.TOP} 0 0 0", "1000", _CHANGE.format(3, 0, 0),
          "1", "0 20 0 -2 100 0"),
     _other("CL430 plane_number", "1002", _CHANGE.format(5, 2, 0), _CHANGE.format(5, 0, 0)),

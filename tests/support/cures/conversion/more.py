@@ -42,6 +42,7 @@ CURES: Final = (
     edited("CNV144 selects_offset_of_its_own", "G21 G17 G90 G94 G40 G80\n", "G21 G17 G90 G94 G40 G80 G54\n", cl=False),
     within("CNV150", "COMPCAD", on="yl569"),
     within("CNV150 not_carried", "COMPCAD", on="yl569"),
+    within("CNV150 variable_not_carried", "R7=5", on="yl569"),
     within("CNV150 stock_not_carried", "BLK FORM 0.1 Z X+0 Y+0 Z-20", "BLK FORM 0.2 X+100 Y+100 Z+0", on=TNC),
     within("CNV151 word_machine_s", "- M88", cl=False),
     edited("CNV153 skips_tool", "/T1 M6", "T1 M6"),

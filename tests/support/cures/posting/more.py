@@ -133,6 +133,7 @@ CURES: Final = (
     by_settings("CTL715 length_is_that_of_edge", {"edge_from": "adjust"}, HEAD.replace("ADJUST,1", "ADJUST,5")),
     by_settings("CTL730 way_not_known", {"zero": "0,0,0", "tool_length": "50"}, _TILTED, "generic_head_table_bc"),
     by_lines("CTL810 unseen_characters_left_out", "- STOP/A\u200bB", "+ STOP/AB"),
+    by_lines("CTL815 fills_lines", f"- PPRINT/{'turn the part ' * 1000}", "+ PPRINT/turn the part"),
     by_settings("CTL820 tool_called_name", {"tool_call": "number"}, HEAD.replace("D10", "\u51f8"), encoding="ascii",
               tool_call="name"),
     by_lines("CTL458 goes_home", FOOT + _OP2.rstrip(), same_tool="clearance", restart="on"),

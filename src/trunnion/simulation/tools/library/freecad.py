@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any, Final
 
@@ -15,16 +15,22 @@ from trunnion.simulation.tools.shapes import fault_of_size, shape_faults
 from trunnion.simulation.tools.sizes import ANGLE_LIMITS, BodyPiece, ToolKind, ToolSizes
 
 #: mm to a unit of length, degrees to a unit of angle; a parameter without a unit is in mm or degrees.
-_LENGTHS: Final[Mapping[str, float]] = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
+_LENGTHS: Final[Mapping[str, float]] = {
+    "": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "mm": 1.0, "cm": 10.0, "m": 1000.0,
+    "thou": 0.0254, "mil": 0.0254, "in": 25.4, "inch": 25.4, '"': 25.4, "ft": 304.8, "'": 304.8,
+}  # fmt: skip
 #: Sizes that say the same differ by no more than this, mm.
 _SAME: Final = 1e-3
 
 _ANGLES: Final = frozenset({"", "°", "deg"})
 
 #: A number with its unit: with a point or a comma, as the language of the system has it, or a fraction of an inch.
-_VALUE: Final = re.compile(r"(?P<number>\d{1,12}(?:[.,]\d{0,20})?)\s*(?P<unit>[^\d.,\s]{0,5})", re.ASCII)
+_VALUE: Final = re.compile(
+    r"(?P<number>\+?(?:\d{1,12}(?:[.,]\d{0,20})?|[.,]\d{1,20})(?:e[+-]?\d{1,2}(?!\d))?)\s*(?P<unit>[^\d.,\s]{0,5})",
+    re.ASCII,
+)
 _FRACTION: Final = re.compile(
-    r"(?:(?P<whole>\d{1,6})(?:\s*[+-]\s*|\s+))?(?P<part>\d{1,6})/(?P<of>[1-9]\d{0,5})\s*(?P<unit>in|\")", re.ASCII
+    r"(?:(?P<whole>\d{1,6})(?:\s*[+-]\s*|\s+))?(?P<part>\d{1,6})/(?P<of>[1-9]\d{0,5})\s*(?P<unit>in|inch|\")", re.ASCII
 )
 
 #: Names of shapes, in small letters without hyphens -> kind.
@@ -70,15 +76,21 @@ class _Parameters:
         value = self.values.get(key)
         if value is None:
             return 0.0, ""
-        if isinstance(value, str) and (match := _VALUE.fullmatch(value.strip())):
+        text = _written_plainly(value) if isinstance(value, str) else ""
+        if match := _VALUE.fullmatch(text):
             return float(match["number"].replace(",", ".")), match["unit"]
-        if isinstance(value, str) and (match := _FRACTION.fullmatch(value.strip())):
+        if match := _FRACTION.fullmatch(text):
             return int(match["whole"] or 0) + int(match["part"]) / int(match["of"]), match["unit"]
         number = finite(value)
         if number is None or number < 0.0:
             self.faults.append(phrase("no_number_with_unit", size=key, value=str(value)[:40]))
             return 0.0, ""
         return number, ""
+
+
+def _written_plainly(value: str) -> str:
+    """Return a value with plain blanks, and with the sign of inches that is one character of ASCII."""
+    return " ".join(value.split()).replace("″", '"').replace("”", '"').replace("''", '"').replace("′", "'")
 
 
 def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
@@ -97,7 +109,9 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
         _note_contradictions(root, known, parameters)
         faults = parameters.faults or [fault_of_size(each) for each in shape_faults(sizes)]
     if faults or sizes is None:
-        problems = tuple(Problem(file, 0, Wording("SIM152", "tool_bit", name=name, fault=fault)) for fault in faults)
+        problems = tuple(
+            Problem(file, 0, Wording("SIM152", "tool_bit", name=name, fault=each)) for each in dict.fromkeys(faults)
+        )
         return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
     remarks = [Wording("SIM155", "tool_bit_without_holder", length=sizes.length)] if sizes.length else []
     remarks += [Wording("SIM155", "tap_without_thread")] if known == "tap" else []
@@ -114,9 +128,23 @@ def _note_contradictions(root: Mapping[str, Any], known: str, bit: _Parameters) 
     file = short_text(root.get("shape"))
     if known != _known(file) and _KINDS.get(_known(file), _KINDS[known]) is not _KINDS[known]:
         bit.faults.append(phrase("shapes_contradict", first=known, second=file))
+    for size, value, usual in _sizes_of_other_shapes(known, bit):
+        if value and abs(value - usual) > _SAME:
+            bit.faults.append(phrase("size_of_another_shape", size=size, value=value, shape=known, usual=usual))
     edge, length = bit.length("CuttingEdgeHeight"), bit.length("Length")
     if 0.0 < length < edge:
         bit.faults.append(phrase("edge_longer_than_tool", edge=edge, length=length))
+
+
+def _sizes_of_other_shapes(known: str, bit: _Parameters) -> Iterator[tuple[str, float, float]]:
+    """Yield sizes that a shape has by itself: their keys, what the bit states (0: nothing), and what the shape has."""
+    if known in ("endmill", "reamer", "ballend"):
+        radius = 0.5 * bit.length("Diameter")
+        corner = radius if known == "ballend" else 0.0
+        yield from ((key, bit.length(key), corner) for key in ("CornerRadius", "TorusRadius"))
+        yield "FlatRadius", bit.length("FlatRadius"), radius - corner
+    if known in ("endmill", "ballend", "bullnose", "torus"):
+        yield "TipAngle", bit.angle("TipAngle"), 180.0
 
 
 def _sizes(shape: str, bit: _Parameters) -> ToolSizes:
