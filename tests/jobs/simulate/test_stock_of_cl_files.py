@@ -156,3 +156,12 @@ def test_a_view_shows_it_where_it_is_asked_for(tmp_path: Path) -> None:
     assert prepare_view(project(tmp_path, PROJECT)).stock is not None
     with pytest.raises(trunnion.InputError, match="no CL file states it"):
         prepare_view(place, machine="dmu65", stock="cl", cl=[written(tmp_path, stock="")])
+
+
+def test_a_place_keeps_it_on_the_table(tmp_path: Path) -> None:
+    cl = written(tmp_path)
+    how = {"machine": "dmu65", "turns": [0.0], "tilts": [0.0]}
+    stated = trunnion.place(cl, stock="box:60,40,10,0,-20,-10", **how)  # type: ignore[arg-type]
+    assert trunnion.place(cl, stock="cl", **how).zero_mm == stated.zero_mm  # type: ignore[arg-type]
+    with pytest.raises(trunnion.InputError, match="no CL file states it"):
+        trunnion.place(written(tmp_path, stock=""), stock="cl", **how)  # type: ignore[arg-type]

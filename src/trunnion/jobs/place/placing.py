@@ -11,6 +11,7 @@ from trunnion.jobs.arguments import PlaceArguments, reported_by_arguments, taken
 from trunnion.jobs.inputs.arguments import check_choice, check_observer
 from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import as_texts
+from trunnion.jobs.inputs.simulation_input import SimulationInput, leaves_stock_to_cl, with_decided_stock
 from trunnion.jobs.inputs.stated_setup import apply_setup, check_one_zero, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.bodies import BodiesInput, read_bodies, stated_lengths
@@ -21,11 +22,13 @@ from trunnion.machines import Machine
 from trunnion.machines.unmeasured import POSITIONS, ValueKind, corners, unmeasured_values
 from trunnion.messages import Wording
 from trunnion.model.clamped_toolpaths import clamped_after
+from trunnion.options.words import FRAME_SETTING
 from trunnion.placing.body_distances import touch_warnings
 from trunnion.placing.collisions.path_samples import lengths_of
 from trunnion.placing.goals import Goal
 from trunnion.placing.place_search import PlaceSearch
 from trunnion.placing.placement import Placement
+from trunnion.simulation.stock.solids import CL_STOCK
 
 #: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
 _COLLISION_TURNS: Final = 15.0
@@ -131,9 +134,15 @@ def place(
     among = BodiesInput(
         stated["fixtures"], stated["part"], stated["stock"], stated["tools"], stated["tool_libraries"], stated["unit"]
     )
-    standing = standing_on(loaded, among.stock, among.part, remarks)
+    leaves_to_cl = among.stock is not None and leaves_stock_to_cl(among.stock)
+    standing = None if leaves_to_cl else standing_on(loaded, among.stock, among.part, remarks)
     with reported_by_arguments("place", given):
         read = read_input(files, loaded, texts, stated, observer, tilts_by_size)
+    if leaves_to_cl:
+        is_absolute = texts.get(FRAME_SETTING) == "absolute"
+        decided = with_decided_stock(SimulationInput(CL_STOCK, ()), read.toolpaths, is_absolute=is_absolute)
+        among = replace(among, stock=decided.stock)
+        standing = standing_on(loaded, among.stock, among.part, remarks)
     for tilt in tilts_by_size:  # what could not be said in the head of a program is told before it is searched
         clamped_after(read.clamping, (0.0, tilt), read.rows.stretches[0].file)
     bodies = None

@@ -10,7 +10,7 @@ from trunnion.jobs.inputs.arguments import checked_angles
 from trunnion.jobs.inputs.bodies import MeshLike, read_mesh
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import SettingValue
-from trunnion.jobs.inputs.simulation_input import SimulationInput
+from trunnion.jobs.inputs.simulation_input import SimulationInput, leaves_stock_to_cl
 from trunnion.jobs.place.bodies import BodiesInput, stock_mesh
 from trunnion.jobs.project.file import load_project
 from trunnion.jobs.project.named_files import project_inputs
@@ -62,6 +62,8 @@ def _bodies(given: SimulationInput, number: int, problems: list[Problem]) -> Bod
     """Return what stands on the table in a set-up of a project: as poses have brought it there, not yet turned."""
     own = given.setups[number]
     stock: MeshLike | None = given.stock or None
+    if number and leaves_stock_to_cl(stock):
+        stock = None  # which the CL files of another set-up state
     part: MeshLike | None = None
     for k, setup in enumerate(given.setups[: number + 1]):
         pose = setup.pose if k else None
