@@ -1,6 +1,7 @@
-"""The user's folders for what a program keeps between its runs."""
+"""The user's folders for what a program keeps between its runs, and for what it keeps while it runs."""
 
 import os
+import tempfile
 from pathlib import Path
 
 
@@ -31,3 +32,11 @@ def user_data() -> Path | None:
     except RuntimeError:
         return None
     return home / ".local" / "share" if home.is_dir() else None
+
+
+def temporary_folder() -> Path | None:
+    """Return the folder of temporary files; None: no file can be written there or in the folder of the command."""
+    try:
+        return Path(tempfile.gettempdir())
+    except OSError:
+        return None

@@ -169,6 +169,37 @@ def test_heights_and_feeds_of_holes_are_in_the_unit_that_is_given(reads: Reads) 
     assert dict(on.values)["MMPM"] == (127,)
 
 
+FRONT = ["1014", "1. 0. 0. 0. 0. 1. 0. -1. 0."]
+
+
+def test_points_of_a_turned_tool_plane_are_in_its_coordinates(reads: Reads) -> None:
+    """The front view: its X is X, its Y is Z, and its Z, along which the tool stands, is -Y."""
+    null = ["1000", "0 100 2 3 0 0 0 900 0. 0 0. 0. 0."]
+    hole = nci.Hole((1, 2, 3), Z, 5, 2, 9)
+    path = [
+        *nci.line(0, (1, 2, 30), -2), *nci.cycle(0, [hole], 100), *nci.line(0, (0, 0, 9), -2),
+        *nci.line(1, (0, 0, 3), 200), "3", "0 0 20 0 10 0 3 -1 0 0", *nci.five_axis((5, 6, 7), (0, 0.6, 0.8), -1),
+    ]  # fmt: skip
+    first, second, third = reads(
+        *CUT, *nci.line(0, (0, 0, 50), -2), *FRONT, *null, *path, "1014", nci.TOP, *null, *nci.line(0, (9, 8, 7), -2)
+    ).operations
+    assert first.moves.tip.tolist()[-1] == [0, 0, 50]
+    moves = second.moves
+    expected = [[1, -30, 2], [1, -3, 2], [0, -9, 0], [0, -3, 0], [20, -3, 0], [5, -7, 6]]
+    np.testing.assert_allclose(moves.tip, np.array(expected, float), atol=1e-12)
+    np.testing.assert_allclose(moves.axis, np.array([*[[0, -1, 0]] * 5, [0, -0.8, 0.6]], float), atol=1e-12)
+    assert second.arcs.centre.tolist() == [[10, -3, 0]]
+    assert second.arcs.normal.tolist() == [[0, -1, 0]]
+    assert (third.moves.tip.tolist(), third.moves.axis.tolist()) == ([[9, 8, 7]], [[0, 0, 1]])
+
+
+def test_operations_of_two_planes_that_are_one_cut_keep_their_coordinates(reads: Reads) -> None:
+    null = ["1000", "0 100 2 3 0 0 0 900 0. 0 0. 0. 0."]
+    (operation,) = reads(*CUT, *FRONT, *null, *nci.line(1, (20, -2, 5), 300), *nci.line(1, (25, -2, 5), -1)).operations
+    assert operation.moves.tip.tolist()[-3:] == [[20, 0, -2], [20, -5, -2], [25, -5, -2]]
+    assert operation.moves.axis.tolist()[-3:] == [[0, 0, 1], [0, -1, 0], [0, -1, 0]]
+
+
 def test_lengths_of_the_tool(reads: Reads) -> None:
     tool = reads("20007", "0. 12. 60. 20. 10. 50. 40. 0 0. 0. 0", *CUT).operations[0].tool
     assert (tool.length, tool.flute_length, tool.diameter) == (60, 12, 10)
@@ -213,7 +244,10 @@ def test_compensation_in_the_control_wants_its_points_stated(
         (["20007", "0 9 8", *nci.tool(4, 8, 0)], "CL770", "has the cutting length 9 and the length 8"),
         (["200", "1 2 3"], "CL260", "record 200 (line 18) belongs to turning"),
         (["1018", "1"], "CL260", "record 1018 (line 18) belongs to a subprogram"),
-        (["1014", "1 0 0 0 0 1 0 -1 0"], "CL430", "turns the tool plane"),
+        (["1014", "1 0 0 0 0 1 0 -1 0.1"], "CL430", "has no three unit vectors"),
+        (["1014", "1 0 0 0 1 0 0 0 -1"], "CL430", "has no three unit vectors"),
+        (["1014", "1 0 0 0 0 1 0 -1 0", "1000", "0 100 2 3 0 0 0 900 0. 0 0. 0. 0.", "2", "0 0 0 20 0 0 -2 100 0 0"],
+         "CL250", "without a point to begin in"),
         (["1027", f"{nci.TOP} 5 0 0"], "CL430", "work coordinate system"),
         (["2", "0 3 0 20 0 0 -2 -1 0 0"], "CL250", "has 0 and 3, where a compensation word"),
         (["2", "1 2 0 20 0 0 -2 -1 0 0"], "CL250", "has 1 and 2, where a compensation word"),
@@ -299,16 +333,30 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, cut: str, what: str) 
         read_cl(file)
 
 
+#: Tool planes: the top view, the front view, and one that is turned about two axes.
+PLANES = [
+    np.eye(3), np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]]),
+    np.array([[0.6, 0, -0.8], [0, 1, 0], [0.8, 0, 0.6]]) @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1.0]]),
+]  # fmt: skip
+
+
 @st.composite
-def said_paths(draw: st.DrawFn) -> list[Step]:
-    """Paths of which records can say each step."""
-    steps = [step for step in draw(paths()) if nci.can_say([step])]
+def said_paths(draw: st.DrawFn) -> tuple[list[Step], Floats]:
+    """Paths of which records can say each step, in a tool plane; in half of them the tool stands along it."""
+    plane = draw(st.sampled_from(PLANES))
+    steps = draw(paths())
+    if draw(st.booleans()):  # the path itself is turned, so that its upright tool axes are those of the plane
+        steps = [nci.in_plane(step, plane.T) for step in steps]
     kept: list[Step] = []
     for step in steps:
-        if step.word == "ARC" and (kept[-1].word != "GOTO" or kept[-1].point != step.start or kept[-1].axis != Z):
+        inside = nci.in_plane(step, plane)
+        if not nci.can_say([inside]):
+            continue
+        before = nci.in_plane(kept[-1], plane) if kept else inside
+        if step.word == "ARC" and (before.word != "GOTO" or before.point != inside.start or before.axis != Z):
             continue  # its line has been left out
         kept.append(step)
-    return kept
+    return kept, plane
 
 
 def outside_of_holes(found: dict[str, Any]) -> Floats:
@@ -325,10 +373,10 @@ def outside_of_holes(found: dict[str, Any]) -> Floats:
 
 
 @settings(max_examples=examples(25), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(steps=said_paths(), inch=st.booleans())
-def test_a_path_is_the_same_as_apt(tmp_path: Path, steps: list[Step], inch: bool) -> None:
-    found = []
-    for name, text in (("apt", write_in("apt", steps, inch)), ("nci", nci.write(steps))):
+@given(path=said_paths(), inch=st.booleans())
+def test_a_path_is_the_same_as_apt(tmp_path: Path, path: tuple[list[Step], Floats], inch: bool) -> None:
+    (steps, plane), found = path, []
+    for name, text in (("apt", write_in("apt", steps, inch)), ("nci", nci.write(steps, plane))):
         file = tmp_path / name
         file.write_text(text or "", encoding="utf-8")
         toolpath = read_cl(file, ClReading(units="inch" if inch else "mm"))

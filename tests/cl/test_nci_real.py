@@ -72,7 +72,7 @@ def _lines() -> tuple[str, ...]:
 
 
 def _written() -> tuple[str, ...]:
-    """A job with what the real file lacks: holes in three tool axes, lengths of tools, arcs in all planes, a helix."""
+    """A job with what the real file lacks: holes in two tool axes, lengths of tools, arcs, a helix, a turned plane."""
     up, aslant = (0.0, 0.0, 1.0), (0.6, 0.0, 0.8)
     holes = [
         nci.Hole((10, 20, 1), up, 9, 3, 50, 2.5, 0.25), nci.Hole((30, 20, 1), up, 9, 3, 50, 2.5, 0.25),
@@ -82,7 +82,8 @@ def _written() -> tuple[str, ...]:
     lines = [
         "20001", "DRILL 6", "20007", "0. 30. 70. 35. 10. 50. 40. 0 0. 0. 0", *nci.tool(3, 6, 0, 900, 1),
         *nci.five_axis((0, 0, 60), up, -2, 42), *nci.cycle(1, holes, 120, 2), *nci.cycle(3, holes[:1], 900),
-        *nci.five_axis((0, 0, 60), up, -2, 42), "1002", "0 100 2 3 0 0 0 900 0. 1 0. 0. 0.",
+        *nci.five_axis((0, 0, 60), up, -2, 42), "1014",
+        "1. 0. 0. 0. 0. 1. 0. -1. 0.", "1002", "0 100 2 3 0 0 0 900 0. 1 0. 0. 0.",
         *nci.line(0, (0, 0, 60), -2), *nci.line(1, (0, 0, 0), 300), *arcs, "2", "0 0 30 10 35 10 9 -1 0 1",
         *nci.line(0, (0, 0, 60), -2),
     ]  # fmt: skip

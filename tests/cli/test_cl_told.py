@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from tests.support.posting import FOOT, HEAD
 from trunnion.cli import main
 from trunnion.jobs.registry import JOBS
 from trunnion.options.kinds import FileIn
@@ -70,3 +71,14 @@ def test_what_a_file_does_not_state_is_told(folder: Path, capsys: pytest.Capture
     (folder / "part.apt").write_text(text, encoding="utf-8")
     main(["reach", *_COMMANDS["reach"]])
     assert "lengths in mm, which it does not state" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("units", "told"), [("inch", True), ("mm", False)])
+def test_the_unit_of_a_file_of_nx_is_said_where_the_program_has_another(
+    units: str, told: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = tmp_path / "part.cls"
+    source.write_text(HEAD + FOOT, encoding="utf-8")
+    program = str(tmp_path / "part.nc")
+    main(["post", str(source), "--machine", "matsuura_mx330", "--set", f"units={units}", "--output", program])
+    assert ("lengths in mm" in "".join(capsys.readouterr())) is told

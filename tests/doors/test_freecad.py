@@ -20,7 +20,9 @@ from trunnion.cli.doors import macro_folder
 from trunnion.doors import trunnion_post
 from trunnion.model.toolpath import CycleOn, Frame, Kind
 
-JOBS = ("profile", "pocket", "adaptive", "helix", "drilling", "facing", "two_tools", "two_fixtures")
+JOBS = (
+    "profile", "pocket", "adaptive", "helix", "drilling", "facing", "two_tools", "two_fixtures", "tags", "thread",
+)  # fmt: skip
 MACHINES = ("dmu65", "yl569", "haas_umc750")
 
 
@@ -128,6 +130,31 @@ def test_inactive_operations_and_fixtures(tmp_path: Path) -> None:
     assert writer.offset_setting() == "G54,POCKET G55:G55"
 
 
+def test_dressups_upon_each_other_are_the_operation_that_they_change(tmp_path: Path) -> None:
+    cut = (*START, command("G1", Z=0.0, F=1.0))
+    base = operation(*cut, CoolantMode="Mist")
+    ramp = Thing(Label="RAMP", Path=Thing(Commands=cut), Base=base)
+    tags = Thing(Label="TAGS", Path=Thing(Commands=cut), Base=ramp)
+    text = trunnion_post.Writer().job([tags])
+    assert "LOADTL/4\nSPINDL/RPM,5000,CLW\nCOOLNT/MIST\n" in text
+    base.Active = False
+    with pytest.raises(trunnion_post.RefusedError, match="no active operation"):
+        trunnion_post.Writer().job([tags])
+    base.Active, base.Placement = True, placed(0, 0, 0, 30)
+    with pytest.raises(trunnion_post.RefusedError, match="operation TAGS: its work plane is not that"):
+        trunnion_post.Writer().job([tags])
+    tags.Placement = ramp.Placement = base.Placement
+    (found,) = read(tmp_path, tags).operations
+    assert found.frame != Frame()
+
+
+def test_an_arc_without_width_is_a_line(tmp_path: Path) -> None:
+    down = command("G2", X=1.0, Y=2.0, Z=-9.0, I=0.0, J=0.0, K=-5.0)
+    (found,) = read(tmp_path, operation(*START, command("G1", Z=1.0, F=1.0), down)).operations
+    assert found.moves.kind.tolist() == [Kind.RAPID, Kind.LINEAR, Kind.LINEAR]
+    assert found.moves.tip.tolist()[-1] == [1, 2, -9]
+
+
 def test_a_line_of_the_cl_file_has_the_name_of_its_operation() -> None:
     begins = [(5, "ONE"), (20, "TWO")]
     assert trunnion_post.with_operation("a.apt:21: error: no", begins) == "a.apt:21: error: no (operation TWO)"
@@ -220,6 +247,20 @@ def test_jobs_of_freecad_become_proven_programs(tmp_path: Path) -> None:
         assert (tmp_path / f"{name}.nc").stat().st_size > 200
         assert "passed" in (tmp_path / f"{name}.html").read_text(encoding="utf-8").lower()
     assert len({each.frame for each in trunnion.read_cl(tmp_path / "two_tools.apt").operations}) == 1
+    removed = {}
+    for name in (each for each in JOBS if each != "two_fixtures"):  # which cuts at two places of a table
+        for machine in MACHINES:
+            # A thread mill has a form that CL files have no words for, and cuts more than the part has.
+            own = {"tools": ["5=flat:6,length=50,flutes=40"]} if name == "thread" else {"part": tmp_path / "block.stl"}
+            result = trunnion.post(tmp_path / f"{name}.apt", machine=machine, simulation={**own, "cell": 1.0})
+            assert result.simulation is not None
+            gouge = result.simulation.gouge
+            assert gouge is None if name == "thread" else gouge is not None and gouge.largest < 1.0, (name, machine)
+            removed[name, machine] = result.simulation.removed
+    volumes = {name: {round(removed[name, machine]) for machine in MACHINES} for name in JOBS if name != "two_fixtures"}
+    assert all(max(each) - min(each) <= 0.005 * min(each) for each in volumes.values()), volumes
+    assert min(volumes["profile"]) - 100 > min(volumes["tags"]), "tags are left"
+    assert min(volumes["thread"]) > min(volumes["helix"]) + 700
 
 
 @pytest.mark.skipif(not shutil.which("freecadcmd"), reason="FreeCAD is not installed")
@@ -260,6 +301,22 @@ def test_a_file_that_is_no_cl_of_this_post_is_not_replaced(arguments: str, tmp_p
     path.write_text("", encoding="utf-8")
     for _ in range(2):
         trunnion_post.export([given], str(path), "--cl-only")
+
+
+def test_a_post_that_was_edited_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    line = ["freecad", "install", "--folder", str(tmp_path)]
+    post = tmp_path / "trunnion_post.py"
+    post.write_text("# of an installation that nothing is known of\n", encoding="utf-8")
+    assert [main(line), main(line)] == [0, 0]
+    shipped = post.read_bytes()
+    assert len(list(tmp_path.iterdir())) == 2
+    post.write_bytes(shipped + b"# ours\n")
+    capsys.readouterr()
+    assert main(line) == 0
+    assert post.read_bytes() == shipped
+    (kept,) = tmp_path.glob("trunnion_post.py.edited-*")
+    assert kept.read_bytes() == shipped + b"# ours\n"
+    assert f"is kept as {kept.name}" in capsys.readouterr().err
 
 
 def test_install_says_where_there_can_be_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from tests.support.kept_kernels import INNER, RUN, WHAT_IS_IMPORTED, Compiled, machine_code, run
 from tests.support.locations import ROOT
+from trunnion.files.dead_jobs import remove_temporary_folders
 from trunnion.jit import store
 
 
@@ -244,6 +245,18 @@ def test_nor_from_such_a_folder_that_the_user_chose(tmp_path: Path, monkeypatch:
     monkeypatch.setattr(store, "_candidates", lambda: iter([chosen, tmp_path / "next"]))
 
     assert store.cache_folder.__wrapped__() == tmp_path / "next"
+
+
+def test_without_a_temporary_folder_there_is_one_candidate_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A disk that takes no file has none, and a program can be verified there nevertheless."""
+    before = list(store._candidates())
+
+    def nowhere() -> str:
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    monkeypatch.setattr("tempfile.gettempdir", nowhere)
+    assert list(store._candidates()) == before[:-1]
+    remove_temporary_folders()
 
 
 def test_a_home_that_does_not_exist_is_not_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

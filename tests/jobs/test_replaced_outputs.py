@@ -49,6 +49,27 @@ def test_an_output_replaces_no_file_of_others(
             assert "FIL250" in capsys.readouterr().err
 
 
+def test_a_command_that_tells_itself_what_it_replaces_replaces_no_file_of_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Programs, CL data, recordings and summaries, and what a stopped --suggest would have written."""
+    fill_folder(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    tried, replaced = 0, []
+    for job, option in [(each, one) for each in JOBS.values() for one in outputs(each.options) if told(one)]:
+        assert isinstance(option.kind, FileOut)
+        for ending in option.kind.endings or (ending_of(option),):
+            target = Path(f"theirs{ending}")
+            target.write_text(OTHERS[0], encoding="utf-8")
+            given = {option.name: str(target)} | ({"machine": "yl569"} if job.option("machine") else {})
+            code = code_of(line_with(job, given))
+            said, tried = capsys.readouterr().err, tried + 1
+            if code != 2 or target.read_text(encoding="utf-8") != OTHERS[0] or "[ARG" in said:
+                replaced.append((job.name, option.name, ending, code, said))
+    assert replaced == []
+    assert tried > 5
+
+
 POST = "post part.cls --machine yl569 --output"
 
 #: Commands whose outputs are written twice, the second time over the first.

@@ -17,6 +17,7 @@ from trunnion.machines import (
     inverse,
     kinematic_parameters,
     load_machine,
+    shipped_machines,
 )
 from trunnion.machines.forward import kinematic_chain
 from trunnion.machines.inverse import POLE, SLIDES_DEPENDENT, UNREACHABLE, solve_point, solve_slides
@@ -220,7 +221,7 @@ def test_slides_that_a_rotary_axis_has_laid_in_one_plane_are_reported() -> None:
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("key", five_axis_machines())
+@pytest.mark.parametrize("key", shipped_machines())
 def test_a_winding_of_a_hundred_turns_costs_no_digits(key: str) -> None:
     machine = load_machine(key)
     plain = np.array([[12.5, -33.25, 71.0, 0.5, 45.125]])

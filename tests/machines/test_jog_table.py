@@ -10,7 +10,7 @@ from tests.support.machine_strategies import joints, machines
 from tests.support.machines import five_axis_machines
 from trunnion.cli.machine.machine_text import machine_lines
 from trunnion.jobs.describe.machines import describe_machine
-from trunnion.machines import Axis, AxisKind, Machine, Mount, forward, load_machine
+from trunnion.machines import Axis, AxisKind, Machine, Mount, forward, load_machine, shipped_machines
 from trunnion.machines.jog_table import jog_table, rotary_pose
 
 #: What is seen at the shipped machines: for each axis the tool, and the iron.
@@ -114,7 +114,7 @@ def agrees(machine: Machine, values: dict[str, float]) -> None:
     np.testing.assert_allclose(pose.tool_axis, axis[0], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("key", five_axis_machines())
+@pytest.mark.parametrize("key", shipped_machines())
 def test_the_table_of_a_shipped_machine_agrees_with_the_forward_map(key: str) -> None:
     machine = load_machine(key)
     table = jog_table(machine)

@@ -6,8 +6,7 @@ from hypothesis import given, settings
 
 from tests.support.examples import examples
 from tests.support.machine_strategies import joints, machines
-from tests.support.machines import five_axis_machines
-from trunnion.machines import Machine, forward, load_machine
+from trunnion.machines import Machine, forward, load_machine, shipped_machines
 from trunnion.machines.links import axes_between, carrier, link_transforms
 
 
@@ -30,7 +29,7 @@ def test_spindle_and_workpiece_give_tip_and_tool_axis(machine: Machine, values: 
 
 
 @pytest.mark.third
-@pytest.mark.parametrize("name", five_axis_machines())
+@pytest.mark.parametrize("name", shipped_machines())
 def test_links_of_shipped_machines_agree_with_the_forward_map(name: str) -> None:
     machine = load_machine(name)
     for values in np.random.default_rng(5).uniform(-400.0, 400.0, (5, 5)):

@@ -112,6 +112,12 @@ INPUTS: Final[dict[tuple[str, ...], tuple[str, ...]]] = {
         "simulation.collisions.clearance.motion_bounds",
         "simulation.collisions.clearance.relative_pose",
     ),
+    ("simulation.collisions.test_queries", "test_the_box_of_all_crossings"): (
+        "simulation.collisions.queries.crossing_box",
+    ),
+    ("simulation.collisions.test_queries", "test_the_deepest_of_all_points"): (
+        "simulation.collisions.queries.deepest_point",
+    ),
     ("simulation.collisions.test_hull_gap", "test_hulls_are_as_far_apart_as_their_meshes"): (
         "simulation.collisions.hull_gap.pose_gap",
         "simulation.collisions.queries.point_depths",

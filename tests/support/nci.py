@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from dataclasses import replace
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tests.support.cl_dialects import Step, Z
+from tests.support.cl_dialects import Step, Vector, Z
 from tests.support.locations import SHARED
 from trunnion.arrays import Floats
 
@@ -139,8 +140,27 @@ def can_say(steps: Sequence[Step]) -> bool:
     return True
 
 
-def write(steps: Sequence[Step]) -> str:
-    """A path as an NCI: rapids by -2, a feed where it changes, and -1 where it does not."""
+def in_plane(step: Step, plane: Floats) -> Step:
+    """A step in the coordinates of a tool plane: (3, 3), its rows are the axes of the plane."""
+    names = ("point", "axis", "centre", "normal", "start")
+    moved: dict[str, Any] = {name: _rounded(plane @ np.array(getattr(step, name))) for name in names}
+    return replace(step, **moved, holes=tuple(_rounded(plane @ np.array(hole)) for hole in step.holes))
+
+
+def _rounded(vector: Floats) -> Vector:
+    """Without the noise of a turn, which would hide that a tool is upright."""
+    x, y, z = (round(value, 12) + 0.0 for value in vector.tolist())
+    return (x, y, z)
+
+
+def write(steps: Sequence[Step], plane: Floats | None = None) -> str:
+    """A path as an NCI: rapids by -2, a feed where it changes, and -1 where it does not; all in a tool plane."""
+    turned = TOP if plane is None else " ".join(f"{value:.9f}" for value in plane.ravel())
+    text = _write([step if plane is None else in_plane(step, plane) for step in steps])
+    return text.replace(f"1014\n{TOP}\n", f"1014\n{turned}\n")
+
+
+def _write(steps: Sequence[Step]) -> str:
     lines: list[str] = []
     feed, given, cuts = 0.0, 0.0, False
     pending: Step | None = None

@@ -365,6 +365,8 @@ def _value(
             return {"type": "boolean"}
         case Form.VECTOR | Form.INTERVAL:
             return {"type": "array", "items": number, "minItems": asked[0].size, "maxItems": asked[0].size}
+        case Form.LINES:
+            return {"type": ["string", "array"], "items": {"type": "string"}}
         case Form.TEXTS:
             return {"type": "array", "items": {"type": "string"}}
         case Form.TABLE:

@@ -166,6 +166,20 @@ def test_a_file_of_the_folder_is_not_written_over(pile: Path) -> None:
         take_survey(pile, written=[pile / "sinumerik.mpf"])
 
 
+def test_results_of_an_earlier_survey_in_its_folder_are_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("notes.txt").write_text("ours", encoding="utf-8")
+    line = ["survey", ".", "--machine", "yl569", "--json", "s.json", "--report", "s.html"]
+    for _ in range(2):
+        assert main(line) == 0
+        assert [each["file"] for each in json.loads(Path("s.json").read_text("utf-8"))["files"]] == ["notes.txt"]
+    Path("s.json").write_text(Path("s.json").read_text("utf-8").replace("folder", "dialect", 1), encoding="utf-8")
+    assert main(line) == 2
+    assert "FIL250" in capsys.readouterr().err
+
+
 def test_a_folder_that_is_not_there_is_an_error(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["survey", "nowhere"]) == 2
     assert "there is no such folder" in capsys.readouterr().err

@@ -6,8 +6,8 @@ import pytest
 
 import trunnion
 from tests.support.locations import GOLDEN, YL569
-from tests.support.machines import five_axis_machines
 from tests.support.posting import FOOT, HEAD
+from trunnion.machines import shipped_machines
 
 FANUC = "%\nO0001\nG21 G90 G17 G40 G80 G94\nT1 M6\n{before}N20 G0 {axis}10.\n{after}G43 H1\nG0 X0. Y0. Z50.\nM30\n%\n"
 KLARTEXT = (
@@ -60,7 +60,7 @@ def test_published_programs_stand_on_it(tmp_path: Path) -> None:
     assert turned("hs664rt", text, tmp_path)
 
 
-@pytest.mark.parametrize("machine", five_axis_machines())
+@pytest.mark.parametrize("machine", shipped_machines())
 def test_posts_select_it_first_but_where_published_programs_do_not(machine: str, tmp_path: Path) -> None:
     cl = tmp_path / "part.cls"
     cl.write_text(HEAD + "RAPID\nGOTO/0,0,5\nFEDRAT/MMPM,200\nGOTO/5,0,5\n" + FOOT, encoding="utf-8")

@@ -16,6 +16,7 @@ from trunnion.cl.builder import FeedChange, MoveColumns, OperationBuilder, Surfa
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.tool_axes import fill_tool_axes
+from trunnion.cl.tool_planes import turned
 from trunnion.errors import Severity
 from trunnion.messages import Wording
 from trunnion.model.arcs import arc_lengths
@@ -78,7 +79,7 @@ def assemble_operation(
     tool = _tool_in_mm(builder.tool, unit)
     _report_tool(builder, tool, diagnostics)
     events = [*(_event_in_mm(event, unit, tool, diagnostics) for event in builder.events), *starts]
-    return Operation(
+    operation = Operation(
         name=builder.name,
         tool=tool,
         frame=_frame_in_mm(builder.frame, unit),
@@ -92,6 +93,7 @@ def assemble_operation(
         splines=Splines.of(builder.curves),
         joined=tuple(builder.joined),
     )
+    return turned(operation, builder.planes)
 
 
 def _fill_feeds(feed: Floats, per_rev: Flags, feeds: Sequence[FeedChange], unit: float) -> None:

@@ -141,6 +141,13 @@ class AxisStatement(NamedTuple):
     vectors: bool = True
 
 
+class PlaneStatement(NamedTuple):
+    """From ``row`` on, points are in the coordinates of a plane: its X, Y and Z, one behind the other."""
+
+    row: int
+    axes: tuple[float, ...]
+
+
 class StatedPoints(NamedTuple):
     """What a file says of its points: those of the contour, or of the tool's centre.
 
@@ -171,6 +178,7 @@ class OperationBuilder:
     curves     the splines in mm, once their points are known, with the rows of these
     points     what the file says of its points
     open_cycle  the cycle that is still on where it begins; None: there is none
+    planes     planes in whose coordinates the points are; none: they are in those of the file
     """
 
     name: str
@@ -198,3 +206,4 @@ class OperationBuilder:
     curves: list[SplineRows] = field(default_factory=list)
     points: StatedPoints | None = None
     open_cycle: CycleOn | None = None
+    planes: list[PlaneStatement] = field(default_factory=list)

@@ -192,6 +192,7 @@ def _append(before: OperationBuilder, builder: OperationBuilder) -> None:
     before.circles += [circle._replace(row=circle.row + shift) for circle in builder.circles]
     before.starts += [start._replace(row=start.row + shift) for start in _stated_starts(builder)]
     before.axes += [axis._replace(row=axis.row + shift) for axis in builder.axes]
+    before.planes += [plane._replace(row=plane.row + shift) for plane in builder.planes]
     before.upright += builder.upright
     before.intol = _smaller(before.intol, builder.intol)
     before.outtol = _smaller(before.outtol, builder.outtol)

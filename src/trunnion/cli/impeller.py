@@ -136,7 +136,8 @@ def _explained_time(step: CutStep) -> Iterator[str]:
     )
     if other := setting_for_published(step.step, times):
         minutes = format_duration(60.0 * other.minutes)
-        yield "  " + line("with_stepover", stepover=other.stepover, passes=other.passes, time=minutes)
+        told = {"key": other.key, "value": other.value, "time": minutes}
+        yield "  " + (line("with_passes", **told, passes=other.passes) if other.passes else line("with_value", **told))
 
 
 def _step_line(step: CutStep) -> str:

@@ -60,12 +60,12 @@ def post(
     if output_folder(given.output) is not None:
         for target in targets:
             check_unnamed(target, alone=len(targets) == 1)
-    toolpaths = toolpaths if observer is not None else _as_read(toolpaths)
+    terminal = NotingTerminal(explain=given.explain, recorded=given.explain or bool(given.report))
+    toolpaths = toolpaths if observer is not None else _as_read(toolpaths, terminal)
     stated = given.arguments("cl", "machine", "simulate", *_SIMULATED)
     stated |= {"columns": False, "simulation": simulation_of(given), "sheet_tools": sheet_tools_of(given)}
     made: list[Path] = []
     results: list[PostResult] = []
-    terminal = NotingTerminal(explain=given.explain, recorded=given.explain or bool(given.report))
     for target, files in targets.items():
         old = [target, *(file for name, file in papers.items() if name != "report")]  # a refusal writes its report
         asks = nullcontext() if given.suggest is None else suggestion(given, target, terminal)
@@ -116,9 +116,8 @@ def sheet_tools_of(given: Given) -> dict[str, object] | None:
     return stated if stated and given.sheet and not given.simulate else None
 
 
-def _as_read(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:
-    """Yield the toolpaths; says as what each file was read as it comes."""
-    terminal = Terminal()
+def _as_read(files: Iterator[list[Toolpath]], terminal: Terminal) -> Iterator[list[Toolpath]]:
+    """Yield the toolpaths; the terminal says as what each file was read as it comes."""
     for toolpaths in files:
         terminal.read(toolpaths)
         yield toolpaths

@@ -32,6 +32,7 @@ class Terminal(Observer):
     def __init__(self, *, explain: bool = False, recorded: bool = False) -> None:
         self._explain, self._recorded = explain, recorded
         self._explained = False
+        self._untold: list[str] = []
 
     @property
     def words(self) -> Words:  # type: ignore[override]
@@ -48,8 +49,11 @@ class Terminal(Observer):
         for toolpath in toolpaths:
             units = "mm" if toolpath.unit == 1.0 else "inch"
             shown = units if toolpath.states_unit else part("units_not_stated", units=units)
+            line = f"{toolpath.file}: {said('read_as', dialect=toolpath.recognized_by, units=shown)}"
             if toolpath.dialect != "clsf" or shown != "mm" or len(toolpaths) > 1:
-                tell(f"{toolpath.file}: {said('read_as', dialect=toolpath.recognized_by, units=shown)}")
+                tell(line)
+            else:
+                self._untold.append(line)
 
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line; of a flood of errors the first of each kind."""
@@ -63,7 +67,12 @@ class Terminal(Observer):
             tell(*(f"{each.file}:{each.line}: {each.operation}: {in_words(each.said)}" for each in plan.decisions))
 
     def verified(self, verification: Verification) -> None:
-        """Print one line a check, the places of failed checks, and times."""
+        """Print one line a check, the places of failed checks, and times; before them what was read in mm, where the
+        program counts in inches.
+        """
+        if self._untold and bool(verification.run.inches.any()):
+            tell(*self._untold)
+        self._untold = []
         tell(*verification_lines(verification, failed_only=True))
         if not self._explained and _exceeds_rotary_speed(verification):
             tell(f"{verification.program}: {said('rotary_axis_behind')}")

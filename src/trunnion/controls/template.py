@@ -93,12 +93,16 @@ class Answer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Template:
-    """The lines of a template as they are written, with its file in the definition and the line of the first one."""
+    """The lines of a template as they are written, with its file in the definition and the line of the first one.
+
+    ``step`` is the number of lines in the file from one to the next: 0 where a list of them stands in one line.
+    """
 
     name: str
     lines: tuple[str, ...]
     file: str = ""
     line: int = 0
+    step: int = field(default=1, kw_only=True)
 
     @property
     def title(self) -> Wording:
@@ -147,7 +151,7 @@ class Template:
 
     def place_of(self, line: int) -> tuple[str, int]:
         """Return file and line of the definition of one of the lines, counted from 0."""
-        return self.file, self.line + line if self.line else 0
+        return self.file, self.line + self.step * line if self.line else 0
 
     def fields_beside(self, name: str) -> list[set[str]]:
         """Return for each place of a field the other fields without which it is not printed."""

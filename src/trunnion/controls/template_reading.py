@@ -1,5 +1,6 @@
 """The templates of a control's definition: which it must have, and what they are."""
 
+from dataclasses import replace
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter
@@ -40,13 +41,15 @@ def read_templates(
     """Return the templates of a definition by their names; what it must have depends on what it can do."""
     found = {}
     for name in _template_names(table, family, plane_from_pose, subprograms):
-        text = table.text(name)
+        text = table.lines(name)
         file, line = table.text_location(name)
+        step = 0 if table.is_in_one_line(name) else 1
         if any(sign in text for sign in _TEXT_SIGNS):
-            found[name] = _read_text_template(table, name, text)
+            found[name] = _read_text_template(table, name, text, step)
         else:
-            line += bool(line) * (len(text) - len(text.lstrip("\n")))
-            found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+            line += bool(line) * step * (len(text) - len(text.lstrip("\n")))
+            lines = tuple(text.strip("\n").split("\n")) if text.strip() else ()
+            found[name] = Template(name, lines, file, line, step=step)
     for command, other in family.PLANE_TEMPLATES_OF.items():
         shared = (f"{part}_" for part in (*_SHARED_PLANE_PARTS, LEAVING)) if f"plane_on_{command}" in found else ()
         for part in shared:
@@ -79,17 +82,18 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     groups += [(f"{part}_{plane}",) for plane in family.PLANE_TEMPLATES_OF for part in plane_parts]
     groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]
     for name in (name for group in groups for name in group):
-        table.text(name, None)  # known, though no definition needs it
+        table.lines(name, None)  # known, though no definition needs it
     used = [name for group in groups if any(name in table for name in group) for name in group]
     places = [name for name in list(table.keys()) if name in OWN_TEMPLATES or name.startswith(EVENT_PLACE)]
     return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used, *places]
 
 
-def _read_text_template(table: Table, name: str, text: str) -> Template:
+def _read_text_template(table: Table, name: str, text: str, step: int) -> Template:
     """Return a template with statements or expressions; Jinja is imported for the first one."""
     from trunnion.controls.texts.template import text_template
 
     template, fault = text_template(name, text, *table.text_location(name))
+    template = replace(template, step=step)
     if fault is not None:
         file, line = template.place_of(max(fault.line, 1) - 1)
         key = table.key_path(name)

@@ -75,9 +75,14 @@ class TableAccount:
         return self._values[key].instead if key in self._values else None
 
     def text_location(self, key: str) -> tuple[str, int]:
-        """File and line of the first line of a text; the line is 0 if it has none."""
+        """File and line of the first line of a text, or of a list of lines; the line is 0 if it has none."""
         content = self._values.get(key, self.content)
         return content.file, content.line + content.begins_below if content.line else 0
+
+    def is_in_one_line(self, key: str) -> bool:
+        """Whether a list of lines begins in the line of its key: then that is the line of all of them."""
+        content = self._values.get(key, self.content)
+        return isinstance(content.value, list) and not content.begins_below
 
     def key_path(self, key: str) -> str:
         """Path of a key from the root of the definition, such as ``axis[1].limits_deg``."""

@@ -10,7 +10,7 @@ GREATEST: Final = 1e9
 
 
 class Form(StrEnum):
-    """The form of a value; a ``SETTING`` is a text, a number or a flag.
+    """The form of a value; a ``SETTING`` is a text, a number or a flag, and ``LINES`` are a text or a list of texts.
 
     With ``ANY_KEY`` the table itself is meant, whose keys the definition chooses.
     """
@@ -23,6 +23,7 @@ class Form(StrEnum):
     VECTOR = "vector"
     INTERVAL = "interval"
     TEXTS = "texts"
+    LINES = "lines"
     TABLE = "table"
     TABLES = "tables"
     ANY_KEY = "any key"

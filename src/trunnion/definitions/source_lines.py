@@ -27,7 +27,7 @@ _STRING_ENDS: Final = {
     "'''": re.compile(r"(?:[^']++|'(?!''))*'{3,}+"),
 }
 
-_BELOW: Final = re.compile(r"(?:\"{3}|'{3})\r?\n")
+_BELOW: Final = re.compile(r"(?:\"{3}|'{3}|\[[ \t]*)\r?\n")
 
 KeyPath: TypeAlias = tuple[str | int, ...]
 
@@ -39,7 +39,7 @@ class LocatedValue:
     value         a scalar, a list of scalars or of lists, a dict of located values (a table), or a list of located
                   tables
     instead       the value of the definition that this one, of a call, stands for
-    begins_below  the first line of a text stands in the line below that of its key and its opening quotation marks
+    begins_below  the first line of a text, or of a list, stands in the line below that of its key and what opens it
     """
 
     value: object
@@ -125,7 +125,7 @@ def layout(text: str) -> Layout:
 
 
 def texts_below(text: str, found: Layout) -> frozenset[KeyPath]:
-    """Keys of a TOML text whose texts begin in the line below their opening quotation marks."""
+    """Keys of a TOML text whose texts and lists begin in the line below what opens them."""
     return frozenset(path for path, place in found.values.items() if _BELOW.match(text, place.start))
 
 

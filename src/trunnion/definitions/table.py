@@ -294,6 +294,23 @@ class Table(TableAccount):
             return fallback
         return tuple(str(item) for item in value)
 
+    @overload
+    def lines(self, key: str, default: str | Required = ...) -> str: ...
+    @overload
+    def lines(self, key: str, default: None) -> str | None: ...
+    def lines(self, key: str, default: str | Required | None = REQUIRED) -> str | None:
+        """Return a text of several lines, which may be stated as the list of them too."""
+        fallback = "" if isinstance(default, Required) else default
+        expected = Expected(Form.LINES, isinstance(default, Required), _told(default))
+        value = self._get(key, expected, lambda: phrase("text_or_lines"))
+        if isinstance(value, list) and all(isinstance(item, str) for item in value):
+            return "\n".join(value)
+        if value is not None and not isinstance(value, str):
+            allowed = phrase("text_or_lines")
+            self.add_problem(key, Wording("DEF330", "not_allowed", value=as_written(value), allowed=allowed))
+            return fallback
+        return fallback if value is None else value
+
     def table(self, key: str, *, required: bool = False) -> "Table":
         """Return the table under a key; an empty one if there is none."""
 

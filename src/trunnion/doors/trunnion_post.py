@@ -42,6 +42,8 @@ _ABSOLUTE = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 _GRANTED = {"G21", "G40", "G43", "G49", "G90", "G94", "G54", "G55", "G56", "G57", "G58", "G59"}
 _OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59"}
 _COOLANTS = {"Flood": "FLOOD", "Mist": "MIST"}
+#: Lengths below this are none, mm.
+_POINT = 1e-6
 _SWITCHES = {
     "M7": "COOLNT/MIST", "M8": "COOLNT/FLOOD", "M9": "COOLNT/OFF", "M5": "SPINDL/OFF", "M0": "STOP", "M1": "OPSTOP",
 }  # fmt: skip
@@ -112,14 +114,11 @@ def with_operation(line: str, begins: Sequence[tuple[int, str]]) -> str:
 def _number(value: Any) -> float:
     """Return a quantity, a number or its text as a number; some locales write a decimal comma."""
     value = getattr(value, "Value", value)
-    if isinstance(value, str):
-        value = value.split()[0].replace(",", ".")
-    return float(value)
+    return float(value.split()[0].replace(",", ".") if isinstance(value, str) else value)
 
 
 def _text(value: float, decimals: int = 6) -> str:
-    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
+    return f"{round(value, decimals) + 0.0:.{decimals}f}".rstrip("0").rstrip(".")
 
 
 def _line(text: Any) -> str:
@@ -150,6 +149,14 @@ def tool_statement(bit: Any) -> str:
         size.pop("LENGTH", None)
     words = [f"{word},{_text(value)}" for word, value in size.items() if value > 0.0]
     return "$$-> TOOL / " + ",".join([form, *words])
+
+
+def dressed(given: Any) -> list[Any]:
+    """Return an object and those that it changes, the operation last: dressups may stand upon each other."""
+    found = [given]
+    while hasattr(base := getattr(found[-1], "Base", None), "Path") and base not in found:
+        found.append(base)
+    return found
 
 
 def work_plane(given: Any) -> tuple[float, ...]:
@@ -196,8 +203,7 @@ class Writer:
         return ",".join([self.offsets[0], *others])
 
     def _object(self, given: Any) -> None:
-        base = getattr(given, "Base", None)
-        if not getattr(given, "Active", True) or not getattr(base, "Active", True):
+        if not all(getattr(each, "Active", True) for each in dressed(given)):
             return
         if hasattr(given, "ToolNumber"):
             self._controller, self._at = given, [None, None, None]
@@ -213,16 +219,17 @@ class Writer:
             self._operation(given, commands)
 
     def _operation(self, given: Any, commands: Sequence[Any]) -> None:
-        base, label = getattr(given, "Base", None), _line(str(given.Label).replace(",", " "))
-        own = getattr(given, "ToolController", None) or getattr(base, "ToolController", None)
-        controller = own or self._controller
-        if controller is None:
+        chain, label = dressed(given), _line(str(given.Label).replace(",", " "))
+        own = [getattr(each, "ToolController", None) for each in chain]
+        if (controller := next((each for each in own if each is not None), self._controller)) is None:
             raise RefusedError(f"operation {label}: it has no tool")
         name = label if len(self.offsets) < 2 else f"{label} {self._offset}"
         others = (f"{label} {again}" for again in range(2, len(self._used) + 3))
         name = next(each for each in (name, *others) if each not in self._used)
         self._used[name] = self._offset
         plane = work_plane(given)
+        if any(work_plane(each) != plane for each in chain):
+            raise RefusedError(f"operation {label}: its work plane is not that of the operation that it changes")
         if plane != self._plane:
             self._plane, self._at = plane, [None, None, None]
             self.planes += [plane] * (plane not in self.planes)
@@ -235,22 +242,22 @@ class Writer:
         speed = _number(controller.SpindleSpeed)
         if speed > 0.0 and str(controller.SpindleDir) != "None":
             head.append(f"SPINDL/RPM,{_text(speed)}," + ("CCLW" if controller.SpindleDir == "Reverse" else "CLW"))
-        mode = str(getattr(given, "CoolantMode", getattr(base, "CoolantMode", "None")))
+        mode = next((str(each.CoolantMode) for each in chain if hasattr(each, "CoolantMode")), "")
         if mode not in (*_COOLANTS, "None", ""):
             raise RefusedError(f"operation {label}: coolant {mode} is not known")
         head += ["COOLNT/" + _COOLANTS.get(mode, "")] * (mode in _COOLANTS)
         body = _Path(label, self._at, speed, int(controller.ToolNumber))
         for command in commands:
             body.command(command)
+        body.end_cycle()
         if body.moved:
             self.begins.append((len(self.lines) + 1, name))
-            self.lines += [*head, *body.closed(), *["COOLNT/OFF"] * (mode in _COOLANTS), "END-OF-PATH"]
+            self.lines += [*head, *body.lines, *["COOLNT/OFF"] * (mode in _COOLANTS), "END-OF-PATH"]
 
 
 def _head(objects: Sequence[Any]) -> list[str]:
     """Return name and stock of the job that the objects belong to, as far as they say it."""
-    parents: list[Any] = []
-    level = list(objects)
+    parents, level = list[Any](), list(objects)
     for _ in range(3):
         level = [parent for each in level for parent in getattr(each, "InList", ())]
         parents += level
@@ -270,8 +277,7 @@ def _code(name: str) -> str:
 
 def _known(at: Sequence[float | None]) -> list[float]:
     """Return the coordinates of a place, none where one of them is not known."""
-    known = [value for value in at if value is not None]
-    return known if len(known) == len(at) else []
+    return [] if None in at else [value for value in at if value is not None]
 
 
 class _Path:
@@ -279,27 +285,21 @@ class _Path:
 
     at     where the tool is, mm; None where nothing has said it yet; goes on to the next operation
     moved  something of it is motion
+    lines  the statements
     """
 
     def __init__(self, operation: str, at: list[float | None], speed: float, tool: int) -> None:
         self.moved = False
         self._operation, self._at, self._speed, self._tool = operation, at, speed, tool
-        self._lines: list[str] = []
+        self.lines: list[str] = []
         self._feed = ""
-        self._plane = _PLANES["G17"]
-        self._cycle = ""
-        self._to_start = True
-
-    def closed(self) -> list[str]:
-        """Return the statements, with the end of a cycle that is on."""
-        self._end_cycle()
-        return self._lines
+        self._plane, self._cycle, self._to_start = _PLANES["G17"], "", True
 
     def command(self, command: Any) -> None:
         """Add a command."""
         name, words = _code(command.Name), command.Parameters
         if name.startswith("("):
-            self._lines.append("$$ " + _line(name.strip("()").replace("/", " ").replace("->", " ")))
+            self.lines.append("$$ " + _line(name.strip("()").replace("/", " ").replace("->", " ")))
             return
         if turned := [word for word in "ABC" if abs(words.get(word, 0.0)) > 1e-9]:
             raise self._refused(f"{command.Name} has the rotary word {turned[0]}, which says no plane")
@@ -312,13 +312,13 @@ class _Path:
         elif name in ("G98", "G99"):
             self._to_start = name == "G98"
         elif name == "G80":
-            self._end_cycle()
+            self.end_cycle()
         elif name == "G4":
-            self._lines.append("DELAY/" + _text(words.get("P", words.get("X", 0.0))))
+            self.lines.append("DELAY/" + _text(words.get("P", words.get("X", 0.0))))
         elif name in _SWITCHES:
-            self._lines.append(_SWITCHES[name])
+            self.lines.append(_SWITCHES[name])
         elif name in ("M3", "M4") and words.get("S"):
-            self._lines.append("SPINDL/RPM,{},{}".format(_text(words["S"]), "CLW" if name == "M3" else "CCLW"))
+            self.lines.append("SPINDL/RPM,{},{}".format(_text(words["S"]), "CLW" if name == "M3" else "CCLW"))
         elif name == "M6" and words.get("T", self._tool) != self._tool:
             raise self._refused(f"M6 T{words['T']:g} loads another tool than that of the operation")
         elif name != "M6" and name not in _GRANTED:
@@ -327,8 +327,9 @@ class _Path:
     def _refused(self, why: str) -> RefusedError:
         return RefusedError(f"operation {self._operation}: {why}")
 
-    def _end_cycle(self) -> None:
-        self._lines += ["CYCLE/OFF"] * bool(self._cycle)
+    def end_cycle(self) -> None:
+        """End the cycle that is on."""
+        self.lines += ["CYCLE/OFF"] * bool(self._cycle)
         self._cycle = ""
 
     def _take_feed(self, words: dict[str, float]) -> str:
@@ -338,22 +339,21 @@ class _Path:
         return self._feed
 
     def _move(self, name: str, words: dict[str, float]) -> None:
-        start = list(self._at)
+        start, before = list(self._at), self._feed
         for k, word in enumerate("XYZ"):
             self._at[k] = words.get(word, self._at[k])
-        self._end_cycle()
-        before = self._feed
+        self.end_cycle()
         if name != "G0" and self._take_feed(words) != before:
-            self._lines.append("FEDRAT/MMPM," + self._feed)
+            self.lines.append("FEDRAT/MMPM," + self._feed)
         if None in self._at and name != "G0":
             raise self._refused(f"{name} cuts before X, Y and Z are known")
         if None in self._at or (start == self._at and name in ("G0", "G1") and self.moved):
             return
         if name == "G0":
-            self._lines.append("RAPID")
+            self.lines.append("RAPID")
         elif name != "G1":
             self._arc(name, words, _known(start))
-        self._lines.append("GOTO/" + _listed(*_known(self._at)))
+        self.lines.append("GOTO/" + _listed(*_known(self._at)))
         self.moved = True
 
     def _arc(self, name: str, words: dict[str, float], start: Sequence[float]) -> None:
@@ -362,8 +362,11 @@ class _Path:
             raise self._refused(f"{name} without I, J and K, or without a start")
         centre = [a + words.get(word, 0.0) for a, word in zip(start, "IJK")]
         centre = [s if n else c for c, s, n in zip(centre, start, self._plane)]
+        level = [s if n else a for a, s, n in zip(_known(self._at), start, self._plane)]
+        if max(math.dist(start, centre), math.dist(start, level)) < _POINT:
+            return  # thread milling goes down so where the arc to the next pass has no width: a line
         turn = -1.0 if name == "G2" else 1.0
-        self._lines.append("CIRCLE/" + _listed(*centre, *(turn * n for n in self._plane), math.dist(start, centre)))
+        self.lines.append("CIRCLE/" + _listed(*centre, *(turn * n for n in self._plane), math.dist(start, centre)))
 
     def _hole(self, name: str, words: dict[str, float]) -> None:
         """Add a hole; its point is at the height of R, above which nothing is cut."""
@@ -389,9 +392,9 @@ class _Path:
             parts.append("MMPM," + feed)
         cycle = ",".join(parts)
         if cycle != self._cycle:
-            self._end_cycle()
-            self._lines.append(cycle)
+            self.end_cycle()
+            self.lines.append(cycle)
             self._cycle = cycle
         self._at[2] = top
-        self._lines.append("GOTO/" + _listed(at[0], at[1], words["R"]))
+        self.lines.append("GOTO/" + _listed(at[0], at[1], words["R"]))
         self.moved = True

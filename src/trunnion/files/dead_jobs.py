@@ -6,7 +6,6 @@ Out:    each file in them that was on its way is the new one, with all others of
 """
 
 import logging
-import tempfile
 from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Final
@@ -17,6 +16,7 @@ from trunnion.files.hidden_names import TEMPORARY
 from trunnion.files.journal import Outcome, read_journal
 from trunnion.files.locks import LOCK, FolderLock, PlaceLock, hold, hold_places
 from trunnion.messages import Wording
+from trunnion.user_cache import temporary_folder
 
 _MOST_NAMED: Final = 5
 
@@ -44,7 +44,8 @@ def settle_and_log(folders: Iterable[Path], own: Collection[Path] = ()) -> None:
 
 def remove_temporary_folders() -> None:
     """Remove the folders of dead jobs that wrote into streams."""
-    for hidden in hidden_folders_in(Path(tempfile.gettempdir())):
+    folder = temporary_folder()
+    for hidden in hidden_folders_in(folder) if folder is not None else ():
         if hidden.name.startswith(TEMPORARY) and (lock := hold(hidden)) is not None:
             lock.release()
             remove_folder(hidden)

@@ -21,7 +21,7 @@ from shutil import rmtree
 from typing import IO, Final
 
 from trunnion.jit.library import is_as_expected
-from trunnion.user_cache import user_cache
+from trunnion.user_cache import temporary_folder, user_cache
 
 if sys.platform == "win32":
     import msvcrt
@@ -123,7 +123,9 @@ def _candidates() -> Iterator[Path]:
     cache = user_cache()
     if cache is not None:
         yield cache / "trunnion" / version
-    temporary = Path(tempfile.gettempdir())
+    temporary = temporary_folder()
+    if temporary is None:
+        return
     if sys.platform == "win32":
         yield temporary / "trunnion" / version
     else:

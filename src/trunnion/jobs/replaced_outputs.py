@@ -146,6 +146,11 @@ def writers(head: bytes) -> tuple[str, ...]:
     return next((commands for begins, commands in RESULTS.items() if begins.match(head)), ())
 
 
+def is_result_of(file: Path, command: str) -> bool:
+    """Whether a file holds a page or data that a command has written, and no other."""
+    return writers(_head(file)) == (command,)
+
+
 def _head(file: Path) -> bytes:
     """Return how a file begins; nothing where it has nothing, cannot be read or is none."""
     try:

@@ -30,8 +30,21 @@ class WorkpieceFrame:
     zero: Vector | None
 
     def runs(self, runs: Sequence[Run]) -> tuple[Run, ...]:
-        """Return runs in this frame; as they are where one zero holds throughout."""
-        return tuple(run if self.zero is None or run.setups is None else _moved(run, self.zero) for run in runs)
+        """Return runs in this frame; as they are where one zero holds throughout, or none is stated of any offset."""
+        each = [setup for run in runs if run.setups is not None for setup in run.setups.each]
+        if all(setup.machine.workpiece_zero is None for setup in each):
+            return tuple(runs)
+        return tuple(run if run.setups is None else self._moved(run, run.setups) for run in runs)
+
+    def _moved(self, run: Run, setups: RunSetups) -> Run:
+        """Return a run in this frame, with the work offsets marked of which nobody knows where they are in it."""
+        known = [self.zero is not None and setup.machine.workpiece_zero is not None for setup in setups.each]
+        marked = tuple(
+            replace(setup, is_elsewhere=not is_known and setup.work_offset != self.offset)
+            for setup, is_known in zip(setups.each, known, strict=True)
+        )
+        run = replace(run, setups=RunSetups(marked, setups.number))
+        return run if self.zero is None else _moved(run, self.zero)
 
 
 def frame_of_offset(runs: Sequence[Run], stated: int | None) -> WorkpieceFrame:

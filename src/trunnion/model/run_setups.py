@@ -21,12 +21,14 @@ class Setup:
     tool           in the spindle, as the program calls it; empty: none has been called
     work_offset    as in ``Run.work_offset``
     length_source  a word of the program, a library or a CL file that gives the length; empty: it is stated
+    is_elsewhere   nobody has stated where the work offset is in the frame of the run, which is that of another one
     """
 
     machine: Machine
     tool: str
     work_offset: int
     length_source: str = ""
+    is_elsewhere: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

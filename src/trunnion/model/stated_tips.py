@@ -20,7 +20,7 @@ from trunnion.machines import Mount, forward
 from trunnion.model.machine_slides import at_machine
 from trunnion.model.run import NO_OFFSET, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
-from trunnion.model.unknown_setups import stated_rows
+from trunnion.model.unknown_setups import rows_elsewhere, stated_rows
 from trunnion.records import dataclass
 
 #: Smaller rotary motion, degrees, is none; coordinates that differ by less, mm, are the same.
@@ -89,6 +89,9 @@ class _Walk:
         machine, n = run.machine, len(run)
         self.run = run
         zero, length = (column.column() for column in stated_rows(run))
+        elsewhere = rows_elsewhere(run)
+        if machine.workpiece_zero is not None:  # places of the machine are the same in all work offsets
+            zero = zero | ~elsewhere
         self.turns_known = zero & length
         #: Positions of the machine are some of the workpiece too.
         self.placed = self.turns_known & np.bool_(machine.spindle_point_is_stated or not needs_gauge_point)
@@ -100,7 +103,7 @@ class _Walk:
         means_tip = self.tip_words | upright | self.turns_in_place
         self.of_machine = run.machine_frame | (run.work_offset == NO_OFFSET)
         #: Rows whose words are positions of slides that nobody can place in the workpiece frame.
-        self.unplaced = np.asarray((self.of_machine | ~means_tip) & ~self.placed & (self.words != 0))
+        self.unplaced = np.asarray((self.of_machine | elsewhere | ~means_tip) & ~self.placed & (self.words != 0))
         self.turned = turns_without_tcp(run, np.arange(n)) & ~self.placed
         self.unnamed = np.asarray((run.programmed & np.uint8(_XYZ | _TURNS)) == 0)
         self.lifts, self.relative = _event_rows(run, ("retract",)), _event_rows(run, ("leave",))

@@ -10,11 +10,11 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Ints, distinct
+from trunnion.arrays import Flags, Ints, distinct
 from trunnion.messages import Wording, phrase
 from trunnion.model.columns import StepColumn
 from trunnion.model.programmed_words import ROTARY_WORDS, names_no_axis
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run import NO_OFFSET, ProgrammedWord, Run
 from trunnion.model.run_setups import Setup, known_values
 
 _SLIDE_WORDS: Final = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
@@ -26,7 +26,7 @@ def offsets_without_zero(run: Run) -> tuple[str, ...]:
     if run.setups is None or all(setup.machine.workpiece_zero is None for setup in used):
         return ()
     without = [setup.work_offset for setup in used if setup.machine.workpiece_zero is None]
-    return tuple(dict.fromkeys(_offset_name(run, offset) for offset in without))
+    return tuple(dict.fromkeys(offset_name(run, offset) for offset in without))
 
 
 def tools_without_length(run: Run) -> tuple[str, ...]:
@@ -38,12 +38,24 @@ def tools_without_length(run: Run) -> tuple[str, ...]:
 
 
 def stated_rows(run: Run) -> tuple[StepColumn, StepColumn]:
-    """Return in which rows the zero is stated, and in which the length of the tool, bool each."""
+    """Return in which rows the zero is stated, and in which the length of the tool, bool each.
+
+    Of an offset that is elsewhere it is not, whatever the frame of the run.
+    """
     machines = [run.machine] if run.setups is None else [setup.machine for setup in run.setups.each]
     number = StepColumn.constant(len(run), 0, np.int64) if run.setups is None else run.setups.number
-    zero = np.array([machine.workpiece_zero is not None for machine in machines])
+    away = [False] if run.setups is None else [setup.is_elsewhere for setup in run.setups.each]
+    zero = np.array([machine.workpiece_zero is not None for machine in machines]) & ~np.array(away)
     length = np.array([machine.tool_length is not None for machine in machines])
     return replace(number, values=zero[number.values]), replace(number, values=length[number.values])
+
+
+def rows_elsewhere(run: Run) -> Flags:
+    """Return which rows name places of a work offset of which nobody knows where it is in the run's frame, (n,)."""
+    if run.setups is None or not any(setup.is_elsewhere for setup in run.setups.each):
+        return np.zeros(len(run), np.bool_)
+    away = np.array([setup.is_elsewhere for setup in run.setups.each])
+    return np.asarray(away[run.setups.number.column()] & ~run.machine_frame & (run.work_offset != NO_OFFSET))
 
 
 def rows_without_values(run: Run) -> Iterator[tuple[int, Wording]]:
@@ -53,7 +65,7 @@ def rows_without_values(run: Run) -> Iterator[tuple[int, Wording]]:
     for setup, rows in used:
         if known_values(setup) < most:
             if setup.machine.workpiece_zero is None:
-                why = phrase("no_zero_of", names=(_offset_name(run, setup.work_offset),))
+                why = phrase("no_zero_of", names=(offset_name(run, setup.work_offset),))
             else:
                 why = phrase("no_length_of", names=(_tool_name(setup.tool),))
             yield from ((row, why) for row in rows.tolist())
@@ -71,7 +83,8 @@ def _used(run: Run) -> Iterator[tuple[Setup, Ints]]:
         yield run.setups.each[number], rows[numbers == number]
 
 
-def _offset_name(run: Run, offset: int) -> str:
+def offset_name(run: Run, offset: int) -> str:
+    """Return what messages call a work offset, 0 for none."""
     return run.work_offset_name(offset) if offset else "no work offset"
 
 

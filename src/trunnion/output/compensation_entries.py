@@ -88,10 +88,14 @@ def entries_at_control(program: Program) -> list[str]:
 
 def _entries(program: Program, calls: Sequence[str]) -> Iterator[CompensationEntry]:
     """Yield what each operation with CUTCOM compensates by; ``calls`` are the tools of all operations."""
-    starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
-    groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
-    for motions, call in zip(groups, calls, strict=True):
+    for motions, call in zip(motions_by_operation(program), calls, strict=True):
         yield from entries_of(program, motions, call)
+
+
+def motions_by_operation(program: Program) -> list[Sequence[Motion]]:
+    """Return the motions of each operation."""
+    starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
+    return [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
 
 
 def unknown_radii(program: Program) -> Iterator[Problem]:

@@ -16,6 +16,7 @@ from trunnion.model.run import Run
 from trunnion.model.stated_tips import StatedTips
 from trunnion.model.tool_additions import SIZES
 from trunnion.model.toolpath import Kind
+from trunnion.model.unknown_setups import offset_name, rows_elsewhere
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.findings import file_of_row
 from trunnion.simulation.simulator import CuttingModel
@@ -191,9 +192,11 @@ def _unjudged(run: Run) -> list[Problem]:
     if len(tips.unjudged) > len(tips.lost_feeds):
         row = int(np.setdiff1d(tips.unjudged, tips.lost_feeds)[0])
         count = len(tips.unjudged) - len(tips.lost_feeds)
-        found.append(
-            warning(file_of_row(run, row), int(run.line[row]), Wording("SIM146", "motion_before_all", count=count))
-        )
+        wording = Wording("SIM146", "motion_before_all", count=count)
+        if rows_elsewhere(run)[row]:
+            offset = offset_name(run, int(run.work_offset[row]))
+            wording = Wording("SIM146", "motion_elsewhere", count=count, offset=offset)
+        found.append(warning(file_of_row(run, row), int(run.line[row]), wording))
     return found
 
 

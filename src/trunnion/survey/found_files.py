@@ -84,11 +84,6 @@ def is_touchable(path: Path) -> bool:
     return not _untouchable(path)
 
 
-def count_files(folder: Path) -> int:
-    """How many files there are."""
-    return sum(len(names) for _, _, names in os.walk(folder))
-
-
 def _found(name: str, path: Path) -> FoundFile:
     if why := _untouchable(path):
         return FoundFile(name, path, FileKind.OTHER, why, is_tried=False)

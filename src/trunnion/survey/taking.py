@@ -15,12 +15,13 @@ from trunnion.jobs.arguments import ReadingArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, check_path
 from trunnion.jobs.inputs.reading import FilePath, as_machine, stated_reading
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.replaced_outputs import is_result_of
 from trunnion.machines import Machine, shipped_machines
 from trunnion.messages import Wording
 from trunnion.readers import can_read, reader_of
 from trunnion.readers.program.settings import family_of
 from trunnion.survey.called_files import callers
-from trunnion.survey.found_files import FileKind, FoundFile, count_files, found_files
+from trunnion.survey.found_files import FileKind, FoundFile, found_files
 from trunnion.survey.result import Became, Survey, SurveyedMachine, Trying, surveyed, trying, worth
 from trunnion.survey.trying import Step, Trial, try_in_worker
 
@@ -80,7 +81,7 @@ def take_survey(
     workers
         Processes; by default as many as there are processors.
     written
-        Files that the caller writes afterwards: they must be none of the folder.
+        Files that the caller writes afterwards: none of the folder, but for results of an earlier survey.
 
     Raises
     ------
@@ -97,8 +98,10 @@ def take_survey(
     root = check_path("folder", folder)
     if not root.is_dir():
         raise InputError(Problem(str(root), 0, Wording("FIL110", "no_such_folder")))
-    if written := found["written"]:
-        check_outputs(written, (each.path for each in found_files(root)))
+    # What an earlier survey has written there is replaced, and tells nothing of the folder.
+    own = {Path(file).resolve() for file in found["written"] or () if is_result_of(Path(file), "survey")}
+    there = [each for each in found_files(root) if not own or each.path.resolve() not in own]
+    check_outputs(found["written"] or (), (each.path for each in there))
     others = [] if machine else [name for name in shipped_machines() if name not in MACHINES]
     asked = [_absolute(name) for name in machine or [*MACHINES, *others]]
     seconds = TIMEOUT if timeout is None else timeout
@@ -107,10 +110,10 @@ def take_survey(
     team = _Team(tuple(zip(asked, map(as_machine, asked), strict=True)), len(others), steps, reading)
     count = max(1, workers or os.cpu_count() or 1)
     with (
-        observer.progress("survey", count_files(root), "files") as advance,
+        observer.progress("survey", len(there), "files") as advance,
         LocalWorkers[tuple[int, int], Trial](count, try_in_worker, seconds) as processes,
     ):
-        for trials in (team.trials(root), team.other_machines(), team.keyed()):
+        for trials in (team.trials(there), team.other_machines(), team.keyed()):
             for (number, on), outcome in processes.run(trials):
                 team.keep(number, on, trying(team.machines[on], team.files[number].kind, outcome))
                 advance(team.is_now_finished(number))
@@ -161,9 +164,8 @@ class _Team:
         self._expected = list[int]()
         self._finished = set[int]()
 
-    def trials(self, root: Path) -> Iterator[tuple[tuple[int, int], Trial]]:
+    def trials(self, files: Sequence[FoundFile]) -> Iterator[tuple[tuple[int, int], Trial]]:
         """Yield what is to be tried of each file first."""
-        files = list(found_files(root))
         called = callers(files, self._readers) if self._steps[FileKind.PROGRAM] else {}
         for number, file in enumerate(files):
             if number in called:

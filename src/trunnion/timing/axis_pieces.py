@@ -21,7 +21,7 @@ from trunnion.messages import Wording
 from trunnion.model.machine_slides import at_machine
 from trunnion.model.run import Run
 from trunnion.model.stated_tips import StatedTips, turns_without_tcp
-from trunnion.model.unknown_setups import stated_rows
+from trunnion.model.unknown_setups import rows_elsewhere, stated_rows
 from trunnion.records import dataclass
 from trunnion.timing.row_interpolation import RowInterpolation
 
@@ -86,7 +86,7 @@ class _Motion:
         self.joints = np.array(run.start, np.float64)
         self.from_machine = np.ones(3, np.bool_)
         self._inside = RowInterpolation(run)
-        self._stated_length = stated_rows(run)[1]
+        self._stated_length, self._elsewhere = stated_rows(run)[1], rows_elsewhere(run)
         self._slides = np.array([run.machine.column(name) for name in "XYZ"])
         chain = link_chain(run.machine)
         # What moves the gauge point along the spindle, all rotary axes at zero.
@@ -107,7 +107,7 @@ class _Motion:
         if run.machine.workpiece_zero is None:
             known &= ~turns_without_tcp(run, np.arange(first, end))
         else:  # with its real length, the tool's place follows from the slides
-            known |= ~xyz_is_tip & self._has_length(first, end, tool)
+            known |= ~xyz_is_tip & self._has_length(first, end, tool) & ~self._elsewhere[first:end]
         before = np.concatenate((self.joints[None], joints))
         for lost in np.flatnonzero(~np.isfinite(joints).all(axis=1)).tolist():
             before[lost + 1] = before[lost]  # the reader has said that no position is known there

@@ -12,6 +12,7 @@ import sys
 import traceback
 
 import FreeCAD
+import MeshPart
 import Part
 import PathScripts.PathJob as PathJob
 import PathScripts.PathPost as PathPost
@@ -106,6 +107,21 @@ def jobs(document):
     def facing(job, model):
         add(job, "PathMillFace", "FACE", tool(job, 1, "endmill.fcstd", Diameter=12), [(model, [top])])
 
+    def tags(job, model):
+        import PathScripts.PathDressupHoldingTags as PathDressupHoldingTags
+
+        profile(job, model)
+        base = job.Operations.Group[0]
+        dressup = PathDressupHoldingTags.Create(base, "TAGS")
+        job.Operations.removeObject(base)  # as FreeCAD's own command does
+        dressup.Proxy.setup(dressup, True)
+        dressup.Proxy.execute(dressup)
+
+    def thread(job, model):
+        helix(job, model)
+        add(job, "PathThreadMilling", "THREAD", tool(job, 5, "thread-mill.fcstd", Diameter=6), [(model, [bore])],
+            MajorDiameter=17.5, MinorDiameter=16, Pitch=1.5, Passes=2, LeadInOut=True)  # fmt: skip
+
     def two_tools(job, model):
         facing(job, model)
         drilling(job, model)
@@ -116,13 +132,16 @@ def jobs(document):
 
     return {
         each.__name__: (lambda each=each: made(each))
-        for each in (profile, pocket, adaptive, helix, drilling, facing, two_tools, two_fixtures)
+        for each in (profile, pocket, adaptive, helix, drilling, facing, tags, thread, two_tools, two_fixtures)
     }
 
 
 def main():
     """Post each job that is asked for; say what became of it."""
     found = {}
+    MeshPart.meshFromShape(Shape=block(), LinearDeflection=0.01, AngularDeflection=0.1).write(
+        os.path.join(OUT, "block.stl")
+    )
     arguments = os.environ["TRUNNION_ARGS"].split("|")
     for number, name in enumerate(os.environ["TRUNNION_JOBS"].split(",")):
         document = FreeCAD.newDocument(name)

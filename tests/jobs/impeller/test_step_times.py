@@ -17,7 +17,7 @@ STEP = cast(
     MachiningStep,
     SimpleNamespace(kind=StepKind.BLADE_FINISH, stepover=Stepover(distance=0.2), published_minutes=8.95, feed=200.0),
 )
-TIMES = StepTimes(45.55, 5.05, 2.02, 9110.0, 92)
+TIMES = StepTimes(45.55, 5.05, 2.02, 9110.0, 0.0, 92)
 
 
 def changed(**values: object) -> MachiningStep:
@@ -27,7 +27,7 @@ def changed(**values: object) -> MachiningStep:
 def test_the_step_over_that_gives_the_published_time() -> None:
     found = setting_for_published(STEP, TIMES)
     assert found is not None
-    assert (found.passes, found.stepover) == (16, 1.214)
+    assert (found.passes, found.key, found.value) == (16, "stepover_mm", 1.214)
     assert found.minutes == pytest.approx(TIMES.minutes * 16 / 92)
 
 
@@ -36,13 +36,24 @@ def test_the_step_over_that_gives_the_published_time() -> None:
     [
         changed(published_minutes=0.0),
         changed(published_minutes=45.0),
-        changed(kind=StepKind.STOCK_ROUGHING),
+        changed(kind=StepKind.STOCK_FINISHING),
         changed(stepover=Stepover(scallop=0.01)),
     ],
 )
 def test_nothing_is_proposed_where_it_says_nothing(step: MachiningStep) -> None:
     assert setting_for_published(step, TIMES) is None
     assert setting_for_published(STEP, replace(TIMES, passes=1)) is None
+
+
+def test_the_step_down_that_gives_the_published_time_of_a_helix() -> None:
+    """As measured: 4806 mm at 1.5 mm down are 9.65 min, and 345.5 mm of them the turn at the bottom."""
+    helix = changed(kind=StepKind.STOCK_ROUGHING, step_down=1.5, published_minutes=5.23)
+    times = StepTimes(9.52, 0.095, 0.03, 4806.3, 345.5, 1)
+    found = setting_for_published(helix, times)
+    assert found is not None
+    assert (found.key, found.passes) == ("step_down_mm", 0)
+    assert found.value == pytest.approx(3.0, abs=0.02)  # posted with 3 mm it takes 5:14 min
+    assert setting_for_published(changed(**{**vars(helix), "published_minutes": 0.7}), times) is None
 
 
 def test_seconds_are_divided_by_what_the_cl_file_does_in_them() -> None:
@@ -68,5 +79,5 @@ def test_seconds_are_divided_by_what_the_cl_file_does_in_them() -> None:
     rows = OperationRows("A", "1", "a.cls", 0, 8)
     found = step_times(200.0, [operation], [rows], proof)
     assert (found.cuts * 60, found.leads * 60, found.rest * 60) == pytest.approx((9.0, 6.0, 66.0))
-    assert (found.cut, found.passes) == (30.0, 2)
+    assert (found.cut, found.level, found.passes) == (30.0, 30.0, 2)
     assert found.minutes * 60 == pytest.approx(seconds.sum())

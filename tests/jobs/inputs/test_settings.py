@@ -157,6 +157,9 @@ def test_every_default_of_every_machine_can_be_set() -> None:
 def test_an_unknown_setting_is_told_with_the_one_that_resembles_it() -> None:
     with pytest.raises(trunnion.InputError, match='titel is not a setting of Sinumerik 840D sl; did you mean "title"'):
         trunnion.plan(CL, machine="yl569", settings={"titel": "x"})
+    for other in ("speed", "spindle_sense"):
+        with pytest.raises(trunnion.InputError, match='did you mean "spindle"'):
+            trunnion.plan(CL, machine="yl569", settings={other: "2500"})
 
 
 def test_the_command_names_its_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -106,6 +106,21 @@ def test_the_register_of_the_radius_is_the_tool_and_what_the_machine_adds(base: 
     assert "compensation" in _failing(output, machine, source)
 
 
+@pytest.mark.parametrize("base", ["matsuura_mx330", "haas_umc750"])
+def test_two_tools_do_not_share_a_register_of_the_radius(base: str, tmp_path: Path) -> None:
+    source = _source(tmp_path)
+    names = [operation.name for operation in trunnion.read_cl(source).operations]
+    machine = _machine(tmp_path, base, "")
+    with pytest.raises(trunnion.TrunnionError, match="has its radius in D2, as tool 1 has"):
+        trunnion.post(source, machine=machine, settings={"radius_offset": f"{names[0]}:1"})
+    told = trunnion.post(source, machine=machine, settings={"radius_offset": "1"})
+    assert told.passed
+    assert [each for each in told.problems if each.code == "CTL710"]
+    for apart in ("0", "100"):
+        found = trunnion.post(source, machine=machine, settings={"radius_offset": apart})
+        assert not [each for each in found.problems if each.code == "CTL710"]
+
+
 # The method
 
 

@@ -161,6 +161,30 @@ def test_a_cut_in_an_offset_that_nobody_has_placed_is_an_error(tmp_path: Path) -
             assert wrong[0].line == 15
 
 
+@pytest.mark.parametrize(("offset", "first", "line"), [("no work offset", "", 7), ("G55", "G54\nG0 Z40.\nG55\n", 10)])
+def test_a_rapid_in_an_offset_that_nobody_has_placed_is_not_judged(
+    offset: str, first: str, line: int, tmp_path: Path
+) -> None:
+    """It leads through the stock if the offset's zero is that of the stock."""
+    there = f"{first}G43 H1 G0 X5. Y0. Z20.\nZ-5.\nZ20.\nG49 G53 Z0.\nG54\n"
+    program = by_hand(tmp_path, first=there, second="", back="X5. Y0. ", cut="X9.")
+    found = simulated("matsuura_mx330", program, zero={"G54": FIRST}, tool_length=110.0)
+    told = [each for each in found.remarks if each.wording.variant == "motion_elsewhere"]
+    assert [(each.line, each.wording.parameter("offset")) for each in told] == [(line, offset)]
+    assert "SIM146" in str([str(each) for each in found.not_judged])
+    assert "rapid through stock" not in [each.kind for each in found.findings]
+    if offset == "G55":
+        stated = simulated("matsuura_mx330", program, zero={"G54": FIRST, "G55": FIRST}, tool_length=110.0)
+        assert "rapid through stock" in [each.kind for each in stated.findings]
+
+
+def test_slides_that_have_gone_to_the_machine_stay_where_they_are(tmp_path: Path) -> None:
+    """Before an offset is selected, G53 says where they stand, whatever the offset."""
+    program = by_hand(tmp_path, first="G53 G0 X0. Y0.\nG54\n", second="", back="X5. Y0. ", cut="X9.")
+    found = simulated("matsuura_mx330", program, zero={"G54": FIRST}, tool_length=110.0)
+    assert not [each for each in found.remarks if each.code in ("SIM141", "SIM146")]
+
+
 @pytest.mark.parametrize("machine", ["yl569", "dmu65"])
 def test_a_post_is_simulated_at_both_places(machine: str, tmp_path: Path) -> None:
     one, two = offsets(machine)

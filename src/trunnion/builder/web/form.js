@@ -282,7 +282,8 @@ function texts(row) { return Array.from(row.querySelectorAll(".inputs > *"), (in
  * @param {number} count of its inputs
  */
 function shownTexts(field, count) {
-  const values = Array.isArray(field.value) ? field.value : [field.value];
+  const listed = Array.isArray(field.value) ? field.value : [field.value];
+  const values = field.kind === "lines" ? [listed.join("\n")] : listed;
   return Array.from({ length: count }, (_, k) => (values[k] === null || values[k] === undefined ? "" : String(values[k])));
 }
 

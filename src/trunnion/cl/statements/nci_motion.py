@@ -11,7 +11,7 @@ from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.statements import events, motion
 from trunnion.cl.statements.cutcom_points import CutcomPoints
-from trunnion.cl.statements.nci_records import Contour, ToolNow, begin_motion, record, values_of
+from trunnion.cl.statements.nci_records import Contour, ToolNow, ToolPlane, begin_motion, record, values_of
 from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOff
 
@@ -80,7 +80,7 @@ def arc(state: ReaderState, statement: Statement) -> None:
         side, plane = second, first
     else:
         raise StatementError(Wording("CL250", "arc_plane", record=record(state, statement), first=first, second=second))
-    start = motion.current_tip(state)
+    start = None if state.own(ToolPlane).row == state.row else motion.current_tip(state)
     if start is None:
         raise StatementError(Wording("CL250", "arc_without_start", record=record(state, statement)))
     one, other, across = _PLANES[plane]

@@ -8,18 +8,18 @@ from dataclasses import field, replace
 from pathlib import PureWindowsPath
 from typing import Final
 
-from trunnion.cl.builder import NoAxis
+from trunnion.cl.builder import NoAxis, PlaneStatement
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.pair_statement import code_of
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole
 from trunnion.cl.statements import apt_tools, events, operations
+from trunnion.cl.tool_planes import TOP, squared
 from trunnion.messages import Wording, phrase
 from trunnion.records import dataclass
 
-#: The numbers of a plane that is the top view, and of a work coordinate system that shifts nothing either.
-_TOP: Final = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-_NO_SHIFT: Final = (*_TOP, 0.0, 0.0, 0.0)
+#: The numbers of a work coordinate system that turns and shifts nothing.
+_NO_SHIFT: Final = (*TOP, 0.0, 0.0, 0.0)
 
 #: Coolants of a tool change.
 _COOLANTS: Final = {0.0: "OFF", 1.0: "FLOOD", 2.0: "MIST", 3.0: "THRU"}
@@ -55,6 +55,15 @@ class Pending:
     tool_name: str = ""
     size: tuple[float, float] | None = None
     lengths: tuple[float, float] | None = None
+    plane: tuple[float, ...] | None = None
+
+
+@dataclass(slots=True)
+class ToolPlane:
+    """The tool plane, and the row from which on it is another one than that before."""
+
+    axes: tuple[float, ...] = TOP
+    row: int = -1
 
 
 @dataclass(slots=True)
@@ -209,10 +218,11 @@ def cutter(state: ReaderState, statement: Statement) -> None:
 
 
 def tool_plane(state: ReaderState, statement: Statement) -> None:
-    """Refuse a tool plane that is not the top view: how its points are to be turned is not settled."""
+    """Take the tool plane of the next tool change: points of the operation are in its coordinates."""
     numbers = values_of(state, statement, 9)
-    _pend(state)
-    if numbers != _TOP:
+    pending = _pend(state)
+    pending.plane = squared(numbers)
+    if pending.plane is None:
         raise StatementError(Wording("CL430", "tool_plane", record=record(state, statement)))
 
 
@@ -267,6 +277,10 @@ def tool_change(state: ReaderState, statement: Statement) -> None:
         state.own(Contour).feed, state.own(Contour).cuts = 0.0, False
         given = (float(number), float(length)) if length else (float(number),)
         apt_tools.loadtl(state, statement._replace(major="LOADTL", values=given))
+    plane = state.own(ToolPlane)
+    if pending.plane is not None and pending.plane != plane.axes:
+        plane.axes, plane.row = pending.plane, state.row
+    state.builder.planes.append(PlaneStatement(state.operation_row, plane.axes))
     state.own(Pending).__init__()  # type: ignore[misc]
     now = state.own(ToolNow)
     now.register, now.is_used, now.statement = diameter, now.side != "OFF", (state.line, statement)

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Final, NoReturn
 
 import jinja2
@@ -66,7 +66,7 @@ class TextTemplate(Template):
     def without_secondary(self) -> Template:
         """Return the template for a machine with one rotary axis, as ``Template`` does."""
         text = "\n".join(Template.without_secondary(self).lines)
-        return text_template(self.name, text, self.file, self.line)[0]
+        return replace(text_template(self.name, text, self.file, self.line)[0], step=self.step)
 
     @property
     def record_values(self) -> frozenset[str]:

@@ -39,6 +39,9 @@ SINGLE_VALUES: Final = ("zero", "tool_length")
 #: Settings of a post that may have a value for each operation.
 BY_OPERATION: Final = ("compensation", "feed_rapid_from", "missing_feed", "mode", "open_cycle", "spindle")
 
+#: What others call a setting.
+_OTHER_NAMES: Final = dict.fromkeys(("speed", "rpm", "spindlespeed", "spindlesense"), "spindle")
+
 #: Lengths and angles of ``check_tolerance`` are below this.
 _GREATEST_TOLERANCE: Final = 1e6
 
@@ -161,7 +164,7 @@ def _no_effect(key: str, control: Control) -> Wording:
 def _unknown_setting(key: str, control: Control) -> Problem:
     known = tuple(sorted((*control.settings, *RUN_SETTINGS)))
     last = key.rpartition(".")[2]
-    if near := last if last in known else meant_word(key, known):
+    if near := last if last in known else meant_word(key, known, _OTHER_NAMES):
         return setting_problem(key, Wording("ARG210", "unknown_but_near", control=control.name, near=near))
     return setting_problem(key, Wording("ARG210", "unknown", control=control.name, known=known))
 

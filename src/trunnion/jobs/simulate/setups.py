@@ -71,8 +71,8 @@ def prepare_setup(
     _check_programs(runs, machine)
     remarks += _without_motion(runs)
     frame = _frame_of_stock(runs, given, machine)
-    remarks += cuts_at_unknown_places(frame, runs)
     runs = frame.runs(runs)
+    remarks += cuts_at_unknown_places(frame, runs)
     remarks += _lengths_missing(runs)
     remarks += _cuts_from_unknown_places(runs)
     for program in programs:
@@ -104,8 +104,8 @@ def skipping_setup(
     runs = tuple(restore_rapids(run.with_skips(levels), rapid_feed) for run in own.runs)
     remarks += _without_motion(runs)
     frame = _frame_of_stock(own.runs, given, own.machine)
-    remarks += cuts_at_unknown_places(frame, runs)
     runs = frame.runs(runs)
+    remarks += cuts_at_unknown_places(frame, runs)
     remarks += _cuts_from_unknown_places(runs)
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, own.machine)

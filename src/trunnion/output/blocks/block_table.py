@@ -35,6 +35,22 @@ class BlockTable:
         """Write a word in the flagged rows even if it is modal and unchanged."""
         self.forced[word] = np.asarray(flags, np.int64) | self.forced.get(word, 0)
 
+    def write_in_full_behind(self, ends: Flags, words: str) -> bool:
+        """Write each word in full in the first row with it behind rows that end elsewhere than their words say.
+
+        Returns whether such a row is still to come for one of the words.
+        """
+        rows, late = np.arange(self.rows), False
+        ended = np.maximum.accumulate(np.where(ends, rows, -1))
+        for word in words:
+            has = self.column(word) != ABSENT
+            waits = ended > np.maximum.accumulate(np.where(has, rows, -1))
+            first = has & np.concatenate(([False], waits[:-1]))
+            self.force(word, first)
+            self.absolute |= set(np.flatnonzero(first).tolist())
+            late = late or bool(waits[-1])
+        return late
+
     def write_if_changed(self, word: str, row: int) -> None:
         """Write a word in a row only where it is new there."""
         if word in self.forced:

@@ -351,9 +351,7 @@ class MotionBlockWriter:
             table.absolute |= set(at.tolist())
         other_end = table.columns["X"] == ABSENT
         table.absolute |= set((np.flatnonzero(other_end) + 1).tolist())
-        for word in "XYZ":  # the block after such an arc has its end in full
-            table.force(word, np.concatenate(([False], other_end[:-1])))
-        return bool(other_end[-1])
+        return table.write_in_full_behind(other_end, "XYZ")
 
     # Files
 

@@ -7,6 +7,7 @@ from trunnion.errors import Problem, warning
 from trunnion.messages import Wording
 from trunnion.model.tool_faults import tool_differences
 from trunnion.model.toolpath import LoadTool, Operation
+from trunnion.output.compensation_entries import entries_of, motions_by_operation
 from trunnion.output.program import Program
 from trunnion.output.tool_calls import ToolCalls, edge_setting
 
@@ -24,7 +25,8 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
     problems: list[Problem] = []
     known: dict[str, list[Operation]] = {}
     registers: dict[int, str] = {}
-    for call, register, operation in ToolCalls(program).calls:
+    calls = ToolCalls(program).calls
+    for call, register, operation in calls:
         file = program.file_of(operation)
         other = registers.setdefault(register or tool_number(call) or 0, call)
         if uses_length_numbers and other != call:
@@ -50,7 +52,27 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
             continue
         problems += _conflict(call, before, operation, file)
         before.append(operation)
-    return problems
+    return [*problems, *_shared_radius_registers(program, calls)]
+
+
+def _shared_radius_registers(program: Program, calls: Sequence[tuple[str, int, Operation]]) -> Iterator[Problem]:
+    """Yield errors for registers of the radius that hold that of another tool; warnings for those that hold the length
+    of another, if both are in one table, as the setting suggests.
+    """
+    one_table = any(program.effective_setting("radius_offset", operation) not in ("", "0") for *_, operation in calls)
+    lengths = {register or tool_number(call) or 0: call for call, register, _ in calls} if one_table else {}
+    radii: dict[int, str] = {}
+    for motions, (call, _, operation) in zip(motions_by_operation(program), calls, strict=True):
+        for register in dict.fromkeys(entry.register for entry in entries_of(program, motions, call) if entry.register):
+            other = radii.setdefault(register, call)
+            variant = "tool_operation_radius"
+            if other == call:
+                other, variant = lengths.get(register, call), "tool_operation_table"
+            if other != call:
+                said = {"call": call, "operation": operation.name, "register": register, "other": other}
+                place = program.file_of(operation), operation.line
+                found = Problem(*place, Wording("CTL710", variant, **said))
+                yield found if other == radii[register] else warning(*place, found.wording)
 
 
 def _lost_register(program: Program, operation: Operation, load: LoadTool) -> Iterator[Problem]:

@@ -28,11 +28,13 @@ class Solid:
     """A mesh made ready for questions.
 
     centre, radius   of a ball around it, mm
+    corners          of its triangles, (n, 3, 3) mm
     """
 
     mesh: TriangleMesh
     centre: Floats = field(init=False)
     radius: float = field(init=False)
+    corners: Floats3 = field(init=False)
     model: Any = field(init=False)
 
     def __post_init__(self) -> None:
@@ -41,6 +43,7 @@ class Solid:
         self.model.beginModel(len(self.mesh.faces), len(self.mesh.vertices))
         self.model.addSubModel(self.mesh.vertices, self.mesh.faces)
         self.model.endModel()
+        self.corners = np.ascontiguousarray(self.mesh.vertices[self.mesh.faces])
         self.centre = self.mesh.bounds.mean(axis=0)
         self.radius = float(np.linalg.norm(self.mesh.vertices - self.centre, axis=1).max())
 
@@ -79,19 +82,21 @@ class PairQuery:
         result = self._fcl.CollisionResult()
         self._fcl.collide(self._moving, self._still, request, result)
         pairs = np.array([(contact.b1, contact.b2) for contact in result.contacts], np.int64).reshape(-1, 2)
-        one = (self.one.mesh.vertices @ pose[:3, :3].T + pose[:3, 3])[self.one.mesh.faces[pairs[:, 0]]]
-        other = self.other.mesh.vertices[self.other.mesh.faces[pairs[:, 1]]]
-        points = np.concatenate((_crossings(one, other), _crossings(other, one)))
-        if not len(points):  # the faces only touch
+        one = self.one.corners[pairs[:, 0]] @ pose[:3, :3].T + pose[:3, 3]
+        other = self.other.corners[pairs[:, 1]]
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        crossing_box(one, other, low, high)
+        crossing_box(other, one, low, high)
+        if low[0] > high[0]:  # the faces only touch
             return np.asarray(pose[:3, :3] @ self.one.centre + pose[:3, 3])
-        return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2.0)
+        return np.asarray((low + high) / 2.0)
 
     def contains(self, pose: Floats) -> bool:
         """Whether one of two solids whose surfaces do not meet is inside of the other."""
         back = np.linalg.inv(pose)
         one = self.one.mesh.vertices[:1] @ pose[:3, :3].T + pose[:3, 3]
         other = self.other.mesh.vertices[:1] @ back[:3, :3].T + back[:3, 3]
-        return bool(_depths(one, self.other.mesh)[0] > 0.0 or _depths(other, self.one.mesh)[0] > 0.0)
+        return bool(_depth(one, self.other) > 0.0 or _depth(other, self.one) > 0.0)
 
     def depth(self, pose: Floats) -> tuple[float, Floats]:
         """How deep two solids that overlap are in each other, at least, and the place (3,) in the frame of the second.
@@ -100,14 +105,14 @@ class PairQuery:
         """
         back = np.linalg.inv(pose)
         crossing = self.contact(pose)
-        common = float(_depths(crossing[None], self.other.mesh)[0])
-        in_one = float(_depths((crossing @ back[:3, :3].T + back[:3, 3])[None], self.one.mesh)[0])
+        common = _depth(crossing[None], self.other)
+        in_one = _depth((crossing @ back[:3, :3].T + back[:3, 3])[None], self.one)
         best, place = max(common, 0.0) + max(in_one, 0.0) if min(common, in_one) > 0.0 else 0.0, crossing
         corners = self.one.mesh.vertices @ pose[:3, :3].T + pose[:3, 3]
-        deepest, at = _deepest_corner(corners, self.other.mesh)
+        deepest, at = _deepest_corner(corners, self.other)
         if deepest > best:
             best, place = deepest, at
-        deepest, at = _deepest_corner(self.other.mesh.vertices @ back[:3, :3].T + back[:3, 3], self.one.mesh)
+        deepest, at = _deepest_corner(self.other.mesh.vertices @ back[:3, :3].T + back[:3, 3], self.one)
         if deepest > best:
             best, place = deepest, pose[:3, :3] @ at + pose[:3, 3]
         return best, place
@@ -130,20 +135,32 @@ class PairQuery:
         self._moving.setTransform(self._fcl.Transform(pose[:3, :3], pose[:3, 3]))
 
 
-def _crossings(edges_of: Floats, faces: Floats) -> Floats:
-    """Where the edges of triangles cross the triangles of the same rows, (k, 3); both (n, 3, 3)."""
-    begin, way = edges_of, np.roll(edges_of, -1, axis=1) - edges_of
-    u, v = faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]
-    normal = np.cross(u, v)
-    rise = np.einsum("nej,nj->ne", way, normal)
-    height = np.einsum("nej,nj->ne", begin - faces[:, None, 0], normal)
-    share = np.divide(-height, rise, out=np.full_like(rise, np.nan), where=rise != 0.0)
-    points = begin + share[..., None] * way
-    w, size = points - faces[:, None, 0], np.einsum("nj,nj->n", normal, normal)[:, None]
-    s = np.einsum("nej,nj->ne", np.cross(w, v[:, None]), normal)
-    t = np.einsum("nej,nj->ne", np.cross(u[:, None], w), normal)
-    inside = (share >= 0.0) & (share <= 1.0) & (s >= 0.0) & (t >= 0.0) & (s + t <= size)
-    return np.asarray(points[inside])
+@kernel(writes="low high")
+def crossing_box(edges_of: Floats3, faces: Floats3, low: Floats, high: Floats) -> None:
+    """Extend a box by the points where edges of triangles cross the triangles of the same rows, (n, 3, 3) both."""
+    for k in range(faces.shape[0]):
+        ax, ay, az = faces[k, 0, 0], faces[k, 0, 1], faces[k, 0, 2]
+        ux, uy, uz = faces[k, 1, 0] - ax, faces[k, 1, 1] - ay, faces[k, 1, 2] - az
+        vx, vy, vz = faces[k, 2, 0] - ax, faces[k, 2, 1] - ay, faces[k, 2, 2] - az
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        size = nx * nx + ny * ny + nz * nz
+        for e in range(3):
+            bx, by, bz = edges_of[k, e, 0], edges_of[k, e, 1], edges_of[k, e, 2]
+            to = (e + 1) % 3
+            dx, dy, dz = edges_of[k, to, 0] - bx, edges_of[k, to, 1] - by, edges_of[k, to, 2] - bz
+            rise = dx * nx + dy * ny + dz * nz
+            if rise == 0.0:
+                continue
+            share = -((bx - ax) * nx + (by - ay) * ny + (bz - az) * nz) / rise
+            if not 0.0 <= share <= 1.0:
+                continue
+            px, py, pz = bx + share * dx, by + share * dy, bz + share * dz
+            wx, wy, wz = px - ax, py - ay, pz - az
+            s = (wy * vz - wz * vy) * nx + (wz * vx - wx * vz) * ny + (wx * vy - wy * vx) * nz
+            t = (uy * wz - uz * wy) * nx + (uz * wx - ux * wz) * ny + (ux * wy - uy * wx) * nz
+            if s >= 0.0 and t >= 0.0 and s + t <= size:
+                low[0], low[1], low[2] = min(low[0], px), min(low[1], py), min(low[2], pz)
+                high[0], high[1], high[2] = max(high[0], px), max(high[1], py), max(high[2], pz)
 
 
 def touches(one: Solid, other: Solid, pose: Floats) -> bool:
@@ -152,23 +169,66 @@ def touches(one: Solid, other: Solid, pose: Floats) -> bool:
     return query.touches(pose) or query.contains(pose)
 
 
-def _deepest_corner(points: Floats, mesh: TriangleMesh) -> tuple[float, Floats]:
-    low, high = mesh.bounds
+def _deepest_corner(points: Floats, solid: Solid) -> tuple[float, Floats]:
+    low, high = solid.mesh.bounds
     points = points[((points > low) & (points < high)).all(axis=1)]
+    place = np.zeros(3)
     if not len(points):
-        return 0.0, np.zeros(3)
-    stride = max(1, math.ceil(len(points) * len(mesh.faces) / _MOST_TESTS))
-    points = points[::stride]
-    depths = _depths(points, mesh)
-    best = int(depths.argmax())
-    return float(depths[best]), np.asarray(points[best])
+        return 0.0, place
+    stride = max(1, math.ceil(len(points) * len(solid.corners) / _MOST_TESTS))
+    return deepest_point(points[::stride], solid.corners, place), place
 
 
-def _depths(points: Floats, mesh: TriangleMesh) -> Floats:
-    """How deep points are inside of a mesh, (n,) mm; negative outside."""
-    depths = np.empty(len(points))
-    point_depths(np.ascontiguousarray(points), mesh.vertices[mesh.faces], depths)
-    return depths
+def _depth(point: Floats, solid: Solid) -> float:
+    """How deep a point (1, 3) is inside of a solid, mm; negative outside."""
+    depths = np.empty(1)
+    point_depths(point, solid.corners, depths)
+    return float(depths[0])
+
+
+@kernel(writes="place")
+def deepest_point(points: Floats2, corners: Floats3, place: Floats) -> float:
+    """Return how deep the deepest of points (n, 3) is inside of a surface of triangles (m, 3, 3), and write its place.
+
+    0 if all are outside. Depths are those of ``point_depths``; no more triangles are looked at for a point once one is
+    so near that another point is deeper.
+    """
+    deepest = 0.0
+    for k in range(points.shape[0]):
+        px, py, pz = points[k, 0], points[k, 1], points[k, 2]
+        nearest = np.inf
+        for m in range(corners.shape[0]):
+            nearest = min(
+                nearest,
+                _from_triangle(
+                    corners[m, 0, 0] - px, corners[m, 0, 1] - py, corners[m, 0, 2] - pz,
+                    corners[m, 1, 0] - px, corners[m, 1, 1] - py, corners[m, 1, 2] - pz,
+                    corners[m, 2, 0] - px, corners[m, 2, 1] - py, corners[m, 2, 2] - pz,
+                ),
+            )  # fmt: skip
+            if nearest <= deepest:
+                break
+        if nearest > deepest and _covering(px, py, pz, corners) > 2.0 * math.pi:
+            deepest = nearest
+            place[0], place[1], place[2] = px, py, pz
+    return math.sqrt(deepest)
+
+
+@inner
+def _covering(px: float, py: float, pz: float, corners: Floats3) -> float:
+    """How much of the sphere around a point triangles (m, 3, 3) cover: the sum of their solid angles."""
+    angle = 0.0
+    for m in range(corners.shape[0]):
+        ax, ay, az = corners[m, 0, 0] - px, corners[m, 0, 1] - py, corners[m, 0, 2] - pz
+        bx, by, bz = corners[m, 1, 0] - px, corners[m, 1, 1] - py, corners[m, 1, 2] - pz
+        cx, cy, cz = corners[m, 2, 0] - px, corners[m, 2, 1] - py, corners[m, 2, 2] - pz
+        la = math.sqrt(ax * ax + ay * ay + az * az)
+        lb = math.sqrt(bx * bx + by * by + bz * bz)
+        lc = math.sqrt(cx * cx + cy * cy + cz * cz)
+        ab, bc, ca = ax * bx + ay * by + az * bz, bx * cx + by * cy + bz * cz, cx * ax + cy * ay + cz * az
+        volume = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+        angle += 2.0 * math.atan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb)
+    return angle
 
 
 @kernel(writes="depths")
@@ -180,20 +240,13 @@ def point_depths(points: Floats2, corners: Floats3, depths: Floats) -> None:
     for k in range(points.shape[0]):
         px, py, pz = points[k, 0], points[k, 1], points[k, 2]
         nearest = np.inf
-        angle = 0.0
         for m in range(corners.shape[0]):
             ax, ay, az = corners[m, 0, 0] - px, corners[m, 0, 1] - py, corners[m, 0, 2] - pz
             bx, by, bz = corners[m, 1, 0] - px, corners[m, 1, 1] - py, corners[m, 1, 2] - pz
             cx, cy, cz = corners[m, 2, 0] - px, corners[m, 2, 1] - py, corners[m, 2, 2] - pz
-            la = math.sqrt(ax * ax + ay * ay + az * az)
-            lb = math.sqrt(bx * bx + by * by + bz * bz)
-            lc = math.sqrt(cx * cx + cy * cy + cz * cz)
-            ab, bc, ca = ax * bx + ay * by + az * bz, bx * cx + by * cy + bz * cz, cx * ax + cy * ay + cz * az
-            volume = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
-            angle += 2.0 * math.atan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb)
             nearest = min(nearest, _from_triangle(ax, ay, az, bx, by, bz, cx, cy, cz))
         distance = math.sqrt(nearest)
-        depths[k] = distance if angle > 2.0 * math.pi else -distance
+        depths[k] = distance if _covering(px, py, pz, corners) > 2.0 * math.pi else -distance
 
 
 @inner

@@ -55,6 +55,14 @@ def test_arcs_have_their_centre_before_them_and_rise_as_polar_ones(
     assert ("Z+2.5" in after[at + 2]) is True, "nothing is left out that the polar block has not said"
 
 
+def test_a_height_that_a_helix_has_left_is_written_again_behind_a_flat_arc(post: Post) -> None:
+    rise = ARC.format(centre="0.0,0.0,5.0", sense="1.0", end="0.0,10.0,2.5", turns="")
+    flat = ARC.format(centre="0.0,0.0,2.5", sense="1.0", end="-10.0,0.0,2.5", turns="")
+    after = post(HEAD + rise + flat + "GOTO/-10.0,0.0,5.0\n" + FOOT)
+    at = after.index("CP IPA+90 IZ-2.5 DR+")
+    assert after[at + 1 : at + 4] == ["CC X+0 Y+0", "C X-10 Y+0 DR+", "L Z+5"]
+
+
 def test_an_arc_in_another_plane_becomes_lines(post: Post) -> None:
     text = "CIRCLE/0.0,0.0,5.0,0.0,1.0,0.0,10.0,0.06,0.5,10.0,0.0\nGOTO/0.0,0.0,-5.0\n"
     blocks = post(HEAD + text + FOOT)

@@ -10,7 +10,14 @@ from trunnion.errors import InputError
 
 
 @pytest.mark.parametrize(
-    ("name", "said"), [("PART.H", 'without "."'), ("A B/C", 'without " ", "/"'), ("X" * 30, "this has 30")]
+    ("name", "said"),
+    [
+        ("PART.H", 'without "."; in these letters it is PART_H'),
+        ("A B/C", 'without " ", "/"'),
+        ("叶轮_1", 'without "叶", "轮"; in these letters it is YeLun_1'),
+        ("×", 'without "×"'),
+        ("X" * 30, "this has 30"),
+    ],
 )
 def test_an_error_names_the_wrong_character(name: str, said: str, tmp_path: Path) -> None:
     part = tmp_path / "part.cls"

@@ -53,6 +53,9 @@ _WIDE: Final = HEAD + "GOTO/300,0,5\nGOTO/-300,0,5\n" + FOOT
 
 _FLIPPED: Final = LEANING + "GOTO/10.1,0.0,5.0,0.6,0.0,0.8\n" + FOOT
 
+#: A corner with radius compensation.
+_BESIDE: Final = "GOTO/20,0,5\nCUTCOM/LEFT\nGOTO/40,0,5\nGOTO/40,30,5\nCUTCOM/OFF\nGOTO/60,60,5\n"
+
 CURES: Final = (
     _said("NC390", "too_slow_for_feed", _FLIPPED, {"lower_feed": "yes"}),
     _said("NC390", "too_slow_for_feed", _FLIPPED, {"feed": "fastest"}),
@@ -257,6 +260,20 @@ CURES: Final = (
         HEAD + "GOTO/20,0,5\n" + FOOT + _SECOND.replace("TOOL,1", "TOOL,2").replace("D10", "D12") + FOOT,
         {"tool": "OP2:2"},
         on="matsuura_mx330",
+    ),
+    *(
+        _said(
+            "CTL710",
+            variant,
+            HEAD + _BESIDE + FOOT + _SECOND.replace("TOOL,1,ADJUST,1", "TOOL,2,ADJUST,2") + _BESIDE + FOOT,
+            {"radius_offset": cure},
+            on="matsuura_mx330",
+            radius_offset=offset,
+        )
+        for variant, offset, cure in (
+            ("tool_operation_radius", "OP1:1", "0"),
+            ("tool_operation_table", "1", "100"),
+        )
     ),
     _holes(
         "CTL360",

@@ -22,6 +22,7 @@ _PROGRAMS: Final = {
     "one.ngc": SLOT.replace("N50", "G54\nN50"),
     "two.ngc": _TWO_OFFSETS,
     "bare.ngc": SLOT,
+    "beside.ngc": SLOT.replace("G43 H1", "G54\nG43 H1").replace("N50", "G55\nG0 X-20 Y0 Z30\nG54\nG0 X-20 Y0 Z20\nN50"),
     "other.ngc": SLOT.replace("N50", "G55\nN50"),
     "high.ngc": SLOT.replace("Z-5", "Z0"),
     "all.ngc": HEAD
@@ -206,6 +207,13 @@ CURES: Final = (
         "place_of_offset_unknown",
         _simulated("part.toml"),
         ONE.replace("one", "two") + "zero_mm = { G54 = [-25, 0, 12] }\n",
+        (("12] }", "12], G55 = [-25, 0, 12] }"),),
+    ),
+    Cure(
+        "SIM146",
+        "motion_elsewhere",
+        _simulated("part.toml"),
+        ONE.replace("one", "beside") + "zero_mm = { G54 = [-25, 0, 12] }\n",
         (("12] }", "12], G55 = [-25, 0, 12] }"),),
     ),
     Cure("SIM131", "reaches_mm_beyond", _simulated(), TWO + 'part = "beside.stl"\n', (('"beside.stl"', '"part.stl"'),)),

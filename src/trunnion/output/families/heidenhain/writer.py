@@ -27,6 +27,7 @@ from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.output.shared.splines import spline_lines as spline_lines
 from trunnion.output.shared.splines import takes_spline as takes_spline
 from trunnion.planning.holes.cycles import Cycle, SpindleState
+from trunnion.transliteration import spelled
 
 #: With M128 the control offsets by delta values (DR) alone, not by the radius.
 COMPENSATES_WITH_TCP = False
@@ -195,7 +196,9 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, Wording]]:
     named = phrase("name_of_program")
     if others := re.sub(r"[A-Za-z0-9_#$%&-]", "", name):
         signs = tuple(f'"{each}"' for each in dict.fromkeys(others))
-        wrong.append(("program", named.within("without_characters", characters=signs)))
+        fault = named.within("without_characters", characters=signs)
+        plain = re.sub(r"[^A-Za-z0-9_#$%&-]", "_", spelled(name, "ascii"))[:_LONGEST_NAME]
+        wrong.append(("program", fault.within("spelled_as", name=plain) if plain.strip("_") else fault))
     elif len(name) > _LONGEST_NAME:
         wrong.append(("program", named.within("shorter", count=len(name))))
     if not re.fullmatch(r"[0-9]{1,5}", settings.get("work_offset", "1")):
