@@ -1,9 +1,11 @@
 """Severities have colours on a terminal that has them, unless ``NO_COLOR`` forbids it."""
 
 import io
+import sys
 
 import pytest
 
+from trunnion.cli import main
 from trunnion.cli.terminal_text import painted
 
 
@@ -22,3 +24,15 @@ def test_colours_are_for_terminals_that_have_them(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("NO_COLOR", "1")
     assert painted("error", "error", _Terminal()) == "error"
+
+
+@pytest.mark.parametrize("words", [["--help"], ["diff", "--help"]])
+def test_titles_of_help_are_bold(words: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    out = _Terminal()
+    monkeypatch.setattr(sys, "stdout", out)
+    with pytest.raises(SystemExit):
+        main(words)
+    assert "\x1b[1m" in out.getvalue()
+    assert "\ufffd" not in out.getvalue()

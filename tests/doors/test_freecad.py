@@ -303,6 +303,22 @@ def test_a_file_that_is_no_cl_of_this_post_is_not_replaced(arguments: str, tmp_p
         trunnion_post.export([given], str(path), "--cl-only")
 
 
+def test_a_post_that_was_edited_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    line = ["freecad", "install", "--folder", str(tmp_path)]
+    post = tmp_path / "trunnion_post.py"
+    post.write_text("# of an installation that nothing is known of\n", encoding="utf-8")
+    assert [main(line), main(line)] == [0, 0]
+    shipped = post.read_bytes()
+    assert len(list(tmp_path.iterdir())) == 2
+    post.write_bytes(shipped + b"# ours\n")
+    capsys.readouterr()
+    assert main(line) == 0
+    assert post.read_bytes() == shipped
+    (kept,) = tmp_path.glob("trunnion_post.py.edited-*")
+    assert kept.read_bytes() == shipped + b"# ours\n"
+    assert f"is kept as {kept.name}" in capsys.readouterr().err
+
+
 def test_install_says_where_there_can_be_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").touch()
     assert main(["freecad", "install", "--folder", str(tmp_path / "file")]) == 2

@@ -30,7 +30,7 @@ _UNITS: Final = {
     "_mm_min": "mm/min", "_deg_min": "°/min", "_mm_s2": "mm/s²", "_deg_s2": "°/s²", "_mm": "mm", "_deg": "°",
     "_mm_s3": "mm/s³", "_deg_s3": "°/s³", "_rpm": "min⁻¹", "_rpm_s": "min⁻¹/s", "_s": "s", "_kw": "kW",
     "_nm": "N·m", "rotary_tolerance": "°", "tolerance": "mm", "retract_distance": "mm", "delta_length": "mm",
-    "delta_radius": "mm",
+    "delta_radius": "mm", "bore_lift": "mm",
 }  # fmt: skip
 
 #: Settings that belong to another page than "control".
@@ -68,6 +68,7 @@ class Field:
     optional  the definition may leave it out
     note      what the definition says of it; may be empty
     allowed   what it may be; may be empty
+    stated    its unit by the rule of a setting; empty: its key says the unit, or it has none
     """
 
     page: Annotated[str, NOT_DATA]
@@ -78,6 +79,7 @@ class Field:
     optional: bool = True
     note: Annotated[str | Wording, NOT_DATA] = ""
     allowed: Annotated[str | Wording, NOT_DATA] = ""
+    stated: Annotated[str, NOT_DATA] = ""
 
     @property
     @Figure()
@@ -95,7 +97,7 @@ class Field:
     def unit(self) -> str:
         """Its unit, as it stands behind the field."""
         last = str(self.path[-1])
-        return next((unit for end, unit in _UNITS.items() if last.endswith(end)), "")
+        return self.stated or next((unit for end, unit in _UNITS.items() if last.endswith(end)), "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +211,8 @@ def _control_fields(control: LocatedValue, notes: SettingNotes) -> Iterator[Fiel
         choices = PROGRAM_CHOICES.get(name, ())
         kind = "choice" if choices else "text"
         page = _SETTING_PAGES.get(name, "control")
-        yield of(page, kind, "settings", name, choices=choices, note=note, allowed=allowed)
+        unit = _text(_table(_table(control, "setting_rules"), name), "unit").replace("degrees", "°")
+        yield of(page, kind, "settings", name, choices=choices, note=note, allowed=allowed, stated=unit)
     for name in sorted(_keys(_table(control, "templates")), key=_template_rank):
         start = next((page for begin, page in _TEMPLATE_PAGES.items() if name.startswith(begin)), "operation")
         yield of(start, "lines", "templates", name)

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from trunnion.cli.printing import print_result
-from trunnion.cli.wording import in_words
-from trunnion.errors import InputError, argument_problem
-from trunnion.files import output_group, resolve_output
+from trunnion.cli.printing import print_result, tell_problem
+from trunnion.cli.wording import in_words, problem_line
+from trunnion.errors import InputError, argument_problem, warning
+from trunnion.files import EarlierJob, output_group, resolve_output
 from trunnion.files.places import cannot_write
 from trunnion.jobs.job import Given
 from trunnion.messages import Wording, phrase
@@ -115,9 +115,14 @@ def _install(given: Given, folder: Path, texts: Mapping[str, str], done: str) ->
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise cannot_write(str(folder), error) from None
-    with output_group(remembers=False) as group:
+    with output_group() as group:
         for name, text in texts.items():
-            with group.open(resolve_output(folder / name)) as output:
+            place = resolve_output(folder / name)
+            # What was edited since it was installed is kept; what no installation is known to have written is replaced.
+            edited = "keep" if EarlierJob(place.path).has_edited(place.path) else "replace"
+            with group.open(place, edited=edited) as output:
                 output.main.write(text.encode())
+            for at, kept in output.kept:
+                tell_problem(problem_line(warning(at.name, 0, Wording("FIL250", "kept", name=kept.path.name))))
     print_result(in_words(phrase(done, folder=str(folder))))
     return 0

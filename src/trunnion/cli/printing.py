@@ -36,15 +36,15 @@ def _as_one_line(line: str) -> str:
     return line if isinstance(line, CodeLine) and line.isprintable() else one_line(line)
 
 
-def print_result(*lines: str, end: str = "\n") -> None:
-    """Print lines to stdout, without characters that a terminal obeys.
+def print_result(*lines: str, end: str = "\n", own: bool = False) -> None:
+    """Print lines to stdout, without characters that a terminal obeys; texts that are Trunnion's own may be painted.
 
     Raises ``InputError`` if stdout takes no more, as on a disk that is full.
 
     Raises ``BrokenPipeError`` if its reader has gone away.
     """
     try:
-        print(*map(printable, lines), sep="\n", end=end)
+        print(*(lines if own else map(printable, lines)), sep="\n", end=end)
         sys.stdout.flush()
     except BrokenPipeError:
         raise

@@ -343,5 +343,5 @@ def _say(where: str, wording: Wording, severity: Severity) -> None:
 
 
 def _print(text: str) -> NoReturn:
-    print_result(text, end="")
+    print_result(text, end="", own=True)
     raise SystemExit(0)
