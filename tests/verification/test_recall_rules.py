@@ -40,6 +40,15 @@ def test_a_rapid_is_left_out_where_the_next_turns_back_or_aside() -> None:
     assert "Z: a tenth more" in kinds([*HOME, "N6 Z20.", "N7 M8", "N8 X9."], "N6 Z20.")
 
 
+def test_a_place_in_the_air_is_not_changed_where_the_next_rapid_says_it_again() -> None:
+    first, again = "N6 G0 X9. Y6. Z40.", "N8 G0 X9."
+    wrong = {"X: a tenth more", "X: a sign"}
+    assert not wrong & kinds([*HOME, first, "N7 (cut)", again, "N9 Z10."], first)
+    assert "Y: a tenth more" in kinds([*HOME, first, again, "N9 Z10."], first)
+    for following in ("N8 G1 X9. F90.", "N8 G0 X8.", "N8 G0 X9. Z10."):
+        assert wrong <= kinds([*HOME, first, following, "N9 Z10."], first), following
+
+
 def test_a_height_between_holes_is_changed_where_there_are_two() -> None:
     one = [*HOME, HOLE, "N8 G80", "N9 G0 Z50."]
     two = [*HOME, HOLE, "N8 X9.", "N9 G80", "N10 G0 Z50."]

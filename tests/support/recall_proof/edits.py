@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from tests.support.recall_proof.languages import LANGUAGES, Language
-from tests.support.recall_proof.straight_rapids import is_on_rapid_way, returns_on_the_way
+from tests.support.recall_proof.straight_rapids import is_on_rapid_way, is_said_again, returns_on_the_way
 from tests.support.recall_proof.straight_ways import is_near_straight_way, is_on_straight_way
 
 _AXES = "XYZABC"
@@ -160,6 +160,7 @@ def _numbers(blocks: list[Block], language: Language) -> Iterator[Edit]:
                     and not (letter == "C" and abs(float(new) - value) % 360 == 0)
                     and not (is_on_straight_way(blocks, k, {}) and is_on_straight_way(blocks, k, {letter: float(new)}))
                     and not (letter == "Z" and is_on_rapid_way(blocks, k, language, float(new)))
+                    and not is_said_again(blocks, k, letter)
                 ):
                     sign = "+" if number[0] in "+-" and new[0] not in "+-" else ""
                     yield Edit(

@@ -1,5 +1,7 @@
-"""Rapids along the tool axis that go on in the same direction: without their point, or elsewhere on that way, nothing
-changes. The rule reads Z alone, in blocks that leave X and Y where they are.
+"""Rapids that the next one takes over: without their point, or with another, nothing changes.
+
+Along the tool axis they go on in the same direction; that rule reads Z alone, in blocks that leave X and Y where they
+are. Across it, the next rapid says X or Y again at the same height.
 """
 
 import math
@@ -38,6 +40,16 @@ def is_on_rapid_way(blocks: "list[Block]", k: int, language: "Language", z: floa
     if math.isinf(start):
         start = own + _BELOW_HOME
     return all(min(start, end) <= height <= max(start, end) for height in heights)
+
+
+def is_said_again(blocks: "list[Block]", k: int, letter: str) -> bool:
+    """Whether the next rapid goes to the place of one, and says X or Y of it again: the way there is in the air."""
+    following = next((block for block in blocks[k + 1 :] if block.words), None)
+    if letter not in "XY" or following is None or not (blocks[k].rapids and following.rapids) or following.cycle:
+        return False
+    place = {word[1]: float(word[2]) for word in blocks[k].words}
+    again = {word[1]: float(word[2]) for word in following.words}
+    return letter in again and all(place.get(each) == value for each, value in again.items())
 
 
 def _retract_height(blocks: "list[Block]", k: int) -> float | None:
