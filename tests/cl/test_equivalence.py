@@ -29,8 +29,13 @@ def test_a_path_is_the_same_in_every_dialect(tmp_path: Path, steps: list[Step], 
         toolpath = read_cl(path, ClReading(strict=True))
         assert toolpath.dialect == dialect
         found[dialect] = content(toolpath)
+        offsets = [operation.work_offset for operation in toolpath.operations]
+        assert all(offsets) == any(offsets) == (dialect == "trunnion")
         for ours in OURS:
-            found[f"{dialect} as {ours}"] = content(rewritten(toolpath, ours, inch, tmp_path / "again"))
+            again = rewritten(toolpath, ours, inch, tmp_path / "again")
+            found[f"{dialect} as {ours}"] = content(again)
+            if ours == "trunnion":
+                assert [operation.work_offset for operation in again.operations] == offsets
     expected = found.pop("clsf")
     assert len(found) >= 3
     for dialect, other in found.items():

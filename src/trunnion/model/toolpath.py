@@ -346,6 +346,7 @@ class Operation:
     """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH in ``file``.
 
     ``splines`` are those for which rows of ``moves`` stand; ``joined`` names operations that it goes on with.
+    ``work_offset`` counts those of the control from 1; 0: none is stated.
     """
 
     name: str
@@ -360,6 +361,7 @@ class Operation:
     file: str = ""
     splines: Splines = field(default_factory=Splines.empty)
     joined: tuple[str, ...] = ()
+    work_offset: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
