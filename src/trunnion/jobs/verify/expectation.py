@@ -51,8 +51,8 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
     for name, value in of_operations.items():
         single[name]["work_offset"] = value
     every = {**repeated, **({"work_offset": offset} if offset else {})}
-    _, single = with_stated_offsets(read.toolpaths, (on.machine, on.control), every, single)
-    by_operation = {name: {**settings, **values} for name, values in single.items()}
+    _, own_settings = with_stated_offsets(read.toolpaths, (on.machine, on.control), every, single)
+    by_operation = {name: {**settings, **values} for name, values in own_settings.items()}
     return replace(
         expected_values(on.control, on.machine, settings, by_operation),
         span=given["span"],
