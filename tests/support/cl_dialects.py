@@ -173,7 +173,7 @@ class _Trunnion(_Clsf):
         ends = _Clsf.foot(self)
         self._open = True
         data = f"$$-> TOOL / MILL, LENGTH, 50, DIAMETER, {diameter:.6f}, CORNER, {corner:.6f}"
-        offset = f"$$-> WORK-OFFSET / {number}"
+        offset = "$$-> WORK-OFFSET / 1"
         return [*ends, f"TOOL PATH/OP{number},TOOL,T{number}", data, offset, f"LOADTL/{number}"]
 
 
